@@ -18,7 +18,7 @@ def python_blocks():
     return re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 
 
-def test_readme_example_gives_its_numbers_in_at_most_ten_lines(capsys):
+def test_readme_example_is_short_and_right(capsys):
     code = python_blocks()[0]
     assert len([line for line in code.splitlines() if line.strip()]) <= 10
     exec(compile(code, "README", "exec"), {})
@@ -51,7 +51,7 @@ def test_readme_sweep_runs():
     assert (names["table"]["failed"] == "").all()
 
 
-def test_readme_program_gives_torque_and_slope_which_is_constant_in_a_mass():
+def test_readme_program_gives_torque_and_slope():
     turn = np.linspace(0, 2 * np.pi, 360, endpoint=False)
     names: dict = {"ks": ks, "turn": turn}
     exec(compile(python_blocks()[4], "README", "exec"), names)
@@ -79,7 +79,7 @@ def test_readme_links_lead_to_files():
     assert all((ROOT / link).exists() for link in links)
 
 
-def test_version_of_the_package_is_that_of_changelog_and_citation():
+def test_version_is_in_changelog_and_citation():
     section = re.search(r"^## (\S+) - (\S+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert section is not None
@@ -88,7 +88,7 @@ def test_version_of_the_package_is_that_of_changelog_and_citation():
     assert f'\ndate-released: "{section[2]}"\n' in citation
 
 
-def test_changelog_tells_of_each_version_what_is_added_changed_and_fixed():
+def test_changelog_lists_changes_of_each_version():
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     for section in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
         assert set(re.findall(r"^### (.*)$", section, flags=re.MULTILINE)) <= {"Added", "Changed", "Fixed", "Removed"}

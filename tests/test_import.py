@@ -1,13 +1,17 @@
 """Importing the package is cheap, and all its names are there when asked for."""
 
 import ast
+import pickle
+import shutil
 import subprocess
 import sys
+from importlib import resources
 from pathlib import Path
 
 import pytest
 
 import kinetostatics as ks
+from kinetostatics import errors, version
 
 pytestmark = pytest.mark.slow
 
@@ -21,7 +25,7 @@ def printed(code):
     return subprocess.run([sys.executable, "-c", code], cwd=root, check=True, capture_output=True, text=True).stdout
 
 
-def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
+def test_import_is_light():
     loaded = "{name for name in sys.modules if name.partition('.')[0] not in sys.stdlib_module_names}"
     code = (
         f"import sys; before = {loaded}; import kinetostatics as ks; print(len({loaded} - before)); "
@@ -32,7 +36,7 @@ def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
     assert heavy == "[]"
 
 
-def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():
+def test_public_names_are_complete():
     found: dict = {}
     exec("from kinetostatics import *", found)
     assert set(ks.__all__) <= set(found)
@@ -42,13 +46,81 @@ def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():
     assert shown == ks._WHERE
 
 
-def test_a_name_is_looked_for_once_and_is_the_same_as_in_its_module():
+def test_name_is_looked_up_once():
     from kinetostatics.solution.scene import solve
 
     assert ks.solve is solve
     assert vars(ks)["solve"] is solve
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error():
+def test_absent_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'kinetostatics' has no attribute 'sovle'"):
         ks.sovle  # noqa: B018 - looking it up is the test
+
+
+# One version, wherever it is asked
+
+
+def test_version_has_three_numbers():
+    assert ks.__version__ == version.__version__
+    assert all(part.isdigit() for part in version.__version__.split("."))
+    assert version.__version__.count(".") == 2
+
+
+# Whoever installs the package has its types (PEP 561)
+
+
+PACKAGE = Path(str(resources.files(ks)))
+
+
+@pytest.mark.parametrize("marked", [True, False])
+def test_mypy_reads_types_of_the_package(tmp_path, marked):
+    modulefinder = pytest.importorskip("mypy.modulefinder")
+    installed = tmp_path / "kinetostatics"
+    installed.mkdir()
+    shutil.copy(PACKAGE / "__init__.py", installed)
+    if marked:
+        shutil.copy(PACKAGE / "py.typed", installed)
+    paths = modulefinder.SearchPaths(python_path=(), mypy_path=(), package_path=(str(tmp_path),), typeshed_path=())
+    found = modulefinder.FindModuleCache(paths, None, None).find_module("kinetostatics")
+    assert (found == str(installed / "__init__.py")) == marked
+    assert (found == modulefinder.ModuleNotFoundReason.FOUND_WITHOUT_TYPE_HINTS) != marked
+
+
+# Errors
+
+
+MADE = [
+    errors.ParameterError("wrong", designs=[1, 2]),
+    errors.AssemblyError("does not close", ((0.1, 0.2),)),
+    errors.JammingError("jams", (0.3,)),
+    errors.DesignError("cannot be met", {"coupler_length": 2.0}),
+    errors.DriveError("stalls", missing=3.0, crank_angle=1.0),
+    errors.QuantityError("no such"),
+    errors.NotGivenError("not given"),
+    errors.MissingLibraryError("not installed"),
+    errors.FileError("no file"),
+    errors.CaseError("saw.toml", ["a", "b"]),
+]
+
+
+@pytest.mark.parametrize("error", MADE, ids=lambda error: type(error).__name__)
+def test_errors_are_one_family_and_picklable(error):
+    again = pickle.loads(pickle.dumps(error))
+    assert isinstance(error, errors.KinetostaticsError)
+    assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
+
+
+def test_every_error_of_the_module_is_tried_here():
+    kinds = {kind for kind in vars(errors).values() if isinstance(kind, type) and issubclass(kind, Exception)}
+    family = {kind for kind in kinds if issubclass(kind, errors.KinetostaticsError)} - {errors.KinetostaticsError}
+    assert family == set(map(type, MADE))
+    assert all(issubclass(kind, Warning) for kind in kinds - family - {errors.KinetostaticsError})
+
+
+def test_hints_name_their_place_and_are_picklable():
+    for hint in (errors.HintWarning("saw.toml", "variants.plain", "is it in mm?"), errors.HintWarning("is it in mm?")):
+        again = pickle.loads(pickle.dumps(hint))
+        assert again.hint == hint.hint == "is it in mm?"
+        assert str(again) == str(hint)
+    assert str(errors.HintWarning("saw.toml", "variants.plain", "is it?")) == "saw.toml: variants.plain: is it?"

@@ -32,7 +32,7 @@ def named_in(path, kinds):
     return kinds & (found | {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)})
 
 
-def test_no_module_outside_the_machine_knows_a_kind_of_group():
+def test_only_machine_knows_kinds_of_groups():
     """Whoever needs something of a group asks what groups declare, or the builders."""
     public = {name: getattr(ks, name) for name in ks.__all__}
     kinds = {name for name, kind in public.items() if isinstance(kind, type) and issubclass(kind, Group)}

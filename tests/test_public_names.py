@@ -67,7 +67,7 @@ def undocumented(kind):
     ]
 
 
-def test_dir_of_a_public_module_shows_its_public_names_only():
+def test_dir_of_public_modules_is_public():
     for found in modules().values():
         assert sorted(dir(found)) == sorted(found.__all__)
         assert inspect.getdoc(found)
@@ -88,7 +88,7 @@ def test_every_public_name_shows_an_example():
     assert not [name for name, text in ends.items() if ">>> import kinetostatics as ks\n" not in text]
 
 
-def test_every_argument_is_told_of_or_where_the_object_comes_from():
+def test_every_argument_is_documented():
     missing = {}
     for name, item in called().items():
         text = inspect.getdoc(item)
@@ -109,7 +109,7 @@ def test_every_argument_that_a_docstring_lists_exists():
     assert not strange
 
 
-def test_sections_of_docstrings_stand_in_the_usual_order():
+def test_docstring_sections_are_in_order():
     order = ["Parameters", "Attributes", "Methods", "Returns", "Raises", "Warns", "Notes", "Examples"]
     wrong = {}
     for name, item in called().items():

@@ -30,7 +30,7 @@ def interrupted():
         raise ValueError
 
 
-def test_an_interruption_takes_the_place_of_an_error_of_the_block():
+def test_interruption_replaces_an_error():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):

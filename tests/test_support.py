@@ -1,10 +1,21 @@
-"""What tests lean on: many inputs in one test are each tried, named and timed."""
+"""What tests share: the reference that imports nothing of the package, and many inputs in one test."""
 
+import ast
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from support.every import every, limited
+
+
+def test_the_reference_imports_only_mpmath():
+    """So that it shares nothing with the package, nor with what the other helpers of the tests take from it."""
+    tree = ast.parse((Path(__file__).parent / "support" / "multibody.py").read_text(encoding="utf-8"))
+    modules = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    modules |= {"." * node.level + (node.module or "") for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert {name for name in modules if name.partition(".")[0] not in sys.stdlib_module_names} == {"mpmath"}
 
 
 def failure(test, **fixtures):
@@ -13,7 +24,7 @@ def failure(test, **fixtures):
     return str(caught.value).splitlines()
 
 
-def test_every_input_that_fails_is_named_with_its_reason_and_no_other():
+def test_failing_inputs_are_named_with_reasons():
     @every("value, limit", [(1, 2), (3, 2), (5, 2)])
     def test(value, limit):
         if value > limit:
@@ -26,26 +37,13 @@ def test_every_input_that_fails_is_named_with_its_reason_and_no_other():
     ]
 
 
-def test_an_input_that_raises_nothing_where_an_error_is_due_is_named():
+def test_input_without_its_error_is_named():
     @every("text", ["1", "one"])
     def test(text):
         with pytest.raises(ValueError, match="one"):
             int(text)
 
     assert [line.split(":")[0] for line in failure(test)[1:]] == ["1"]
-
-
-def test_decorators_give_all_combinations_beside_fixtures_and_keep_their_names():
-    seen = []
-
-    @every("a", {"x": 1, "y": 2})
-    @every("b", [1, 2, 3], ids=["one", "two", "three"])
-    def test(a, b, fixture):
-        seen.append((a, b, fixture))
-        assert (a, b) != ("y", 2)
-
-    assert failure(test, fixture="given")[1].startswith("y-two: AssertionError")
-    assert seen == [(a, b, "given") for a in "xy" for b in (1, 2, 3)]
 
 
 def work(seconds):
@@ -55,6 +53,7 @@ def work(seconds):
         pass
 
 
+@pytest.mark.slow
 def test_each_input_has_the_time_of_a_test():
     @every("seconds", [0.3, 0.0, 0.06, 0.06, 0.06])
     def test(seconds):
@@ -65,7 +64,7 @@ def test_each_input_has_the_time_of_a_test():
 
 
 @pytest.mark.parametrize("spend", [work, time.sleep])
-def test_a_test_is_stopped_once_at_work_or_waiting_so_that_its_failure_can_be_told(spend):
+def test_slow_test_is_stopped_once(spend):
     def stopped():
         with limited(0.02):
             spend(1.0)
@@ -73,16 +72,3 @@ def test_a_test_is_stopped_once_at_work_or_waiting_so_that_its_failure_can_be_to
     with pytest.raises(TimeoutError, match=r"more than 0\.02 s"):
         stopped()
     spend(0.05)
-
-
-def test_an_input_that_would_skip_the_others_fails():
-    @every("value", [1, 2])
-    def test(value):
-        pytest.skip("no")
-
-    assert "leave it out" in failure(test)[0]
-
-
-def test_no_inputs_are_no_test():
-    with pytest.raises(ValueError, match="no inputs value"):
-        every("value", [])

@@ -378,8 +378,9 @@ def _in_peace():
         yield
 
 
+@pytest.mark.slow
 @every(("name", "parameter"), numbers(DOORS))
-def test_a_quantity_in_the_right_unit_is_the_plain_number_to_the_last_bit(name, parameter):
+def test_quantity_equals_the_plain_number(name, parameter):
     make, given, others = DOORS[name]
     plain = {key: value for key, (value, _) in given.items()}
     told = plain | {parameter: measured(*given[parameter])}
@@ -397,7 +398,7 @@ CALLED = {
 
 
 @every(("name", "parameter"), numbers(DOORS, SLOW))
-def test_a_quantity_of_another_dimension_is_refused_by_its_name_with_both_dimensions(name, parameter):
+def test_wrong_dimension_names_both(name, parameter):
     make, given, others = (DOORS | SLOW)[name]
     plain = {key: value for key, (value, _) in given.items()}
     told = plain | {parameter: measured(given[parameter][0], "cd")}
@@ -494,7 +495,7 @@ def is_error(item):
     return issubclass(item, BaseException)
 
 
-def test_every_number_of_every_public_function_and_class_has_a_dimension_and_is_tried_here():
+def test_every_public_number_has_a_dimension():
     tried: dict[str, set] = {}
     for name, (_, given, _) in (DOORS | SLOW).items():
         tried.setdefault(name.split(".")[-1] if name.startswith("plots") else name.split(".")[0], set()).update(given)
@@ -516,7 +517,7 @@ def rules_in(kind):
             yield field, rule
 
 
-def test_every_field_that_is_a_number_declares_a_unit_that_pint_knows():
+def test_every_number_declares_a_known_unit():
     kinds = [kind for _, kind in callables() if isinstance(kind, type) and hasattr(kind, "RULES")]
     assert len(kinds) > 25
     assert all(issubclass(kind, Checked | Load | object) for kind in kinds)
@@ -529,7 +530,7 @@ def test_every_field_that_is_a_number_declares_a_unit_that_pint_knows():
 # What the doors cannot be asked one by one
 
 
-def test_programs_and_scenes_take_other_numbers_with_units():
+def test_programs_and_scenes_take_quantities():
     program = ks.compile(SCENE, "O", engine="numpy")
     same = program(UNITS.Quantity(90.0, "deg"), {"slider.mass": UNITS.Quantity(2000.0, "g")})["O"]
     assert np.array_equal(same, program(math.pi / 2, {"slider.mass": 2.0})["O"])
@@ -555,7 +556,7 @@ def test_limits_of_a_contact_have_units_of_their_own():
         made(life=UNITS.Quantity(1.0, "m"))
 
 
-def test_weights_of_force_and_moment_have_units_of_their_own():
+def test_force_and_moment_weights_have_units():
     bounded = {"crank": ks.balancing.Counterweight(arm=0.03)}
     with pytest.raises(ks.ParameterError, match=r"weights moment must measure"):
         ks.balancing.optimal(PUMP, "weighted", weights=(1.0, UNITS.Quantity(1.0, "1/N")), **bounded)
@@ -577,7 +578,7 @@ def test_bounds_and_begins_of_a_search_are_converted():
 MASS = {unit: tuple(UNITS.Quantity(value, unit) for value in (0.5, 1.0, 2.0)) for unit in ("kg", "lb")}
 
 
-def test_grids_take_quantities_one_or_an_array_or_several_in_units_that_convert():
+def test_grids_take_quantities():
     table = ks.designs.grid(
         {
             "spring.stiffness": UNITS.Quantity(np.array([600.0, 900.0]), "kN/m"),
@@ -598,7 +599,7 @@ def test_grids_take_quantities_one_or_an_array_or_several_in_units_that_convert(
     (("normal", UNITS.Quantity(1.0, "kg"), UNITS.Quantity(10.0, "g")), "normal 1 kg +- 10 g"),
     (("triangular", *MASS["lb"]), "triangular 0.5..1..2 lb"),
 ])  # fmt: skip
-def test_samples_of_quantities_are_those_of_the_text_that_says_the_same(given, text):
+def test_quantity_samples_equal_their_text(given, text):
     for sample in (ks.designs.sobol, ks.designs.random, ks.designs.latin_hypercube):
         found, wanted = (sample({"slider.mass": spread}, 8) for spread in (given, text))
         assert found.equals(wanted)
@@ -634,12 +635,12 @@ NO_DISTRIBUTIONS = [
 @every(("read", "given", "message"), [
     (read, *wrong) for read in (ks.designs.grid, ks.designs.distributions) for wrong in NO_SPREADS
 ] + [(ks.designs.distributions, *wrong) for wrong in NO_DISTRIBUTIONS])  # fmt: skip
-def test_what_is_no_spread_of_quantities_is_refused_by_the_name_of_its_parameter(read, given, message):
+def test_wrong_quantity_spreads_are_refused(read, given, message):
     with pytest.raises(ks.ParameterError, match=f"slider.mass: .*{message}"):
         read({"slider.mass": given})
 
 
-def test_tables_know_whether_they_are_forces_or_torques():
+def test_tables_are_forces_or_torques():
     torque = ks.Table(ANGLES, UNITS.Quantity(np.cos(ANGLES), "N*m"))
     assert torque.unit == "N*m"
     assert torque != ks.Table(ANGLES, np.cos(ANGLES))
@@ -648,7 +649,7 @@ def test_tables_know_whether_they_are_forces_or_torques():
         ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.ProcessForce(torque))
 
 
-def test_a_table_read_from_a_file_is_for_loads_of_its_unit(tmp_path):
+def test_csv_table_keeps_its_unit(tmp_path):
     path = tmp_path / "torque.csv"
     path.write_text("crank_angle [deg], torque [N m]\n0, 1\n120, 2\n240, 3\n")
     torque = ks.Table.from_csv(path, "N m")
@@ -658,7 +659,7 @@ def test_a_table_read_from_a_file_is_for_loads_of_its_unit(tmp_path):
 
 
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
-def test_what_functions_of_the_motion_return_is_converted(engine):
+def test_load_functions_may_return_quantities(engine):
     if engine == "compiled":
         pytest.importorskip("numba")
 
@@ -672,7 +673,7 @@ def test_what_functions_of_the_motion_return_is_converted(engine):
         torque(lambda motion: UNITS.Quantity(np.cos(motion.crank_angle), "kg"))
 
 
-def test_a_function_that_holds_a_registry_is_not_taken_apart():
+def test_function_with_a_registry_is_opaque():
     Quantity = UNITS.Quantity
     load = ks.ProcessForce(lambda motion: Quantity(4.0, "kN"))
     assert ks.solve(PUMP, 0.5, crank_speed=1.0, loads=load).balancing_torque != 0
@@ -684,7 +685,7 @@ def test_a_law_that_returns_quantities_is_refused():
         ks.cams.from_law(lambda phi: tuple(UNITS.Quantity(part, "mm") for part in law(phi)))
 
 
-def test_numbers_of_a_case_take_quantities_also_where_others_follow_from_them():
+def test_case_numbers_take_quantities():
     variant = ks.load_case("sawframe_2r63").variants["cam-circle"]
     numbers = {path: value for path, value in variant.parameters.items() if isinstance(value, float)}
     assert len(numbers) > 20

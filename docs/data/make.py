@@ -31,7 +31,7 @@ from kinetostatics.machine.loads.period import WholeTurns  # noqa: E402
 from kinetostatics.machine.loads.places import Between, Place  # noqa: E402
 from kinetostatics.numbers import checks  # noqa: E402
 from kinetostatics.studies.methods.certified import certified  # noqa: E402
-from support.rubbing_machines import Drawn  # noqa: E402
+from support.friction_machines import Drawn  # noqa: E402
 
 DIGITS = 17
 STEPS = 4096

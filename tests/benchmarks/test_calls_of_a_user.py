@@ -78,7 +78,7 @@ def test_a_mechanism_is_made_with_its_checks_in_25_us(benchmark, tell):
 
 
 @needs_numba
-def test_all_derivatives_of_the_torque_cost_a_few_times_its_value(benchmark, tell):
+def test_torque_derivatives_cost_a_few_values(benchmark, tell):
     angles = turn(360)
     scene = ks.Scene(saw(), SPEED, loads=ks.Gravity())
     limits = {"compiled": 3.0, "numpy": 4.0}

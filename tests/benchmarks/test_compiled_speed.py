@@ -20,7 +20,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import compiled, loops, programs
 from kinetostatics.studies.methods import kane
-from support.shipped import shipped
+from support.case_files import shipped
 from support.speed import (
     CENTRE,
     COUPLER,
@@ -119,7 +119,7 @@ def shared(made, numbers, designs=BLOCK):
     return run, sine, cosine
 
 
-def test_one_turn_takes_12_us_and_is_near_c_and_far_from_sympy(benchmark, tell, one_core, c):
+def test_one_turn_takes_12_us_near_c(benchmark, tell, one_core, c):
     rows, few = np.empty((9, 360)), turn(360)
     ours, plain_c = one_design(few), called(c[0].turn, DESIGN, 360, few, rows)
     by_kane = [kane.all_forces(SAW.solve("plain", count)) for count in (360, 3600)]
@@ -142,7 +142,7 @@ def test_one_turn_takes_12_us_and_is_near_c_and_far_from_sympy(benchmark, tell, 
     assert theirs_more > more
 
 
-def test_one_long_turn_takes_30_ns_an_angle_and_is_near_c(benchmark, tell, one_core, c):
+def test_long_turn_takes_30_ns_an_angle(benchmark, tell, one_core, c):
     angles = turn(MANY)
     rows = np.empty((9, angles.size))
     ours, plain_c = one_design(angles), called(c[0].turn, DESIGN, angles.size, angles, rows)
@@ -155,7 +155,7 @@ def test_one_long_turn_takes_30_ns_an_angle_and_is_near_c(benchmark, tell, one_c
     assert spent <= 1.6 * in_c
 
 
-def test_designs_with_angles_in_common_take_12_ns_an_angle_and_are_near_c(benchmark, tell, one_core, c):
+def test_designs_take_12_ns_an_angle(benchmark, tell, one_core, c):
     ours, sine, cosine = shared(*program("plain"))
     rows = np.empty((BLOCK, 9, 360))
     plain_c, fewer_divisions = (
@@ -237,7 +237,7 @@ def reported(variant, count, repeats=3):
     return [float(text) for text in run(code, {}).split()]
 
 
-def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(benchmark, tell):
+def test_large_sweep_takes_seconds_and_little_memory(benchmark, tell):
     limits = {"plain": 2.0, "cam-circle": 5.0}
     benchmark.pedantic(reported, ("plain", MANY, 1), rounds=1)
     for variant, limit in limits.items():
@@ -256,7 +256,7 @@ def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(b
             assert memory_10 - memory < 2 * (size_10 - size)
 
 
-def test_sweep_of_saws_with_cams_takes_at_most_1_6_times_as_long_as_of_plain_ones(benchmark, tell):
+def test_cam_sweep_takes_1_6_times_a_plain_one(benchmark, tell):
     """Told besides: a sweep in which the cosine cam itself varies, so that designs have no motion in common."""
     given = {variant: (variant, ks.designs.random(varied, MANY)) for variant, varied in VARIED.items()}
     given["cam-cosine, its cam too"] = "cam-cosine", ks.designs.random({"cam.amplitude": "0.28..0.32 m"}, MANY)
@@ -270,7 +270,7 @@ def test_sweep_of_saws_with_cams_takes_at_most_1_6_times_as_long_as_of_plain_one
     assert max(shares[variant] for variant in VARIED) <= 1.6
 
 
-def test_sweep_takes_at_most_twice_as_long_as_its_bare_loop(benchmark, tell):
+def test_sweep_takes_twice_its_bare_loop(benchmark, tell):
     designs = ks.designs.random(VARIED["plain"], MANY)
     benchmark.pedantic(swept, ("plain", designs), rounds=1, warmup_rounds=1)
     whole, alone = np.min([(swept("plain", designs)[1], bare(designs)) for _ in range(5)], axis=0)
@@ -279,7 +279,7 @@ def test_sweep_takes_at_most_twice_as_long_as_its_bare_loop(benchmark, tell):
     assert whole <= 2 * alone
 
 
-def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):
+def test_impossible_designs_hardly_slow_a_sweep(benchmark, tell):
     good = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, MANY)
     bad = good.copy()
     bad.loc[::200, "coupler_length [m]"] = 0.2

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled, loops, programs
-from support.shipped import shipped
+from support.case_files import shipped
 from support.speed import seconds
 
 CASES = [
@@ -40,7 +40,7 @@ def judged(benchmark, tell, what, found, most):
 
 @pytest.mark.parametrize("engine", MOST)
 @pytest.mark.parametrize(("case", "variant"), CASES)
-def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, monkeypatch, engine, case, variant):
+def test_values_with_bounds_take_few_times_values(benchmark, tell, monkeypatch, engine, case, variant):
     if engine == "compiled" and not compiled.available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(loops, "cores", lambda: 1)
@@ -58,9 +58,7 @@ def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, mo
 
 
 @pytest.mark.parametrize(("case", "variant"), CASES)
-def test_tight_bounds_of_one_scalar_take_at_most_five_times_as_long_as_values(
-    benchmark, tell, monkeypatch, case, variant
-):
+def test_tight_bounds_take_five_times_values(benchmark, tell, monkeypatch, case, variant):
     if not compiled.available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(loops, "cores", lambda: 1)

@@ -75,7 +75,7 @@ class Rivals:
         return two
 
 
-def test_periodic_running_against_stepping_and_shooting(benchmark, tell):
+def test_periodic_running_beside_stepping_and_shooting(benchmark, tell):
     rivals = Rivals()
     found = {
         name: call() for name, call in (("ours", ours), ("shooting", rivals.shooting), ("stepping", rivals.stepping))
@@ -96,7 +96,7 @@ def test_periodic_running_against_stepping_and_shooting(benchmark, tell):
         assert times[name] > ratio * times["ours"], name
 
 
-def test_every_method_for_periodic_running_at_every_accuracy(benchmark, tell):
+def test_all_running_methods_at_every_accuracy(benchmark, tell):
     """How long the fastest of each method takes to come within 1e-6 and 1e-11, in times of ours (compiled)."""
     table = study_running(SCENE, MOTOR, 1000.0)
     mine = table.set_index("method").loc["ours, compiled"]

@@ -58,7 +58,7 @@ def motion(angles):
     return *positions, s.acceleration("coupler"), s.angular_acceleration("coupler"), s.acceleration("B")
 
 
-def test_one_turn_takes_less_than_half_the_time_of_newton_euler(benchmark, tell):
+def test_one_turn_takes_half_of_newton_euler(benchmark, tell):
     """Newton-Euler gets the motion for nothing."""
     angles = turn(360)
     known = motion(angles)
@@ -69,7 +69,7 @@ def test_one_turn_takes_less_than_half_the_time_of_newton_euler(benchmark, tell)
     assert theirs >= 2 * ours
 
 
-def test_one_turn_takes_at_most_three_times_as_long_as_a_flat_script(benchmark, tell):
+def test_one_turn_takes_three_times_a_flat_script(benchmark, tell):
     angles = turn(360)
     assert_same(benchmark(results, PLAIN, angles), flat(angles))
     ours, theirs = seconds(lambda: results(PLAIN, angles), lambda: flat(angles))

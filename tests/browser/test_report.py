@@ -70,7 +70,7 @@ def severe(driver):
     return [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
 
 
-def test_it_opens_without_an_error_and_asks_for_nothing_but_itself(page, made):
+def test_page_opens_without_errors_or_requests(page, made):
     driver, _ = page
     opened(driver, made[0])
     events = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
@@ -91,7 +91,7 @@ def test_it_is_small_and_soon_usable(page, made, record_property):
     assert made[0].stat().st_size < 6e6
 
 
-def test_the_crank_turns_by_slider_and_the_joint_stands_where_the_library_has_it(page):
+def test_slider_turns_the_crank_with_its_joints(page):
     driver, solutions = page
     slider = driver.find_element(By.ID, "angle")
     choose(driver, 100)
@@ -155,7 +155,7 @@ def test_it_plays_by_button_and_space_and_stops(page):
     assert play.get_attribute("aria-label") == "play"
 
 
-def test_arrows_follow_the_forces_of_the_library_to_one_scale(page):
+def test_arrows_follow_the_forces_to_one_scale(page):
     driver, solutions = page
     for degrees in (20, 250):
         choose(driver, degrees)
@@ -182,7 +182,7 @@ def test_an_arrow_can_be_hidden_and_all_be_longer(page):
     assert driver.execute_script(shown) == "visible"
 
 
-def test_values_at_a_chosen_angle_are_those_of_the_library(page):
+def test_values_at_an_angle_are_the_librarys(page):
     driver, solutions = page
     quantities = driver.execute_script("return report.data.quantities")
     for degrees in (0, 37, 123, 359):
@@ -225,7 +225,7 @@ def test_cursor_and_point_of_the_hodograph_follow(page):
     assert place == 200
 
 
-def test_another_quantity_and_another_vector_can_be_chosen(page):
+def test_another_quantity_or_vector_can_be_chosen(page):
     driver, solutions = page
     script = """const box = document.getElementById(arguments[0]);
         box.value = arguments[1];
@@ -246,7 +246,7 @@ def test_another_quantity_and_another_vector_can_be_chosen(page):
     assert severe(driver) == []
 
 
-def test_a_machine_is_hidden_in_all_figures_and_shown_again(page):
+def test_a_machine_is_hidden_and_shown_in_all_figures(page):
     driver, _ = page
     shown = """return Object.values(report.figures)
         .map((figure) => figure.model.renderers.find((item) => item.name === 'line 0').visible)"""
@@ -269,7 +269,7 @@ def test_it_is_as_wide_as_a_phone(page):
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
-def test_a_wide_table_on_a_phone_has_a_shadow_at_the_side_where_it_goes_on(page):
+def test_a_wide_table_on_a_phone_shows_it_goes_on(page):
     driver, _ = page
     size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
@@ -292,7 +292,7 @@ def test_a_wide_table_on_a_phone_has_a_shadow_at_the_side_where_it_goes_on(page)
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
-def test_a_hodograph_near_a_change_point_shows_what_is_ordinary(driver, tmp_path):
+def test_hodograph_near_change_point_is_readable(driver, tmp_path):
     with warnings.catch_warnings(action="ignore"):
         opened(driver, ks.report({"a": near_change_points()}, tmp_path / "change.html"))
     scales = """const [x, y] = [report.figures.hodograph.model.x_range, report.figures.hodograph.model.y_range];

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
-from support.plain_case import PLAIN
+from support.case_files import PLAIN, case_file, problems
 
 
-def test_shipped_sawframe_equals_the_mechanism_built_in_python():
+def test_sawframe_case_equals_its_python_mechanism():
     variant = ks.load_case("sawframe_2r63").solve("cam-circle", angles=90)
     spring = ks.Spring.balancing(600.0, 320 * np.pi / 30, 2.0)
     by_hand = ks.solve(
@@ -26,11 +25,12 @@ def test_shipped_sawframe_equals_the_mechanism_built_in_python():
     np.testing.assert_allclose(variant.cam_force, by_hand.cam_force, rtol=1e-13)
 
 
-def test_cosine_law_gives_the_coupler_length_left_out_of_the_file():
+def test_cosine_law_gives_the_coupler_length():
     mechanism = ks.load_case("sawframe_2r63").variants["cam-cosine"].mechanism
     assert mechanism.groups[-1].coupler_length == pytest.approx(2.02190517686444745, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_compare_gives_the_published_rows_beside_ours():
     table = ks.load_case("sawframe_2r63").comparison_table("cam-cosine")
     assert table.loc["mean |balancing torque|", "published"] == "6.77 (ratio)"
@@ -38,13 +38,13 @@ def test_compare_gives_the_published_rows_beside_ours():
     assert (table["published"] != "").sum() == 9
 
 
-def test_a_variant_overrides_single_keys_of_what_is_common(tmp_path):
+def test_a_variant_overrides_common_keys(tmp_path):
     text = PLAIN + '[variants.plain.coupler]\nmass = "100 kg"\n'
     coupler = ks.load_case(case_file(tmp_path, text)).variants["plain"].mechanism.links["coupler"]
     assert (coupler.mass, coupler.inertia, coupler.centre) == (100.0, 20.5, (1.0, 0.0))
 
 
-def test_sampled_cam_and_process_force_come_from_tables_beside_the_file(tmp_path):
+def test_sampled_cam_and_force_come_from_tables(tmp_path):
     degrees = np.arange(0, 360, 5)
     radius = ks.cams.Circle(0.3, (-0.0219, 0.0)).radius(np.radians(degrees))[0]
     rows = "\n".join(f"{a},{1000 * r!r}" for a, r in zip(degrees.tolist(), radius.tolist(), strict=True))
@@ -71,7 +71,7 @@ process_force = { table = "cut.csv" }
     np.testing.assert_allclose(solution.balancing_torque, circle.balancing_torque, atol=0.05)
 
 
-def test_impossible_geometry_is_reported_with_the_angles_for_every_variant(tmp_path):
+def test_impossible_geometry_reports_angles_by_variant(tmp_path):
     text = PLAIN + '[variants.short]\nmechanism = "crank-slider"\ncrank_length = "300 mm"\ncoupler_length = "200 mm"\n'
     text += '[variants.long]\nmechanism = "crank-slider"\ncrank_length = "3 m"\ncoupler_length = "2 m"\n'
     found = problems(tmp_path, text)
@@ -80,7 +80,7 @@ def test_impossible_geometry_is_reported_with_the_angles_for_every_variant(tmp_p
     assert "41.8103 .. 138.19 deg, 221.81 .. 318.19 deg" in found[0]
 
 
-def test_wrong_tables_beside_a_case_are_named_with_file_and_column(tmp_path):
+def test_wrong_tables_are_named_with_file_and_column(tmp_path):
     text = PLAIN.replace('"2 m"', '"2 m"\nprocess_force = { table = "cut.csv" }')
     (tmp_path / "cut.csv").write_text("crank_angle, force [kg]\n0, x\n")
     found = problems(tmp_path, text)
@@ -88,7 +88,7 @@ def test_wrong_tables_beside_a_case_are_named_with_file_and_column(tmp_path):
     assert all("cut.csv" in line for line in found)
 
 
-def test_asking_for_a_variant_that_is_not_there_names_those_that_are():
+def test_unknown_variant_lists_the_known_ones():
     with pytest.raises(ks.CaseError, match=r"'plain', 'cam-circle', 'cam-cosine'; did you mean 'cam-circle'"):
         ks.load_case("sawframe_2r63").solve("cam-cirle")
 
@@ -101,7 +101,7 @@ def test_a_published_figure_without_a_row_is_refused(tmp_path):
     assert "'largest reaction Q'" in caught.value.problems[1]
 
 
-def test_a_published_figure_of_another_variant_is_left_out_of_this_one(tmp_path):
+def test_published_figures_belong_to_one_variant(tmp_path):
     published = '[published.value]\n"largest cam force" = "1"\n"torque extremum 9" = "1"\n"largest reaction B" = "2"\n'
     table = ks.load_case(case_file(tmp_path, PLAIN + published)).comparison_table("plain")
     assert table["published"][table["published"] != ""].to_dict() == {"largest reaction B": "2 (value)"}

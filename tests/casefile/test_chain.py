@@ -7,17 +7,20 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
-from support.chain_cases import (
+from support.case_chains import (
+    BY_TRAVEL,
     EXAMPLES,
     IN_PYTHON,
+    LOADS,
+    PUMP,
+    agree,
     rpm,
 )
-from support.load_cases import BY_TRAVEL, LOADS, PUMP, agree
+from support.case_files import case_file, problems
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)
-def test_a_chain_of_each_kind_of_group_is_the_one_built_in_python(name):
+def test_chains_of_each_group_equal_python(name):
     case = ks.load_case(EXAMPLES / f"{name}.toml")
     variant = case.variant(case.reference)
     agree(variant.scene, IN_PYTHON[name]())
@@ -38,7 +41,7 @@ def test_a_chain_is_swept_and_its_tolerances_are_read(tmp_path):
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)
-def test_a_case_goes_to_other_processes_and_varies_there(name):
+def test_a_case_varies_in_other_processes(name):
     case = ks.load_case(EXAMPLES / f"{name}.toml")
     sent, variant = pickle.loads(pickle.dumps(case)).variant(case.reference), case.variant(case.reference)
     values = {"crank_speed": 2.0, "gravity.acceleration": 9.0} if variant.table.gravity else {"crank_speed": 2.0}
@@ -64,7 +67,7 @@ def test_a_sampled_cam_stands_in_a_chain(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
-def test_the_noise_of_a_measured_cam_is_stated_with_its_unit(tmp_path):
+def test_noise_of_a_measured_cam_has_a_unit(tmp_path):
     degrees = np.arange(360)
     radius = np.round(ks.cams.Circle(0.3, (-0.02, 0.0)).radius(np.radians(degrees))[0], 6)
     rows = "\n".join(f"{a},{1000 * r!r}" for a, r in zip(degrees.tolist(), radius.tolist(), strict=True))
@@ -91,7 +94,7 @@ def test_a_chain_is_balanced_by_a_counterweight(tmp_path):
     assert case.variant("balanced").mechanism.links["crank"].mass == wanted.mechanism.links["crank"].mass
 
 
-def test_content_tells_files_of_other_values_and_is_the_same_in_every_session(tmp_path):
+def test_content_key_is_stable_and_sees_file_changes(tmp_path):
     for name in ("slider.toml", "indicator.csv"):
         shutil.copy(EXAMPLES / name, tmp_path)
     first = ks.load_case(EXAMPLES / "slider.toml").variant("plain").content
@@ -104,7 +107,7 @@ def test_content_tells_files_of_other_values_and_is_the_same_in_every_session(tm
 # Builders
 
 
-def test_slotted_lever_and_scotch_yoke_have_words_of_their_own(tmp_path):
+def test_slotted_lever_and_scotch_yoke_have_own_keys(tmp_path):
     text = """
 title = "words"
 reference = "lever"
@@ -141,7 +144,7 @@ process_force = { force = "-100 N" }
 
 
 @pytest.mark.parametrize("word", ["open", "crossed"])
-def test_a_parallelogram_stays_one_by_its_assembly_in_words(tmp_path, word):
+def test_assembly_words_keep_a_parallelogram(tmp_path, word):
     text = f"""
 title = "parallelogram"
 reference = "bars"
@@ -162,14 +165,14 @@ coupler = {{ mass = "2 kg", centre = "mid-length" }}
     np.testing.assert_array_equal(found.solve(turn).position("B"), ks.solve(bars, turn, crank_speed=1.0).position("B"))
 
 
-def test_a_process_force_of_its_own_table_takes_an_indicator_diagram(tmp_path):
+def test_process_force_table_takes_indicator_diagram(tmp_path):
     (tmp_path / "t.csv").write_text(BY_TRAVEL.format("pressure [MPa]", "pressure_back [MPa]"), encoding="utf-8")
     text = PUMP + 'process_force = { force = { file = "t.csv", area = "-10 cm^2" } }\n'
     variant = ks.load_case(case_file(tmp_path, text)).variant("loaded")
     agree(variant.scene, ks.Scene(variant.mechanism, rpm(60), loads=LOADS["indicator diagram"][2]))
 
 
-def test_the_loads_of_a_variant_stand_in_place_of_the_common_ones(tmp_path):
+def test_loads_of_a_variant_replace_common_ones(tmp_path):
     common = '[common]\n[[common.loads]]\nkind = "force"\nat = "B"\nvalue = "1 N"\n'
     text = PUMP + common + '[variants.free]\nmechanism = "crank-slider"\ncrank_speed = "1 rpm"\n'
     text += 'crank_length = "0.1 m"\ncoupler_length = "0.4 m"\nloads = []\n'

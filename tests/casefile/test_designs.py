@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.designs import write_found
-from support.designs import FRONT, STIFFER, saw_with
+from support.case_files import FRONT, STIFFER, saw_with
 
 
 def test_a_design_of_a_file_finds_what_python_finds(tmp_path):
@@ -31,7 +31,7 @@ def test_a_torque_free_cam_of_a_file_is_that_of_python(tmp_path):
     assert found.values == by_hand.values
 
 
-def test_found_designs_are_written_with_what_they_came_from_and_found_again(tmp_path):
+def test_found_designs_record_their_origin(tmp_path):
     case = ks.load_case(saw_with(STIFFER + FRONT, tmp_path))
     found = {name: item.find() for name, item in case.designs.items()}
     again = ks.load_case(write_found(tmp_path / "again.toml", case, found))
@@ -45,12 +45,12 @@ def test_found_designs_are_written_with_what_they_came_from_and_found_again(tmp_
         assert again.designs[name].raw == item.raw | {"variant": "cam-circle", "reference": "plain"}
 
 
-def test_the_first_variant_besides_reference_and_itself_is_what_varies(tmp_path):
+def test_first_other_variant_is_varied_by_default(tmp_path):
     text = '[design.cam-circle]\nkind = "torque-free-cam"\ncosine = 2'
     assert ks.load_case(saw_with(text, tmp_path)).designs["cam-circle"].source == "cam-cosine"
 
 
-def test_what_varies_when_none_is_told_is_written_so_that_it_stays(tmp_path):
+def test_default_variation_is_written_out(tmp_path):
     text = '[design.one]\nkind = "torque-free-cam"\ncosine = 1\nminimise = "rms balancing_torque"\n'
     case = ks.load_case(saw_with(text + text.replace("one", "two"), tmp_path))
     found = {name: item.find() for name, item in case.designs.items()}
@@ -62,7 +62,7 @@ def test_cases_without_designs_have_none():
     assert not ks.load_case("mower_drive").designs
 
 
-def test_an_impossible_stroke_is_refused_by_the_search_with_its_numbers(tmp_path):
+def test_impossible_stroke_is_refused_with_numbers(tmp_path):
     text = '[design.cam]\nkind = "torque-free-cam"\nends = ["0 m", "2 m"]\n'
     case = ks.load_case(saw_with(text, tmp_path))
     with pytest.raises(ks.DesignError, match="from 0 m to 2 m; lengthen the coupler or shorten the stroke"):

@@ -7,9 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
-from support.case_files import problems
+from support.case_files import PLAIN, problems
 from support.every import every
-from support.plain_case import PLAIN
 
 
 def test_a_path_and_a_shipped_name_read_the_same_case(tmp_path):
@@ -18,7 +17,7 @@ def test_a_path_and_a_shipped_name_read_the_same_case(tmp_path):
     assert list(ks.load_case(copy).variants) == list(ks.load_case("sawframe_2r63").variants)
 
 
-def test_every_problem_of_a_file_is_reported_at_once_with_its_key(tmp_path):
+def test_all_problems_of_a_file_come_with_their_keys(tmp_path):
     text = """
 title = "bad"
 reference = "plane"
@@ -84,11 +83,11 @@ crank_length = "300 kg"
         (("[variants.plain]", "[variants.plain.crank]"), "variants.plain.mechanism is missing"),
     ],
 )
-def test_one_wrong_entry_is_named_with_what_was_found_and_what_is_allowed(tmp_path, change, words):
+def test_a_wrong_entry_names_found_and_allowed(tmp_path, change, words):
     assert any(line.startswith(words) for line in problems(tmp_path, PLAIN.replace(*change)))
 
 
-def test_missing_unreadable_and_malformed_files_are_case_errors(tmp_path):
+def test_unreadable_and_malformed_files_are_refused(tmp_path):
     with pytest.raises(ks.CaseError, match="did you mean 'sawframe_2r63'"):
         ks.load_case("sawframe_2r36")
     with pytest.raises(ks.CaseError, match="cannot be read"):
@@ -99,7 +98,7 @@ def test_missing_unreadable_and_malformed_files_are_case_errors(tmp_path):
     assert "is not TOML" in problems(tmp_path, 'title = "a\n')[0]
 
 
-def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path, monkeypatch):
+def test_shipped_case_name_ignores_local_files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sawframe_2r63").write_text(PLAIN, encoding="utf-8")
     with pytest.warns(UserWarning, match=r"read as the shipped case of that name.* write './sawframe_2r63'") as caught:
@@ -113,7 +112,7 @@ def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path,
 
 
 @pytest.mark.parametrize("key", ["drive", "friction", "gravity"])
-def test_what_stands_for_a_table_is_told_in_the_words_of_the_file(tmp_path, key):
+def test_wrong_type_is_named_in_toml_words(tmp_path, key):
     found = problems(tmp_path, PLAIN.replace("[common]\n", f'[common]\n{key} = "x"\n', 1))
     assert f"common.{key} must be a table of keys and values, found 'x'" in found
 
@@ -122,7 +121,7 @@ def test_what_stands_for_a_table_is_told_in_the_words_of_the_file(tmp_path, key)
     "given, meant",
     [("p", "p.toml"), ("mypress", "mypress.toml"), ("mypres.toml", "mypress.toml"), ("in/saw", "in/saw.toml")],
 )
-def test_a_file_whose_ending_is_left_out_or_misspelt_is_asked_for(tmp_path_factory, given, meant):
+def test_missing_or_wrong_ending_suggests_the_file(tmp_path_factory, given, meant):
     folder = tmp_path_factory.mktemp("cases")
     for name in ("p.toml", "mypress.toml", "in/saw.toml"):
         (folder / name).parent.mkdir(exist_ok=True)
@@ -133,7 +132,7 @@ def test_a_file_whose_ending_is_left_out_or_misspelt_is_asked_for(tmp_path_facto
             ks.load_case(given)
 
 
-def test_a_misspelt_shipped_case_is_asked_for_where_no_file_is_like_it(tmp_path, monkeypatch):
+def test_misspelt_shipped_case_is_suggested(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ks.CaseError, match=r"; did you mean 'sawframe_2r63'\?\)"):
         ks.load_case("sawframe")

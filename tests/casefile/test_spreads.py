@@ -5,8 +5,7 @@ import warnings
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file
-from support.plain_case import PLAIN
+from support.case_files import PLAIN, case_file
 
 DOUBTFUL = [
     ('"slider.mass" = "normal 600000 kg +- 5 kg"', True),
@@ -21,7 +20,7 @@ DOUBTFUL = [
 
 
 @pytest.mark.parametrize(("spread", "doubted"), DOUBTFUL)
-def test_a_tolerance_hundreds_of_times_off_its_parameter_is_doubted(tmp_path, spread, doubted):
+def test_tolerance_far_off_its_parameter_is_doubted(tmp_path, spread, doubted):
     path = case_file(tmp_path, f"{PLAIN}[tolerances]\n{spread}\n")
     if doubted:
         words = r"tolerances: .* but the parameter of .*; is the unit right\?"
@@ -32,7 +31,7 @@ def test_a_tolerance_hundreds_of_times_off_its_parameter_is_doubted(tmp_path, sp
         ks.load_case(path)
 
 
-def test_slips_of_units_in_links_are_hinted_at_where_the_case_is_read(tmp_path):
+def test_unit_slips_in_links_are_hinted_on_reading(tmp_path):
     """By file and variant, once; and as ever when it is solved."""
     path = case_file(tmp_path, PLAIN.replace('"mid-length"', '"1000 m"').replace("20.5", "0.01"))
     with pytest.warns(ks.HintWarning) as caught:
@@ -48,7 +47,7 @@ def test_slips_of_units_in_links_are_hinted_at_where_the_case_is_read(tmp_path):
     assert len(caught) == 2
 
 
-def test_the_stiffness_of_a_spring_that_balances_is_compared_with_its_number(tmp_path):
+def test_balancing_spring_is_compared_by_its_number(tmp_path):
     spring = '[variants.plain.spring]\nstiffness = "balance the slider"\nfree_position = "2 m"\n'
     for unit, doubted in (("kN/m", False), ("N/m", True)):
         path = case_file(

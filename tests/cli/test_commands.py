@@ -32,7 +32,7 @@ def test_run_prints_extremes_and_the_power_check(capsys):
 
 
 @pytest.mark.slow
-def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
+def test_run_prints_rounding_as_0_in_chain_order(capsys):
     assert main(["run", "in_line_twin", "--variant", "throws-opposed"]) == 0
     printed = capsys.readouterr().out.split("\n\npower balance")[0]
     assert not re.search(r"e-\d", printed)
@@ -66,7 +66,7 @@ def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_same_figure_is_written_as_svg_byte_for_byte_again(tmp_path):
+def test_an_svg_figure_is_reproduced_byte_for_byte(tmp_path):
     for folder in ("a", "b"):
         arguments = ["--out", str(tmp_path / folder), "--format", "svg", "--only", "torque"]
         assert main(["plot", "sawframe_2r63", *arguments]) == 0
@@ -98,7 +98,7 @@ def test_a_broken_case_writes_nothing(tmp_path, broken, capsys):
     assert "variants.a.crank_length is missing" in capsys.readouterr().err
 
 
-def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(tmp_path, monkeypatch, capsys):
+def test_failed_writing_keeps_the_old_file(tmp_path, monkeypatch, capsys):
     target = tmp_path / "saw.csv"
     target.write_text("old")
 
@@ -130,7 +130,7 @@ def test_run_puts_each_extremum_beside_its_own_angle(capsys):
 
 
 @pytest.mark.slow
-def test_a_case_of_one_variant_is_run_and_plotted_and_has_nothing_to_compare(tmp_path, capsys):
+def test_single_variant_case_has_no_comparison(tmp_path, capsys):
     case = tmp_path / "one.toml"
     case.write_text(
         'title = "one"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncrank_speed = "60 rpm"\n'
@@ -152,7 +152,7 @@ def test_a_case_of_one_variant_is_run_and_plotted_and_has_nothing_to_compare(tmp
         'title = "x"\nreference = "a"\ncommon = 3\n[variants.a]\nmechanism = "crank-slider"\n',
     ],
 )
-def test_values_of_the_wrong_kind_are_problems_not_tracebacks(tmp_path, text, capsys):
+def test_wrong_types_are_problems_not_tracebacks(tmp_path, text, capsys):
     (tmp_path / "odd.toml").write_text(text)
     assert main(["run", str(tmp_path / "odd.toml")]) == 2
     assert capsys.readouterr().err.startswith("kinetostatics: ")
@@ -161,7 +161,7 @@ def test_values_of_the_wrong_kind_are_problems_not_tracebacks(tmp_path, text, ca
 # Cases that are there, and new ones
 
 
-def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
+def test_list_shows_cases_with_title_and_variants(capsys):
     assert main(["list"]) == 0
     printed = capsys.readouterr().out
     assert re.findall(r"^\S+", printed, re.MULTILINE) == list(shipped_cases())
@@ -171,7 +171,7 @@ def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", STARTERS)
-def test_a_new_case_compares_its_variants_and_finds_its_design_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
+def test_new_case_compares_and_designs_at_once(tmp_path, monkeypatch, capsys, kind):
     monkeypatch.chdir(tmp_path)
     assert main(["new", "my pump", "--kind", kind]) == 0
     assert capsys.readouterr().out == 'wrote my pump.toml; kinetostatics run "my pump.toml"\n'
@@ -199,9 +199,7 @@ def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
 
 
 @every("name", ["tw.csv", "saw.v2", "folder/press.json"])
-def test_a_new_case_that_ends_as_another_file_is_refused_with_the_names_it_may_have(
-    name, tmp_path, monkeypatch, capsys
-):
+def test_new_case_with_wrong_ending_is_refused(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["new", name]) == 2
     suffix, stem = Path(name).suffix, str(Path(name).with_suffix(""))
@@ -210,11 +208,12 @@ def test_a_new_case_that_ends_as_another_file_is_refused_with_the_names_it_may_h
     assert not any(tmp_path.iterdir())
 
 
-def test_a_point_before_digits_is_part_of_the_name_of_a_new_case(tmp_path, capsys):
+def test_a_point_before_digits_stays_in_the_name(tmp_path, capsys):
     assert main(["new", str(tmp_path / "press 2.5")]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["press 2.5.toml"]
 
 
+@pytest.mark.slow
 @every(
     "arguments",
     [
@@ -225,7 +224,7 @@ def test_a_point_before_digits_is_part_of_the_name_of_a_new_case(tmp_path, capsy
     ],
     ids=" ".join,
 )
-def test_folders_are_made_for_every_output_and_told_but_those_asked_for(arguments, tmp_path, capsys):
+def test_output_folders_are_made_and_reported(arguments, tmp_path, capsys):
     folder = tmp_path / arguments[0]
     arguments = [text.format(folder) for text in arguments]
     assert main(arguments) == 0
@@ -263,7 +262,7 @@ def test_a_new_chain_is_named_as_it_is_titled(tmp_path):
         ),
     ],
 )
-def test_run_goes_over_the_turns_after_which_a_mechanism_or_its_loads_repeat(tmp_path, own, turns):
+def test_run_covers_the_period_of_loads(tmp_path, own, turns):
     """A crank 1, coupler 3, rocker 2, ground 4 closes after two; so does a load with a period of two."""
     (tmp_path / "t.csv").write_text("crank_angle [deg], torque [N m]\n0, 0\n240, 3\n480, 1\n", encoding="utf-8")
     text = 'title = "turns"\nreference = "a"\n[variants.a]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
@@ -289,7 +288,7 @@ def test_a_start_angle_without_unit_is_refused(angle, message, capsys):
 
 
 @pytest.mark.slow
-def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys):
+def test_run_prints_friction_losses_and_efficiency(capsys):
     assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--angles", "8"]) == 0
     text = capsys.readouterr().out.split("power lost by friction, exact means over the turn\n\n")[1]
     cells = {line.split()[0]: line.split()[1:] for line in text.splitlines() if line}
@@ -300,14 +299,14 @@ def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys)
 
 
 @pytest.mark.slow
-def test_run_and_compare_say_nothing_of_losses_without_friction(capsys):
+def test_without_friction_no_losses_are_printed(capsys):
     for command in (["run", "mower_drive", "--variant", "full"], ["compare", "mower_drive", "--variant", "full"]):
         assert main(command) == 0
         assert not re.search("lost|efficiency", capsys.readouterr().out)
 
 
 @pytest.mark.slow
-def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path, capsys):
+def test_no_losses_for_a_saw_that_starts_from_rest(tmp_path, capsys):
     text = shipped_cases()["sawframe_2r63_friction"].read_text(encoding="utf-8")
     text = text.replace('crank_speed = "320 rpm"', 'crank_speed = "0 rpm"\ncrank_acceleration = "2 rad/s^2"')
     text = text.replace('"balance the slider"', '"674 kN/m"')
@@ -321,7 +320,7 @@ def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path,
     assert not re.search("mean power lost|efficiency", printed)
 
 
-def test_explain_prints_the_hand_calculation_and_writes_it(tmp_path, capsys):
+def test_explain_prints_and_writes_the_calculation(tmp_path, capsys):
     asked = ["explain", "sawframe_2r63", "--angle", "39.3 deg", "--variant", "cam-circle"]
     for ending, start in {
         ".html": "<!DOCTYPE html>",
@@ -357,7 +356,7 @@ def test_explain_refuses_what_is_not_there(options, words, capsys):
     assert words in capsys.readouterr().err
 
 
-def test_stability_tells_each_method_in_a_line_and_not_each_place(tmp_path, monkeypatch, capsys):
+def test_stability_prints_a_line_a_method(tmp_path, monkeypatch, capsys):
     from kinetostatics.studies import stability
 
     does = {"ours, NumPy": ["exact", "as near as the condition allows"], "series": ["gives NaN, loses digits"] * 2}
@@ -378,7 +377,7 @@ def test_stability_tells_each_method_in_a_line_and_not_each_place(tmp_path, monk
     assert "kite   ours, NumPy" in printed
 
 
-def test_a_slip_of_units_in_a_case_is_told_once_for_all_its_variants(tmp_path, capsys):
+def test_unit_slip_is_hinted_once_for_all_variants(tmp_path, capsys):
     """Where it is read, and not again where it is solved."""
     case = Path(ks.load_case("sawframe_2r63").path).read_text()
     path = tmp_path / "turned.toml"
@@ -391,3 +390,20 @@ def test_a_slip_of_units_in_a_case_is_told_once_for_all_its_variants(tmp_path, c
         line for line in capsys.readouterr().err.splitlines() if "is it in degrees? That makes -1.5708 rad" in line
     ]
     assert told.startswith(f"kinetostatics: warning: {path}: variants.plain, variants.cam-circle, ")
+
+
+# What may be written on the line
+
+
+@pytest.mark.parametrize("arguments", [["run", "sawframe_2r63", "--angles", "0"], ["runn", "sawframe_2r63"], []])
+def test_wrong_usage_ends_with_status_2(arguments):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+
+
+def test_version_is_that_of_the_library(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"kinetostatics {ks.__version__}\n"

@@ -12,7 +12,7 @@ from kinetostatics.cli import main
 pytestmark = pytest.mark.slow
 
 
-def test_variants_stand_side_by_side_and_the_published_figures_beside_what_they_belong_to(capsys):
+def test_variants_stand_beside_published_figures(capsys):
     assert main(["compare", "sawframe_2r63"]) == 0
     values, ratios = capsys.readouterr().out.split("\nratios, plain / each: above 1 is in favour of the variant")
     value, ratio = (re.search(r"mean \|balancing torque\|.*", part)[0].split()[1:] for part in (values, ratios))
@@ -65,7 +65,7 @@ def test_csv_has_a_row_for_each_variant_and_quantity(tmp_path, capsys):
         ),
     ],
 )
-def test_a_published_figure_without_a_place_in_the_balancing_table_is_refused(tmp_path, capsys, table, message):
+def test_published_figure_needs_a_place_in_the_table(tmp_path, capsys, table, message):
     text = shipped_cases()["mower_drive"].read_text(encoding="utf-8").partition("[published]")[0]
     path = tmp_path / "mower.toml"
     path.write_text(f'{text}[published.balancing.{table}]\n"ful crank" = "1"\n', encoding="utf-8")
@@ -73,7 +73,7 @@ def test_a_published_figure_without_a_place_in_the_balancing_table_is_refused(tm
     assert re.search(message.replace("[mm]", ".mm."), capsys.readouterr().err)
 
 
-def test_double_cranks_are_compared_without_the_table_of_swings(tmp_path, capsys):
+def test_double_cranks_have_no_table_of_swings(tmp_path, capsys):
     text = 'title = "double crank"\nreference = "a"\n[common]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
     text += 'crank_length = "0.35 m"\ncoupler_length = "0.4 m"\nrocker_length = "0.3 m"\n'
     text += 'rocker_pivot = ["0.1 m", "0 m"]\ncoupler = { mass = "2 kg" }\n'
@@ -88,7 +88,7 @@ def test_double_cranks_are_compared_without_the_table_of_swings(tmp_path, capsys
     assert "swing" not in printed
 
 
-def test_compare_prints_what_balancing_saves_of_friction(capsys):
+def test_compare_prints_saved_friction(capsys):
     assert main(["compare", "sawframe_2r63_friction", "--variant", "cam-cosine-rolling"]) == 0
     (row,) = (line for line in capsys.readouterr().out.splitlines() if re.match(r"mean power lost +W", line))
     assert row.split()[-3:] == ["42948.7", "7325.54", "5.86287"]

@@ -6,8 +6,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.designs import FRONT, STIFFER, saw_with
-from support.held import held
+from support.case_files import FRONT, STIFFER, saw_with
+from support.commands import held
 
 pytestmark = pytest.mark.slow
 
@@ -17,7 +17,7 @@ def saw(tmp_path):
     return saw_with(STIFFER + FRONT, tmp_path)
 
 
-def test_design_prints_what_was_and_is_and_writes_a_case_ready_to_run(saw, tmp_path, capsys):
+def test_design_prints_gains_and_writes_a_case(saw, tmp_path, capsys):
     out = tmp_path / "found.toml"
     assert main(["design", str(saw), "--out", str(out), "--plot", str(tmp_path / "figures")]) == 0
     printed, told = capsys.readouterr()
@@ -35,7 +35,7 @@ def test_design_prints_what_was_and_is_and_writes_a_case_ready_to_run(saw, tmp_p
     assert main(["compare", str(out), "--variant", "stiffer"]) == 0
 
 
-def test_only_named_designs_are_found_with_as_many_searches_as_told(saw, capsys):
+def test_only_named_designs_are_searched(saw, capsys):
     assert main(["design", str(saw), "--design", "stiffer", "--starts", "2"]) == 0
     printed = capsys.readouterr().out
     assert "trade" not in printed
@@ -71,7 +71,7 @@ def test_the_case_itself_is_not_overwritten(saw, capsys):
     assert saw.read_text() == before
 
 
-def test_an_impossible_demand_ends_with_the_reason_and_nothing_written(tmp_path, capsys):
+def test_impossible_limit_ends_with_its_reason(tmp_path, capsys):
     saw = saw_with(f'{STIFFER}limits = ["ratio mean_absolute balancing_torque >= 1000"]\n', tmp_path)
     assert main(["design", str(saw), "--out", str(tmp_path / "found.toml")]) == 2
     told = capsys.readouterr().err
@@ -79,7 +79,7 @@ def test_an_impossible_demand_ends_with_the_reason_and_nothing_written(tmp_path,
     assert list(tmp_path.iterdir()) == [saw]
 
 
-def test_tables_stand_beside_what_is_found_and_take_no_other_file_s_place(tmp_path, capsys):
+def test_tables_of_found_designs_replace_no_file(tmp_path, capsys):
     (tmp_path / "cam.csv").write_text(
         "angle [deg], radius [m]\n" + "".join(f"{step}, 0.3\n" for step in range(0, 360, 5))
     )
@@ -107,7 +107,7 @@ def test_tables_stand_beside_what_is_found_and_take_no_other_file_s_place(tmp_pa
 @pytest.mark.parametrize(
     ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
-def test_a_search_ends_in_order_with_nothing_half_written(tmp_path, sent, status, word):
+def test_interrupted_search_leaves_no_partial_file(tmp_path, sent, status, word):
     saw = saw_with(STIFFER.replace("angles = 72", "angles = 72\nstarts = 2"), tmp_path)
     arguments = ["design", saw, "--out", tmp_path / "found.toml"]
     with held("kinetostatics.design.optimisation", "searched", arguments) as process:

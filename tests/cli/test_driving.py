@@ -39,7 +39,7 @@ def pump(tmp_path):
     return path
 
 
-def test_drive_prints_running_and_start_up_or_why_there_is_none(pump, capsys):
+def test_drive_prints_running_and_start_or_reasons(pump, capsys):
     assert main(["drive", str(pump)]) == 0
     printed = capsys.readouterr().out
     rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
@@ -67,7 +67,7 @@ def test_drive_writes_a_table_and_figures_with_units(pump, tmp_path, capsys):
     assert all(str(folder / name) in printed for name in names)
 
 
-def test_drive_starts_from_the_angle_asked_for_and_tells_where_energy_goes(pump, capsys):
+def test_drive_starts_from_angle_and_shows_energy(pump, capsys):
     assert main(["drive", str(pump), "--variant", "pump", "--start", "40 deg"]) == 0
     printed = capsys.readouterr().out
     variant = ks.load_case(pump).variants["pump"]
@@ -86,7 +86,7 @@ def test_drive_starts_from_the_angle_asked_for_and_tells_where_energy_goes(pump,
     assert float(rows["lost in the rotor by slip, mean"][-1]) == pytest.approx(lost, rel=1e-5)
 
 
-def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):
+def test_drive_says_why_nothing_runs(pump, capsys):
     for case, variant, message in (
         (str(pump), "overloaded", "N m are missing"),
         (str(pump), "pomp", "did you mean 'pump'?"),
@@ -98,7 +98,7 @@ def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):
         assert not printed.out
 
 
-def test_json_holds_the_numbers_of_the_library_and_why_others_do_not_run(pump, capsys):
+def test_json_has_running_numbers_and_reasons(pump, capsys):
     assert main(["drive", str(pump), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     variant = ks.load_case(pump).variants["pump"]

@@ -18,7 +18,7 @@ from support.every import every
 pytestmark = pytest.mark.slow
 
 
-def test_json_of_run_holds_the_true_extremes_of_the_library(capsys):
+def test_json_of_run_has_the_true_extremes(capsys):
     assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--json", "--angles", "72"]) == 0
     found = json.loads(capsys.readouterr().out)
     solution = ks.load_case("sawframe_2r63_friction").solve("cam-cosine", 72)
@@ -45,7 +45,7 @@ def test_a_file_of_run_and_json_go_together(tmp_path, capsys):
     assert len(pd.read_csv(path)) == 36
 
 
-def test_list_gives_every_shipped_case_with_its_variants(capsys):
+def test_list_gives_each_shipped_case_with_variants(capsys):
     assert main(["list", "--json"]) == 0
     cases = json.loads(capsys.readouterr().out)["cases"]
     assert [case["name"] for case in cases] == list(shipped_cases())
@@ -92,7 +92,7 @@ def test_values_of_every_kind_are_numbers_of_json(name, capsys):
     ({"csv": "-"}, True, False),
     ({"csv": "x.csv"}, True, True),
 ])  # fmt: skip
-def test_progress_is_seen_on_a_terminal_only_and_not_by_other_programs(options, terminal, seen, monkeypatch):
+def test_progress_shows_on_terminals_only(options, terminal, seen, monkeypatch):
     stream = io.StringIO()
     stream.isatty = lambda: terminal
     monkeypatch.setattr("sys.stderr", stream)

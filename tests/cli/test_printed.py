@@ -24,12 +24,12 @@ NUMBERS = {
 }
 
 
-def test_numbers_have_six_digits_and_no_power_of_ten_where_none_is_needed(capsys):
+def test_numbers_have_six_digits_without_exponent(capsys):
     print_table(pd.DataFrame({"smallest": list(NUMBERS)}, index=list("abcdefghij")))
     assert [line[1:].strip() for line in capsys.readouterr().out.splitlines()[2:]] == list(NUMBERS.values())
 
 
-def test_angles_have_the_digits_that_six_digits_of_a_turn_have(capsys):
+def test_angles_have_digits_of_a_whole_turn(capsys):
     print_table(pd.DataFrame({"at [deg]": [0.00940839, 359.97081, 1e-5, -1e-5, 90.0]}))
     cells = [line.split()[1] for line in capsys.readouterr().out.splitlines()[2:]]
     assert cells == ["0.009", "359.971", "0", "0", "90"]
@@ -42,7 +42,7 @@ WIDE = pd.DataFrame(
 
 
 @pytest.mark.parametrize("columns", [40, 60, 80, 120, 200])
-def test_a_table_is_no_wider_than_the_line_and_loses_nothing(columns, monkeypatch, capsys):
+def test_a_table_fits_the_line_and_loses_nothing(columns, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", str(columns))
     print_table(WIDE)
     printed = capsys.readouterr().out
@@ -52,7 +52,7 @@ def test_a_table_is_no_wider_than_the_line_and_loses_nothing(columns, monkeypatc
     assert printed.count("variant-") == 7
 
 
-def test_a_name_that_is_longer_than_the_line_stays_whole(monkeypatch, capsys):
+def test_a_long_name_stays_whole(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "40")
     print_table(pd.DataFrame({"value": [1.0]}, index=["x" * 90]))
     say("y" * 90)
@@ -75,7 +75,7 @@ def test_tables_without_rows_are_their_headings(capsys):
 
 @pytest.mark.slow
 @every("name", ["sawframe_2r63", "mower_drive", "in_line_twin", "yoke_pump", "chain_unit"])
-def test_every_table_of_a_shipped_case_fits_80_letters_in_plain_text(name, monkeypatch, capsys):
+def test_shipped_tables_fit_80_columns(name, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
     assert main(["run", name, "--angles", "24"]) == 0
     assert main(["compare", name]) == 0

@@ -38,7 +38,7 @@ def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
         (["--variant", "plain", "--reference", "cam-cosine", "--output", "ratio largest O"], "refer to cam-cosine"),
     ],
 )
-def test_the_variant_that_is_swept_is_told_and_why_it_is_that_one(options, words, capsys):
+def test_the_swept_variant_is_named_with_the_reason(options, words, capsys):
     vary = ["--vary", "slider.mass=600..650 kg:2", "--angles", "12"]
     assert main(["sweep", "sawframe_2r63", *vary, *options]) == 0
     told = " ".join(capsys.readouterr().out.split("\n\n")[0].split())
@@ -46,7 +46,7 @@ def test_the_variant_that_is_swept_is_told_and_why_it_is_that_one(options, words
     assert told.endswith(words)
 
 
-def test_json_tells_the_variant_that_is_swept_and_the_reference(capsys):
+def test_json_names_swept_variant_and_reference(capsys):
     assert main(["sweep", "sawframe_2r63", "--vary", "slider.mass=600..650 kg:2", "--angles", "12", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["variant"], found["reference"]) == ("cam-circle", "plain")
@@ -58,7 +58,7 @@ def test_best_designs_say_which_way_a_ratio_is_better(capsys):
     assert "largest first: above 1 is in favour of the design" in words
 
 
-def test_a_variant_with_friction_tells_what_it_loses_unasked(capsys):
+def test_losses_of_a_variant_with_friction_are_shown(capsys):
     arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
     assert main(arguments) == 0
     assert "friction_loss" in capsys.readouterr().out

@@ -7,12 +7,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.design.hardness import hardness_from_pressure, pressure_from_hardness
 from kinetostatics.machine import hertz
-from support.cam_contacts import CAM, STEEL, contact, solved
+from support.cam_contacts import CAM, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 
 
-def test_pressure_of_hertz_by_radii_and_the_larger_half_width():
+def test_hertz_pressure_by_radii_and_half_width():
     """By way of b = sqrt(8 F R1 R2 (1 - nu^2) / (pi w E (R1 + R2))) and p0 = 2 F / (pi b w), radius by radius."""
     for speed in (25.0, 33.5, 60.0):
         found = contact(solved(speed))
@@ -27,13 +28,13 @@ def test_pressure_of_hertz_by_radii_and_the_larger_half_width():
         assert_allclose(np.abs(cam), np.where(ring, pitch + roller, pitch - roller), rtol=1e-12)
 
 
-def test_two_materials_press_like_their_mean_compliance():
+def test_two_materials_press_by_mean_compliance():
     one, other = (210e9, 0.3), (110e9, 0.25)
     mixed = ks.design.contact(solved(), 0.05, 0.06, (one[0], other[0]), (one[1], other[1]))
     assert mixed.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.9375 / 110e9), rel=1e-15)
 
 
-def test_steel_on_steel_has_the_factor_of_the_handbooks():
+def test_steel_on_steel_has_the_handbook_factor():
     """p0 = 0.418 sqrt(F E / (w R)) for equal moduli and a ratio of 0.3 (Dubbel; Hertz's formula by Stribeck)."""
     modulus = hertz.modulus(STEEL, STEEL)
     assert hertz.pressure(5e3, 0.02, modulus, 0.04) == pytest.approx(
@@ -41,14 +42,14 @@ def test_steel_on_steel_has_the_factor_of_the_handbooks():
     )
 
 
-def test_the_largest_pressure_is_that_between_the_angles_given():
+def test_largest_pressure_lies_between_angles():
     found = contact()
     fine = contact(solved(angles=np.linspace(0, 2 * np.pi, 20001)))
     assert found.largest_pressure.value == pytest.approx(fine.pressure.max(), rel=1e-8)
     assert found.largest_pressure.value >= found.pressure.max()
 
 
-def test_the_roller_changes_sides_where_the_cam_force_changes_its_sign():
+def test_roller_changes_sides_with_the_cam_force():
     found = contact(solved(25.0), roller_mass=2.0)
     assert len(found.changes) == 4
     assert found.sides == ("disk", "ring")
@@ -61,7 +62,7 @@ def test_the_roller_changes_sides_where_the_cam_force_changes_its_sign():
     assert contact().sides == ("ring",)
 
 
-def test_hardness_and_pressure_are_each_other_s_inverse():
+def test_hardness_and_pressure_are_inverses():
     found = contact()
     assert ks.design.pressure_from_hardness(found.hardness) == pytest.approx(found.largest_pressure.value, rel=1e-13)
     with pytest.raises(ks.ParameterError, match="tells of 180 to 400 HB, got 500"):
@@ -80,7 +81,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_what_exceeds_a_limit_is_said_with_both_numbers(name):
+def test_exceeded_limits_are_named_with_both_numbers(name):
     limit, message = BROKEN[name]
     found = contact(load_rating=120e3, roller_mass=2.0, limits={name: limit})
     (text,) = found.exceeded
@@ -91,7 +92,7 @@ def test_what_exceeds_a_limit_is_said_with_both_numbers(name):
         assert contact(load_rating=120e3, roller_mass=2.0, limits={name: wide}).exceeded == ()
 
 
-def test_the_table_has_a_row_for_each_angle_and_what_the_contact_gives():
+def test_the_contact_table_has_a_row_an_angle():
     found = contact(roller_mass=2.0)
     table = found.frame()
     assert len(table) == len(ANGLES)
@@ -99,7 +100,7 @@ def test_the_table_has_a_row_for_each_angle_and_what_the_contact_gives():
     assert set(table["side"]) == {"ring"}
 
 
-def test_a_cam_from_a_table_states_the_error_of_its_forces():
+def test_table_cam_states_its_force_error():
     angle = np.radians(np.arange(360))
     sampled = ks.cams.Sampled(angle, np.round(CAM.radius(angle)[0], 6), noise=0.29e-6)
     machine = ks.cam_crank_slider(sampled, CAM.coupler_length, slider=ks.Link(600.0))
@@ -107,3 +108,114 @@ def test_a_cam_from_a_table_states_the_error_of_its_forces():
     assert found.force_error == sampled.force_error
     assert "forces by 0.0004" in repr(found)
     assert contact().force_error is None
+
+
+# The roller itself
+
+
+def test_changing_sides_reverses_spin_by_sliding():
+    found = contact(solved(25.0), roller_mass=2.0)
+    for angle, reversal in zip(found.changes, found.reversals, strict=True):
+        force = solved(25.0, angles=angle + np.array([-1e-6, 1e-6])).cam_force
+        assert reversal.rise == pytest.approx((force[1] - force[0]) / 2e-6, rel=1e-4)
+        before, after = found.roller.spin(solved(25.0, angles=angle + np.array([-1e-9, 1e-9])))
+        assert reversal.spin == pytest.approx(after - before, rel=1e-6)
+        assert reversal.energy == pytest.approx(0.5 * (0.5 * 2.0 * 0.05**2) * (after - before) ** 2, rel=1e-6)
+        slid = reversal.sliding_angle(found.roller, 25.0, 0.1)
+        impulse = 0.1 * 0.05 * abs(reversal.rise) * slid**2 / 2 / 25.0  # of friction, as the force grows in proportion
+        assert impulse == pytest.approx(0.5 * 2.0 * 0.05**2 * abs(reversal.spin), rel=1e-12)
+
+
+def test_spin_is_that_of_the_path_rolled_off():
+    """On a circle about its centre the roller turns evenly; elsewhere its spin is the path's speed by radius."""
+    found, step = contact(), 1e-5
+    motion = [solved(angles=ANGLES + side * step) for side in (-1, 0, 1)]
+    spins = [found.roller.spin(at) for at in motion]
+    assert_allclose(np.abs(spins[1]), np.hypot(*motion[1].velocity("A")) / 0.05, rtol=1e-13)
+    assert_allclose(found.roller.spin_acceleration(motion[1]), (spins[2] - spins[0]) / (2 * step) * 33.5, atol=1e-3)
+    ring = ks.cam_crank_slider(ks.cams.Circle(0.2), 0.8, slider=ks.Link(10.0))
+    even = contact(solved(machine=ring, loads=()), roller_mass=3.0)
+    assert_allclose(even.roller.spin_acceleration(even.solution), 0.0, atol=1e-12)
+
+
+def test_rolling_takes_inertia_and_pin_friction():
+    found = contact(roller_mass=4.0)
+    needed = 0.5 * 4.0 * np.abs(found.roller.spin_acceleration(found.solution)) * 0.05 / np.abs(found.cam_force)
+    assert_allclose(found.roller.friction_coefficient(found.solution), needed, rtol=1e-12)
+    assert found.largest_friction_coefficient.value >= needed.max()
+    rubbing = solved(friction={"cam": ks.RollerFriction(0.1, 0.02, 0.05)})
+    alone = contact(rubbing).roller.friction_coefficient(rubbing)
+    assert_allclose(alone, 0.1 * 0.02 / 0.05, rtol=2e-3)  # the moment of the whole pin load by the roller's radius
+
+
+def test_pin_carries_cam_force_less_roller_inertia():
+    plain, heavy = contact(), contact(roller_mass=15.0, roller_inertia=0.0)
+    assert_allclose(plain.roller.pin_load(plain.solution), np.abs(plain.cam_force), rtol=1e-14)
+    velocity = plain.solution.velocity("A")
+    inward = np.stack([-velocity[1], velocity[0]]) / np.hypot(*velocity)
+    force = inward * plain.cam_force + 15.0 * (np.array([[0.0], [-9.81]]) - plain.solution.acceleration("A"))
+    assert_allclose(heavy.roller.pin_load(heavy.solution), np.hypot(*force), rtol=1e-12)
+
+
+def test_life_of_a_constant_load_is_the_catalogue_s():
+    """A circle about O, turned evenly by a block of its own: a constant centrifugal force, constant spin."""
+    machine = ks.Mechanism("wheel", ks.Crank(None), (ks.CamRoller(ks.cams.Circle(0.2), ks.Link(100.0)),))
+    solution = ks.solve(machine, ANGLES, crank_speed=10.0)
+    found = ks.design.contact(solution, 0.04, 0.02, *STEEL, load_rating=40e3)
+    load, turns_a_second = 100.0 * 0.2 * 10.0**2, (10.0 * 0.2 / 0.04 + 10.0) / (2 * np.pi)
+    assert found.equivalent_load == pytest.approx(load, rel=1e-13)
+    assert found.sides == ("ring",)
+    assert found.life == pytest.approx((40e3 / load) ** (10 / 3) * 1e6 / (3600 * turns_a_second), rel=1e-12)
+    ball = ks.design.contact(solution, 0.04, 0.02, *STEEL, load_rating=40e3, life_exponent=3)
+    assert ball.life == pytest.approx((40e3 / load) ** 3 * 1e6 / (3600 * turns_a_second), rel=1e-12)
+
+
+def test_equivalent_load_is_between_mean_and_largest():
+    found = contact(load_rating=120e3)
+    load = found.roller.pin_load(solved(angles=np.linspace(0, 2 * np.pi, 1440, endpoint=False)))
+    assert load.mean() < found.equivalent_load < load.max()
+
+
+# What a contact is asked with
+
+
+def test_contact_defaults_to_the_scenes_roller():
+    own = solved(machine=rolled((0.05, 0.06, *STEEL, 110e9)))
+    found = ks.design.contact(own)
+    assert_allclose(found.pressure, own.contact_pressure, rtol=1e-13)
+    assert found.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.91 / 110e9), rel=1e-15)
+    wide = ks.design.contact(own, width=0.24)
+    assert_allclose(wide.pressure, own.contact_pressure / 2, rtol=1e-13)
+    with pytest.raises(ks.ParameterError, match=r"width, poissons_ratio must be told, as .* has no Roller"):
+        ks.design.contact(solved(), 0.05, youngs_modulus=210e9)
+
+
+def test_a_follower_is_told_how_its_pressure_is_had():
+    follower = ks.Mechanism("cam drive", ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.01, 0.05)),))
+    with pytest.raises(ks.ParameterError, match="give its follower a Roller or Face, then contact_pressure is an"):
+        contact(ks.solve(follower, 0.5, crank_speed=1.0))
+
+
+# What steel of a hardness bears
+
+
+@pytest.mark.parametrize("brinell", [180.0, 250.0, 400.0])
+def test_there_and_back_is_the_same_hardness(brinell):
+    assert hardness_from_pressure(pressure_from_hardness(brinell)) == pytest.approx(brinell, rel=1e-14)
+
+
+@pytest.mark.parametrize("brinell", [179.0, 401.0, 0.0, "300"])
+def test_what_the_standard_does_not_tell_is_refused(brinell):
+    with pytest.raises(ks.ParameterError, match="pressure_from_hardness"):
+        pressure_from_hardness(brinell)
+
+
+@pytest.mark.parametrize(("pressure", "brinell"), [(0.0, 180.0), (2e8, 180.0), (5.996e8, 180.0), (1.31e9, 500.0)])
+def test_soft_steel_is_as_soft_as_the_standard_tells(pressure, brinell):
+    assert hardness_from_pressure(pressure) == pytest.approx(brinell)
+
+
+@pytest.mark.parametrize("pressure", [-1.0, float("nan"), "1 GPa", None])
+def test_what_is_no_pressure_is_refused(pressure):
+    with pytest.raises(ks.ParameterError, match="hardness_from_pressure"):
+        hardness_from_pressure(pressure)

@@ -19,7 +19,8 @@ def test_shipped_scenes_written_and_read_are_the_same(tmp_path, name):
         np.testing.assert_array_equal(read.solve(variant, 24).balancing_torque, item.solve(24).balancing_torque)
 
 
-def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
+@pytest.mark.slow
+def test_groups_loads_and_friction_are_written(tmp_path):
     bar, link = ks.Link(2.0, (0.1, 0.02), 0.01), ks.Link(1.0)
     cam = ks.cams.Harmonic((0.1, 0.01), (0.002,), 0.3)
     groups = (
@@ -50,7 +51,7 @@ def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
         np.testing.assert_allclose(one, other, rtol=1e-12)
 
 
-def test_a_design_is_written_with_what_it_was_and_what_it_is_compared_with(tmp_path):
+def test_a_design_is_written_with_its_reference(tmp_path):
     saw = ks.load_case("sawframe_2r63")
     found = ks.design.torque_free_cam(saw, 2, 2, minimise="rms balancing_torque")
     path = found.case(tmp_path / "better.toml", name="better")
@@ -80,7 +81,7 @@ TWO_TURNS = ks.Table(np.arange(8) * np.pi / 2, np.cos(np.arange(8.0)), period=4 
 DIAGRAM = ks.Table([0.1, 0.2, 0.3], [-900.0, -500.0, 1 / 3], over="travel", back=[0.0, 1.0, 0.0], slider="slider")
 
 
-def test_tables_of_loads_and_cams_stand_in_files_beside_it(tmp_path):
+def test_tables_are_written_to_files_beside_it(tmp_path):
     angle = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     cam = ks.cams.Sampled(angle, 0.1 + 0.01 * np.cos(angle) + 1e-9 * np.cos(40 * angle), noise=1e-9)
     follower = ks.Mechanism("bare", ks.Crank(None), (ks.CamRoller(cam, ks.Link(2.0)),))

@@ -7,6 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.balancing import Counterweight, counterweight, full, optimal, partial
+from kinetostatics.design.balancing_table import balancing_table
 from support.balanced import (
     CAM,
     FOUR_BAR,
@@ -20,12 +21,13 @@ from support.balanced import (
     solved,
     unbalance,
 )
+from support.case_files import shipped
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""
 
 
-def test_counterweight_by_mass_and_by_arm_give_the_same_unbalance_and_shaking_force():
+def test_mass_and_arm_give_the_same_counterweight():
     by_mass = partial(INCLINED, "overall", crank=Counterweight(mass=6.0))
     by_arm = partial(INCLINED, "overall", crank=Counterweight(arm=-0.11))
     np.testing.assert_allclose(unbalance(by_mass), unbalance(by_arm), rtol=1e-14)
@@ -36,7 +38,7 @@ def test_counterweight_by_mass_and_by_arm_give_the_same_unbalance_and_shaking_fo
 
 
 @pytest.mark.parametrize("given", [{"arm": -0.09}, {"mass": 40.0}])
-def test_a_whole_link_and_the_counterweight_it_needs_agree(given):
+def test_whole_link_agrees_with_its_counterweight(given):
     """Designing the link anew with its total mass or centre, or adding to it what is missing."""
     whole = partial(INCLINED, "overall", crank=Counterweight(**given, whole_link=True))
     link = whole.mechanism.links["crank"]
@@ -48,7 +50,7 @@ def test_a_whole_link_and_the_counterweight_it_needs_agree(given):
 
 
 @pytest.mark.parametrize(("mechanism", "link"), [(SKEW, "coupler"), (FOUR_BAR, "rocker"), (CAM, "block")])
-def test_link_with_its_counterweight_moves_as_two_bodies(mechanism, link):
+def test_link_with_counterweight_moves_as_two_bodies(mechanism, link):
     """Inertia by parallel axes: torque and shaking moment are those of the bare mechanism and of a point mass alone."""
     whole = counterweight(mechanism, link, (-0.4, 0.3), Counterweight(mass=2.5))
     alone = mechanism
@@ -69,7 +71,7 @@ def test_nothing_is_added_where_nothing_is_needed():
 # Report and effect
 
 
-def test_report_tells_masses_arms_and_unbalances_with_units():
+def test_report_has_masses_arms_and_unbalances():
     found = full(SKEW, crank=Counterweight(mass=20.0), coupler=Counterweight(mass=30.0))
     report = found.report()
     assert list(report.index) == ["crank", "coupler"]
@@ -91,7 +93,7 @@ def test_report_tells_masses_arms_and_unbalances_with_units():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("found", [partial(SKEW, crank=HEAVY), full(FOUR_BAR, crank=HEAVY, rocker=HEAVY)])
-def test_effect_gives_true_extremes_of_forces_moments_and_torque_before_and_after(found):
+def test_effect_gives_true_extremes_before_and_after(found):
     drive = {"crank_speed": 10.0, "crank_acceleration": 20.0, "loads": ks.Gravity()}
     effect = found.effect(**drive)
     assert np.all(np.isfinite(effect))
@@ -129,7 +131,7 @@ NEEDED = 0.209 / 3
         ({"mass": 1.0, "whole_link": True}, "would weigh 1 kg, less than the 1 kg .* or a larger mass"),
     ],
 )
-def test_a_limit_that_cannot_be_kept_is_refused_with_the_numbers(weight, message):
+def test_impossible_limit_is_refused_with_numbers(weight, message):
     with pytest.raises(ks.ParameterError, match=message):
         partial(mower(), "across", crank=Counterweight(**weight))
 
@@ -146,14 +148,14 @@ def test_a_limit_just_met_is_kept(slack):
 
 
 @pytest.mark.parametrize("whole_link", [False, True])
-def test_arm_on_the_wrong_side_is_refused_and_the_arm_it_names_works(whole_link):
+def test_wrong_sided_arm_is_refused_with_the_right_one(whole_link):
     with pytest.raises(ks.ParameterError, match=r"other side of the joint: arm -0.035 m$") as caught:
         partial(mower(), "overall", crank=Counterweight(arm=0.035, whole_link=whole_link))
     remedy = Counterweight(arm=float(re.findall(r"arm (\S+) m$", str(caught.value))[0]), whole_link=whole_link)
     assert partial(mower(), "overall", crank=remedy).ratio == pytest.approx(0.5)
 
 
-def test_what_is_no_counterweight_or_no_single_design_is_refused():
+def test_no_counterweight_or_batch_is_refused():
     batch = ks.crank_slider(np.array([[0.03], [0.04]]), 0.3, slider=ks.Link(1.0))
     for ask in (
         lambda: partial(mower(), 0.5, crank=3.0),
@@ -166,7 +168,7 @@ def test_what_is_no_counterweight_or_no_single_design_is_refused():
             ask()
 
 
-def test_what_a_counterweight_on_the_crank_does_not_change_changes_by_nothing_without_a_sign():
+def test_crank_counterweight_leaves_the_rest_unchanged():
     found = ks.balancing.partial(
         ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0)), crank=HEAVY
     )
@@ -174,3 +176,36 @@ def test_what_a_counterweight_on_the_crank_does_not_change_changes_by_nothing_wi
     for row in ("reaction A [N]", "reaction B [N]", "reaction guide [N]", "balancing torque [N m]"):
         assert str(change[f"largest {row}"]) == "0.0"
     assert abs(change["largest reaction O [N]"]) > 1.0
+
+
+# The table of balanced variants
+
+
+CASE = shipped("mower_drive")
+NAME = next(name for name, variant in CASE.variants.items() if variant.balanced is not None)
+BALANCED = CASE.variants[NAME].balanced
+
+
+@pytest.fixture(scope="module")
+def solutions():
+    return CASE.solve(CASE.reference, 36), CASE.solve(NAME, 36)
+
+
+def test_rows_are_those_of_the_report_in_millimetres(solutions):
+    table = balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])})
+    for link, row in BALANCED.report().iterrows():
+        column = table[f"{NAME} {link}"]
+        assert column["counterweight arm [mm]"] == pytest.approx(1e3 * row["counterweight arm [m]"], abs=1e-8)
+        assert column["counterweight mass [kg]"] == pytest.approx(row["counterweight mass [kg]"], abs=1e-8)
+
+
+def test_the_largest_force_is_the_true_extreme(solutions):
+    table = balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])}, sampling=np.radians(5.0))
+    first = table.iloc[:, 0]
+    largest = ks.extremes(solutions[1], "shaking_force").range[1]
+    assert first["largest |F| [N]"] == pytest.approx(largest, rel=1e-9)
+    assert first["largest |F| on the study's grid [N]"] <= largest * (1 + 1e-12)
+    assert (
+        "largest |F| on the study's grid [N]"
+        not in balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])}).index
+    )

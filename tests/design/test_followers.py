@@ -13,7 +13,7 @@ FOLLOWING = ks.Mechanism("cam drive", ks.Crank(None), (FOLLOWER,))
 PULL = ks.PointSpring(5e3, 0.03, between=("A", (0.0, 0.0)))
 
 
-def test_a_follower_lifts_off_where_its_spring_no_longer_holds_it():
+def test_follower_lifts_off_at_its_springs_limit():
     """Along the ray m (r'' - r) omega^2 = -k (r - l0) where the cam gives nothing: the least omega over the turn."""
     found = ks.design.lift_off_speed(ks.solve(FOLLOWING, ANGLES, crank_speed=10.0, loads=PULL))
     r, _, second = FOLLOWER.cam.radius(np.linspace(0, 2 * np.pi, 100_001))
@@ -33,7 +33,7 @@ def test_a_damper_shifts_the_speed_of_lift_off():
     assert abs(force.max()) < 1e-6 * abs(force.min())
 
 
-def test_a_machine_carried_on_both_sides_at_rest_lifts_off_at_once():
+def test_machine_held_on_both_sides_lifts_off_at_once():
     assert ks.design.lift_off_speed(solved()) == 0.0
 
 
@@ -42,14 +42,14 @@ def test_without_inertia_nothing_lifts_off():
     assert ks.design.lift_off_speed(ks.solve(light, ANGLES, crank_speed=10.0, loads=PULL)) == np.inf
 
 
-def test_the_torque_to_start_is_that_of_springs_and_weights_and_of_friction():
+def test_starting_torque_of_springs_weights_friction():
     rest = np.abs(solved(0.0, angles=np.linspace(0, 2 * np.pi, 7201)).balancing_torque)
     assert ks.design.starting_torque(solved()).value == pytest.approx(rest.max(), rel=1e-6)
     rubbing = solved(friction={"O": ks.PinFriction(0.1, 0.05)})
     assert ks.design.starting_torque(rubbing).value > 1.001 * rest.max()
 
 
-def test_springs_surge_at_pi_times_the_root_of_stiffness_by_mass():
+def test_springs_surge_at_their_natural_frequency():
     found = ks.design.spring_surge(solved(), 30.0)
     stiffness = LOADS[1].stiffness
     assert found.natural_frequency == pytest.approx(np.pi * np.sqrt(stiffness / 30.0), rel=1e-14)
@@ -67,7 +67,7 @@ def turned(speed, free=0.04):
     return ks.solve(TURNING, ANGLES, crank_speed=speed, loads=ks.Spring(5e3, free, on="follower"))
 
 
-def test_a_follower_on_a_turning_cam_lifts_off_from_where_inertia_exceeds_its_spring():
+def test_follower_on_turning_cam_lifts_off():
     """M s'' omega^2 + k (s - s0) = 0 with s = 0.05 + 0.01 cos: at the top, 2 omega^2 = 5000 (0.02 / 0.01)."""
     found = ks.design.lift_off_speed(turned(10.0), "contact_force")
     assert found == pytest.approx(np.sqrt(5e3), rel=1e-9)
@@ -77,11 +77,11 @@ def test_a_follower_on_a_turning_cam_lifts_off_from_where_inertia_exceeds_its_sp
     assert_allclose([start, stop], [-np.arccos(cosine), np.arccos(cosine)], atol=1e-9)
 
 
-def test_a_spring_that_pushes_the_wrong_way_never_presses():
+def test_a_wrong_sided_spring_never_presses():
     assert ks.design.lifted(turned(1.0, free=0.1), "contact_force") == ((0.0, 2 * np.pi),)
 
 
-def test_a_force_that_is_not_there_is_refused_with_those_that_are():
+def test_an_unknown_force_lists_the_known_ones():
     for function in (ks.design.lifted, ks.design.lift_off_speed):
         with pytest.raises(ks.ParameterError, match="'contact_force'"):
             function(turned(10.0), "contact")

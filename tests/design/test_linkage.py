@@ -15,10 +15,10 @@ from kinetostatics.design.linkage import (
     transmission_angle,
 )
 from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
-from support.four_bars import TURN, FourBar, moved, turning
-from support.four_bars import of_lengths as four_bar
-from support.four_bars import swept as solved
-from support.machines import largest, planar
+from support import multibody
+from support.machines import TURN, FourBar, largest, planar, turning
+from support.machines import four_bar_of as four_bar
+from support.machines import swept as solved
 from support.strategies import four_bars, number, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
@@ -36,9 +36,10 @@ def test_transmission_angle_obeys_the_law_of_cosines(data):
     assert_allclose(transmission_angle(s), np.arccos(cosine), rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=15)
 @given(data=st.data(), start=number(0.0, 6.28))
-def test_swing_reaches_from_one_limit_position_to_the_other(data, start):
+def test_swing_reaches_both_limit_positions(data, start):
     """Crank and coupler in line make a triangle of coupler +- crank, rocker and frame; both assemblies swing alike."""
     bar, _ = data.draw(four_bars("crank-rocker"))
     s = bar.solve()
@@ -57,7 +58,7 @@ def test_swing_reaches_from_one_limit_position_to_the_other(data, start):
 # Chain unit
 
 
-def test_crank_angles_of_study_and_library_turn_into_each_other():
+def test_study_and_library_angles_convert():
     """+y, +x, -y, -x, clockwise, and back."""
     clockwise = np.pi / 2 * np.arange(4)
     assert_allclose(chain_unit_angle(clockwise), [np.pi / 2, 0.0, -np.pi / 2, -np.pi])
@@ -65,13 +66,13 @@ def test_crank_angles_of_study_and_library_turn_into_each_other():
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
-def test_parallel_start_has_crank_and_rocker_parallel_at_y(ratio):
+def test_parallel_start_has_parallel_crank_and_rocker(ratio):
     s = ks.solve(chain_unit(ratio, 1.0, 2 / 3), chain_unit_angle(0.0), crank_speed=1.0)
     assert_allclose(s.placement.links["rocker"].direction, [0.0, 1.0], atol=4e-15)
     assert_allclose(s.position("B"), [np.sqrt(1 - ratio**2), 0.0], atol=4e-15)
 
 
-def test_free_start_counts_from_the_rocker_angle_of_the_studys_triangle():
+def test_free_start_counts_from_the_study_angle():
     """psi_0 = psi_0' - beta, from the triangle A0 B0 O2 with |A0 O2|^2 = x_O2^2 + (h + r)^2."""
     r, c, h, x = 0.075, 0.3, 0.2, 0.28
     s = ks.solve(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(np.radians([0.0, 40.0])), crank_speed=-1.0)
@@ -82,12 +83,12 @@ def test_free_start_counts_from_the_rocker_angle_of_the_studys_triangle():
     assert rocker_angle(s) == pytest.approx([0.0, np.arctan2(along_x, along_y)[1] - psi_0], abs=1e-15)
 
 
-def test_parallel_start_is_the_free_start_with_its_own_pivot():
+def test_parallel_start_equals_its_free_start():
     free, parallel = (solved(chain_unit(0.3, 1.0, 0.6, pivot_x=x)) for x in (np.sqrt(0.91), None))
     assert_allclose(free.position("B"), parallel.position("B"), rtol=0, atol=1e-15)
 
 
-def test_rocker_angle_of_a_sweep_over_rho_in_one_call_equals_the_loop():
+def test_rocker_angle_of_a_batch_equals_the_loop():
     rho = np.array([[0.1], [0.3], [0.5]])
     batch = rocker_angle(solved(chain_unit(rho, 1.0, 2 / 3)))
     for row, one in zip(batch, rho[:, 0].tolist(), strict=True):
@@ -95,7 +96,7 @@ def test_rocker_angle_of_a_sweep_over_rho_in_one_call_equals_the_loop():
 
 
 @pytest.mark.parametrize(("crank", "words"), [(1.0, "got 1.0 m and 1.0 m"), (np.array([[0.5], [1.2]]), "1.2")])
-def test_parallel_start_with_a_coupler_no_longer_than_the_crank_is_refused(crank, words):
+def test_parallel_start_needs_a_long_coupler(crank, words):
     with pytest.raises(
         ks.ParameterError, match=r"(?s)coupler longer than the crank.*pivot_x for a free start"
     ) as caught:
@@ -112,8 +113,11 @@ def study(lengths, angle):
     gamma, psi, *rates = chain_unit_by_atan_acos(r, c, h, x, angle)
     s = ks.solve(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(angle), crank_speed=1.0, on_gap="nan")
     links = [s.placement.links[name] for name in ("coupler", "rocker")]
-    exact = [moved(FourBar(r, c, h, complex(x, -h)), one) for one in chain_unit_angle(angle)]
-    turned = np.array([[pose[name][1] for pose in exact] for name in ("coupler", "rocker")], dtype=float)
+    system = multibody.four_bar(FourBar(r, c, h, complex(x, -h), speed=1.0, acceleration=0.0))
+    exact = [system.motion(one) for one in chain_unit_angle(angle)]
+    names = [("coupler", "angle"), ("rocker", "angle")]
+    turned = [[(found["position"][name], found["velocity"][name]) for found in exact] for name in names]
+    turned = np.array(turned, dtype=float)
     return {
         "study": (np.array([np.exp(-1j * gamma), 1j * np.exp(-1j * psi)]), np.array(rates)),
         "library": (np.array([planar(link.direction) for link in links]), np.array([link.ratio for link in links])),
@@ -132,7 +136,7 @@ CLOCKWISE = np.linspace(0.0, 2 * np.pi, 361)[:-1] + 0.001
 @pytest.mark.parametrize(
     "lengths", [(0.1, 1.0, 2 / 3, 0.9), (0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)]
 )
-def test_study_and_library_agree_to_rounding_where_the_studys_conditions_hold(lengths):
+def test_study_agrees_where_its_conditions_hold(lengths):
     found = study(lengths, CLOCKWISE)
     for name in ("study", "library"):
         for values, expected in zip(found[name], found["exact"], strict=True):
@@ -143,9 +147,7 @@ def test_study_and_library_agree_to_rounding_where_the_studys_conditions_hold(le
     ("lengths", "closed", "coupler_wrong", "rocker_wrong"),
     [((0.3, 0.6, 1.0, 0.2), 360, 97, 0), ((0.9, 1.0, 2 / 3, np.sqrt(0.19)), 274, 97, 12)],
 )
-def test_study_is_wrong_wherever_its_conditions_fail_and_the_library_is_not(
-    lengths, closed, coupler_wrong, rocker_wrong
-):
+def test_study_fails_where_its_conditions_fail(lengths, closed, coupler_wrong, rocker_wrong):
     """Counted at 360 angles, those at which the linkage closes.
 
     Half a turn off: the coupler where A is right of O2, the rocker where b <= r cos(phi). The first is a crank-rocker
@@ -164,7 +166,7 @@ def test_study_is_wrong_wherever_its_conditions_fail_and_the_library_is_not(
 
 
 @pytest.mark.parametrize("margin", [1e-4, 1e-6, 1e-8, 1e-10])
-def test_near_a_toggle_study_and_library_lose_the_digits_that_rounded_lengths_cost(margin):
+def test_both_lose_digits_near_a_toggle(margin):
     """Both: directions eps / sqrt(margin), rates 0.1 eps / margin; acos costs the study twice what the library loses.
 
     At `margin` 0 crank and coupler could be stretched into one line with the frame. Worst of 40 angles around it.
@@ -181,7 +183,7 @@ def test_near_a_toggle_study_and_library_lose_the_digits_that_rounded_lengths_co
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
-def test_long_rocker_costs_the_study_the_digits_that_the_library_keeps(longer):
+def test_long_rocker_costs_the_study_digits(longer):
     """A coupler of 1 and a rocker of `longer`: the cosine from which psi comes is 1 but for 1 / longer^2."""
     found = study((0.5, 1.0, longer, np.sqrt(0.75)), CLOCKWISE)
     error = {name: largest((found[name][0] - found["exact"][0])[1]) for name in ("study", "library")}
@@ -197,12 +199,12 @@ def test_long_rocker_costs_the_study_the_digits_that_the_library_keeps(longer):
         ((2.0, 3.0, 3.5, 5.0), "does not close all round"),
     ],
 )
-def test_swing_is_refused_where_the_rocker_turns_fully_or_the_crank_does_not(lengths, words):
+def test_swing_is_refused_for_full_turns(lengths, words):
     with pytest.raises(ks.ParameterError, match=words):
         ks.linkage.swing(ks.solve(four_bar(lengths), [0.0], crank_speed=1.0, on_gap="nan"))
 
 
-def test_characteristics_are_refused_for_what_is_no_four_bar():
+def test_characteristics_refuse_other_linkages():
     chain = ks.Mechanism(
         "six-bar",
         ks.Crank(0.1),
@@ -220,13 +222,13 @@ def test_characteristics_are_refused_for_what_is_no_four_bar():
             ask()
 
 
-def test_rocker_angle_of_a_single_crank_angle_is_single():
+def test_rocker_angle_of_one_angle_is_a_number():
     solution = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 2 / 3), np.pi / 2, crank_speed=-1.0)
     assert ks.linkage.rocker_angle(solution).shape == ()
     assert ks.linkage.rocker_angle(solution) == 0.0
 
 
-def test_a_chain_unit_of_a_case_is_optimised_with_its_pivot_as_its_start_says():
+def test_chain_unit_optimum_keeps_its_pivot():
     """The parallel start puts the rocker's pivot where crank and coupler say, through every step."""
     case = ks.load_case("chain_unit")
     vary = {"crank_length": ("0.1 m", "0.2 m"), "coupler_length": ("0.25 m", "0.35 m")}

@@ -5,11 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from support.case_files import shipped
 from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
-from support.shipped import shipped
 
 
-def test_one_number_is_best_where_a_search_by_values_alone_finds_it():
+def test_optimum_of_one_number_equals_a_scan():
     from scipy.optimize import minimize_scalar
 
     def torque(stiffness):
@@ -21,7 +21,7 @@ def test_one_number_is_best_where_a_search_by_values_alone_finds_it():
     assert found.active == ()
 
 
-def test_counterweight_that_makes_the_largest_shaking_force_least_is_the_one_of_balancing():
+def test_counterweight_optimum_equals_balancing():
     """The mower's optimal variant, found by another search, by its unbalance along the crank and across."""
     mower = shipped("mower_drive").variant("unbalanced")
     balanced = shipped("mower_drive").variant("optimal").balanced.mechanism
@@ -41,7 +41,7 @@ def test_limits_hold_at_true_extremes_to_a_billionth():
     assert bound().report().loc[f"{RATIO} [1]", "after"] >= 50 * (1 - 1e-8)
 
 
-def test_the_same_optimum_under_an_independent_solution():
+def test_optimum_holds_in_an_independent_solution():
     compared = ks.compare(SAW.solve("plain"), bound().scene.solve(720)).frame()
     assert_allclose(compared.iloc[0]["ratio"], bound().report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
 
@@ -74,7 +74,7 @@ def test_losses_and_pressure_angle_are_outputs_too():
                 assert np.mean(other.friction_loss) >= after["mean friction_loss [W]"] * (1 - 1e-6)
 
 
-def test_many_crank_angles_take_no_memory_of_their_square():
+def test_many_angles_take_linear_memory():
     """Of 60 000 crank angles that would be 29 GB."""
     vary = {"spring.stiffness": (6e5, 9e5)}
     found = ks.design.optimise(
@@ -98,7 +98,7 @@ ROLLED = ks.Scene(
 
 
 @pytest.mark.slow
-def test_the_sawframe_with_least_swing_keeps_to_a_contact_pressure():
+def test_least_swing_saw_keeps_its_contact_pressure():
     """A flywheel 14 times lighter, and no roller pressed harder than it may be; by the true running of each."""
     vary = {
         "cam.cosine.0": ("250 mm", "350 mm"),

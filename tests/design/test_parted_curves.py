@@ -28,6 +28,7 @@ SCENES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", OUTPUTS)
 @pytest.mark.parametrize("kind", SCENES)
 def test_derivatives_are_those_of_the_number(kind, text):
@@ -42,24 +43,3 @@ def test_derivatives_are_those_of_the_number(kind, text):
         difference = (above - below) / (2.0 * size)
         scale = max(abs(found), 1e-3 * true_value(parsed(f"rms {output.quantity}"), SCENES[kind])) / start[place]
         assert slopes[place] == pytest.approx(difference, rel=2e-3, abs=2e-3 * scale)
-
-
-@pytest.mark.parametrize("text", ["largest O", "largest_absolute balancing_torque", "swing balancing_torque"])
-def test_parts_are_as_many_whatever_the_design_and_the_highest_is_the_output(text):
-    output = parsed(text)
-    problem = Problem(SCENES["pins"], VARY, [output.quantity])
-    designs = [np.array(values) for values in ([0.05, 2.0], [0.041, 3.3])]
-    parts = [problem.curve(output, values).bounded(output.reduction) for values in designs]
-    assert parts[0][0].shape == parts[1][0].shape
-    for (heights, slopes), values in zip(parts, designs, strict=True):
-        found, own = problem.output(output, values)
-        assert heights.max() == pytest.approx(found, rel=1e-12)
-        np.testing.assert_allclose(slopes[:, heights.argmax()], own, rtol=1e-9)
-
-
-def test_the_signs_of_a_piece_are_weighed_where_they_change():
-    from kinetostatics.design.parted_curves import _signed
-    from kinetostatics.results.means import NODES
-
-    values = (2.0 * NODES - 1.0 - 0.3)[None]
-    assert float((_signed(values) * values).sum()) == pytest.approx((1.3**2 + 0.7**2) / 4.0, rel=1e-14)

@@ -8,12 +8,11 @@ from kinetostatics.design import measures
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem, true_value
 from kinetostatics.results.reductions import parsed
-from support.case_files import case_file
+from support.case_files import PLAIN, case_file
 from support.improved_saws import CIRCLE
-from support.plain_case import PLAIN
 
 
-def test_derivatives_of_a_design_are_those_of_small_changes():
+def test_design_derivatives_equal_small_changes():
     problem = Problem(CIRCLE, {"coupler_length": (1.9, 2.1), "slider.mass": (500, 700)}, ["O", "balancing_torque"])
     start = problem.start
     for name in ("O", "balancing_torque"):
@@ -43,7 +42,7 @@ def test_outputs_over_two_turns_are_those_of_sweeps(name):
         assert true_value(output, FOUR_STROKE.varied({"slider.mass": mass})) == pytest.approx(expected, rel=1e-7)
 
 
-def test_a_number_that_is_not_told_is_refused_and_one_that_follows_is_not(tmp_path):
+def test_unknown_number_is_refused_derived_is_not(tmp_path):
     text = (
         PLAIN
         + """[variants.cam]
@@ -75,7 +74,7 @@ def spiky(width=2e-5):
     return ks.Scene(made, 30.0, loads=[ks.Gravity(), ks.ProcessForce(table)])
 
 
-def test_a_peak_beside_a_kink_is_seen_by_a_search_that_even_samples_miss():
+def test_search_sees_a_peak_beside_a_kink():
     output, scene = parsed("largest balancing_torque"), spiky()
     problem = Problem(scene, {"slider.mass": (1.0, 3.0)}, ["balancing_torque"])
     truth = ks.extremes(scene.solve(4), "balancing_torque").range[1]
@@ -99,7 +98,7 @@ def test_a_search_keeps_a_limit_beside_a_kink():
     assert true_value(parsed("largest O"), found.scene) <= 1.02 * before * (1 + 1e-6)
 
 
-def test_an_output_that_no_pieces_tell_is_refused_not_reported():
+def test_an_unresolved_output_is_refused():
     """A pump with a rubbing guide, whose load ripples by 2e-4 sixteen thousand times a turn."""
 
     def push(motion):

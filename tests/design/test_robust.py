@@ -8,7 +8,8 @@ import kinetostatics as ks
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
-from support.shipped import shipped
+from kinetostatics.design.spread import harrell_davis
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +30,7 @@ def ks_quantile(found, trim=0.0):
     return np.quantile(ks.design.over_spread(found.scene, RATIO, spread, reference=found.reference, samples=512), 0.05)
 
 
-def test_outputs_over_a_spread_are_those_of_each_machine_by_itself():
+def test_spread_outputs_equal_single_machines():
     spread = ks.design.Spread(0.05, {"spring.stiffness": "-5..5 %", "slider.mass": "-10..10 kg"}, seed=4)
     found = ks.design.over_spread(SAW, RATIO, spread, variant="cam-circle", samples=16)
     from scipy.stats import qmc
@@ -54,7 +55,7 @@ def test_studys_design_has_the_quantile_of_the_study():
     assert_allclose(np.quantile(found, 0.05), 5.2, atol=0.15)
 
 
-def test_derivatives_of_a_quantile_are_those_of_small_changes():
+def test_quantile_derivatives_equal_small_changes():
     vary = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
     circle = SAW.variant("cam-circle")
     problem = Problem(circle, vary, ["balancing_torque"], SAW.variant("plain"))
@@ -86,7 +87,7 @@ def test_trim_takes_the_best_speed_of_each_machine():
         assert_allclose(value, max(ratios), rtol=1e-3)
 
 
-def test_a_robust_design_keeps_more_than_the_best_at_nominal_numbers():
+def test_robust_design_keeps_more_than_nominal():
     """Cubic spring, cam force at most 20 kN: 5 % of machines fall below 33, of every good linear design below 24."""
     common = {"variant": "cam-cosine"}
     linear = ks.design.torque_free_cam(SAW, 4, 4, **common)
@@ -136,3 +137,12 @@ def test_peaks_beside_kinks_are_seen_in_each_machine():
     above, below = (sampled(np.array([length]))[0] for length in (0.05 + 1e-6, 0.05 - 1e-6))
     assert value == pytest.approx(np.quantile(found, 0.9), rel=0.02)
     assert slopes[0] == pytest.approx((above - below) / 2e-6, rel=1e-3)
+
+
+# How numbers spread
+
+
+def test_quantile_weights_sum_to_one():
+    weights = harrell_davis(0.05, 4096)
+    assert weights.sum() == pytest.approx(1.0, abs=1e-12)
+    assert weights @ np.linspace(0, 1, 4096) == pytest.approx(0.05, abs=1e-3)

@@ -5,6 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.design import spring_follower
+from kinetostatics.errors import ParameterError
+from kinetostatics.numbers.panels import Panels
 
 VARIANTS = ("rho-0.1", "rho-0.5", "free-start")
 LOADS = {
@@ -26,7 +29,7 @@ def balanced(scene, mass=0.3, travel=0.012, **others):
 
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_the_mean_torque_alone_is_left_with_contact_all_the_way(variant, load):
+def test_only_the_mean_torque_remains_with_contact(variant, load):
     scene = drive(variant, load)
     found = balanced(scene, guide_angle=0.4, guide_offset=0.003)
     at = np.linspace(0.01, 6.29, 2000)
@@ -44,7 +47,7 @@ def test_the_torque_by_power_agrees():
     )
 
 
-def test_a_load_that_jumps_within_a_stroke_is_balanced_too():
+def test_a_load_that_jumps_is_balanced_too():
     def press(motion):
         return np.where(np.cos(motion.crank_angle) > 0, -500.0, 0.0)
 
@@ -55,7 +58,7 @@ def test_a_load_that_jumps_within_a_stroke_is_balanced_too():
     assert np.min(np.abs(np.array(found.follower.cam.law.knots) - np.pi / 2)) < 1e-12
 
 
-def test_the_follower_keeps_to_its_travel_and_pressure_angle():
+def test_follower_keeps_travel_and_pressure_angle():
     found = balanced(drive(), pressure_angle=np.radians(25.0), guide_offset=0.002)
     position = found.scene.solve(7200).travel("follower_cam")
     assert_allclose(np.ptp(position), 0.012, rtol=1e-6)
@@ -129,3 +132,114 @@ def test_scenes_that_no_cam_can_balance_are_refused():
     for text, item in cases.items():
         with pytest.raises(ks.ParameterError, match=text):
             balanced(item)
+
+
+# The stretch of a spring that holds a given energy
+
+
+TURN = 2 * np.pi
+ANGLES = np.linspace(0.0, TURN, 1001)
+
+
+def energy(slope):
+    panels = Panels.of(slope, TURN)
+    return panels.plus(-panels.mean).integral
+
+
+def residual(slope, level, mass, stiffness):
+    """Mu x'^2 / 2 + k x^2 / 2 + E - C, and the force mu x'' + k x."""
+    e = energy(slope)
+    x, first, second = spring_follower.stretched(e, level, mass, stiffness).at(ANGLES, 2)
+    return mass * first**2 / 2 + stiffness * x**2 / 2 + e(ANGLES) - level, mass * second + stiffness * x
+
+
+@pytest.mark.parametrize("mass", [1e-6, 0.1, 1.0])
+@pytest.mark.parametrize("slope", [np.sin, lambda x: np.sin(x) + 0.8 * np.cos(2 * x), lambda x: np.abs(np.sin(x - 1))])
+def test_energy_is_held_and_the_cam_presses(slope, mass):
+    missing, force = residual(slope, 8.0, mass, 2.0)
+    assert np.max(np.abs(missing)) < 3.0 * spring_follower.RESOLVED * 8.0
+    assert np.min(force) > 0.0
+
+
+def test_massless_stretch_is_the_root_of_energy():
+    e = energy(np.sin)
+    x = spring_follower.stretched(e, 8.0, 1e-13, 2.0)
+    assert_allclose(x(ANGLES), np.sqrt(8.0 - e(ANGLES)), rtol=1e-11)
+
+
+def test_follower_runs_smoothly_through_a_torque_jump():
+    def slope(x):
+        return np.sin(x) + 0.3 * (np.sin(x) > 0) * (np.mod(x, TURN) > 2.0)
+
+    kinked = energy(slope)
+    x = spring_follower.stretched(kinked, 8.0, 0.1, 2.0)
+    before, after = (np.array(x.at(2.0 + side, 1)) for side in (-1e-9, 1e-9))
+    assert_allclose(before, after, atol=1e-7)
+
+
+def test_reserve_is_the_published_formula():
+    e = energy(np.sin)  # 0 - cos + 1, least at 0 with E'' = 1
+    assert_allclose(spring_follower.reserve(e, 0.0, 8.0, 4.0, 2.0), np.sqrt(2 * 2.0 * 8.0) / (2 * 2.0), rtol=1e-9)
+
+
+def test_contact_is_lost_where_the_spring_is_weak():
+    e = energy(np.sin)
+    bound = 2.0 * np.sqrt(2.0)  # (k x)^2 = 4 mu E'' at x^2 = C
+    spring_follower.stretched(e, 8.0, 0.98 * bound**2, 2.0)
+    with pytest.raises(ParameterError, match="lift off near crank angle"):
+        spring_follower.stretched(e, 8.0, 1.1 * bound**2, 2.0)
+
+
+# What a torque-balancing cam reports
+
+
+@pytest.fixture(scope="module")
+def found():
+    scene = ks.load_case("chain_unit").variants["free-start"].scene
+    load = ks.Torque(lambda m: -20.0 * np.sign(m.rate("rocker")), on="rocker")
+    scene = ks.Scene(scene.mechanism, scene.crank_speed, loads=(*scene.loads, load))
+    return ks.design.torque_balancing_cam(scene, mass=0.3, travel=0.012, guide_offset=0.002)
+
+
+def test_contact_and_angle_are_extremes_of_the_scene(found):
+    s = found.scene.solve(np.linspace(0.001, 6.281, 5000))
+    force, angle = s.scalar("contact_force_cam"), np.abs(s.measure("pressure_angle_cam"))
+    assert found.least_contact_force.value == pytest.approx(force.min(), rel=1e-5)
+    assert found.largest_contact_force.value == pytest.approx(force.max(), rel=1e-5)
+    assert found.pressure_angle.value == pytest.approx(angle.max(), rel=1e-5)
+    assert found.pressure_angle.value >= angle.max() - 1e-9
+    assert found.lifts_off == ()
+
+
+def test_energy_is_that_of_the_spring_ends(found):
+    low, high = found.stretch
+    assert_allclose(found.spring.stiffness * (high**2 - low**2) / 2, found.energy, rtol=1e-10)
+    assert_allclose(found.travel, 0.012, rtol=1e-12)
+
+
+def test_curvature_is_that_of_the_pitch_curve(found):
+    centre = found.follower.disk.curve(np.linspace(0, 2 * np.pi, 200_001))[0]
+    step = np.diff(centre)
+    bend = np.abs(np.angle(step[1:] / step[:-1])) / np.abs(step[1:])
+    convex = np.angle(step[1:] / step[:-1]) < 0.0  # the roller runs clockwise
+    assert found.curvature_radius.value == pytest.approx(1.0 / bend[convex].max(), rel=1e-3)
+
+
+def test_a_faster_machine_shows_where_it_lifts_off(found):
+    scene = found.scene
+    faster = ks.Scene(scene.mechanism, 10.0 * scene.crank_speed, loads=scene.loads).solve(360)
+    pressing = faster.scalar("contact_force_cam") > 0.0
+    inside = np.zeros(360, bool)
+    for start, stop in ks.design.lifted(faster, "contact_force_cam"):
+        inside |= (np.mod(faster.crank_angle - start, 2 * np.pi)) < stop - start
+    assert np.any(inside)
+    assert np.array_equal(inside, ~pressing)
+
+
+def test_report_and_table_show_gain_and_cost(found):
+    for text in ("N m mean; uneven by", "preload", "positive all the way", "pressure angle      30 deg at most"):
+        assert text in found.report()
+    table = found.table()
+    assert table.loc["mean |T - mean| [N m]", "after"] < 1e-9
+    assert table.loc["largest reaction at O [N]", "after"] > table.loc["largest reaction at O [N]", "before"]
+    assert "of the unevenness left" in repr(found)

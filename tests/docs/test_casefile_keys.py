@@ -36,14 +36,14 @@ def test_examples_are_toml(part):
         assert tomllib.loads(key.example)
 
 
-def test_every_link_of_the_reference_leads_to_a_section():
+def test_reference_links_lead_to_sections():
     page = KEYS.page()
     anchors = {part.anchor for part in PARTS}
     assert len(anchors) == len(PARTS)
     assert all(link.partition(")")[0] in anchors for link in page.split("](#")[1:])
 
 
-def test_meanings_of_groups_and_loads_are_of_keys_that_there_are():
+def test_documented_meanings_belong_to_known_keys():
     keys = {
         name for model in schema.MADE_OF for key in model.model_fields for name in (key, f"{KEYS.word_of(model)}.{key}")
     }

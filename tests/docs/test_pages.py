@@ -38,7 +38,7 @@ def test_every_page_stands_in_one_list_of_pages():
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_python_on_a_page_is_run_by_the_build_or_by_a_test(name):
+def test_python_on_pages_is_run_by_build_or_test(name):
     text = text_of(PAGES[name])
     if code_cells(text):
         assert RUN_AT_BUILD.match(text), "a page with code cells needs the header of docs/start.md"
@@ -51,7 +51,7 @@ def test_pages_name_no_host_to_load_from(name):
     assert not re.search(r"!\[[^\]]*\]\((?:https?:)?//|<(?:script|img|iframe)\b[^>]*//", text_of(PAGES[name]))
 
 
-def test_the_first_page_goes_from_a_drawing_to_a_table_of_forces(tmp_path, monkeypatch, capsys):
+def test_first_page_goes_from_drawing_to_forces(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = text_of(PAGES["index"])
     code = code_cells(text)[0]
@@ -72,7 +72,7 @@ def test_the_first_page_counts_its_lines():
     assert written == "Fifteen"
 
 
-def test_the_page_on_certainty_says_what_its_code_finds(capsys):
+def test_certainty_page_says_what_its_code_finds(capsys):
     names: dict = {}
     codes = [code for code in code_cells(text_of(PAGES["this_number"])) if "subprocess" not in code]
     with pytest.warns(UserWarning, match="236.5 deg the first makes 0.89 N m, the second 1.2e"):

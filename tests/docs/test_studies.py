@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from support import drawn_pages as pages
+from support import pages
 
 pytestmark = pages.needed
 FIGURES = {
@@ -15,7 +15,7 @@ FIGURES = {
 
 
 @pytest.mark.parametrize("name", ["sawframe", "mower"])
-def test_a_page_draws_the_figures_of_its_study_with_their_numbers(name):
+def test_study_page_draws_its_figures_and_numbers(name):
     code = "\n".join(pages.cells(f"studies/{name}.md"))
     titles = re.findall(r'set_title\(f?"figure (\w+)', code) + re.findall(r'"(\d[ab])[,:]', code)
     for letters in re.findall(r'zip\(axes, "(ab)"', code):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support import drawn_pages as pages
+from support import pages
 
 pytestmark = pages.needed
 theory = pages.script("draw_theory")
@@ -16,6 +16,7 @@ APART = ("crank_slider", "four_bar", "lever", "cylinder", "yoke", "cam_roller")
 DRAWINGS = theory.DRAWINGS if theory else {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", CHECKED)
 def test_formulas_of_a_page_are_those_of_the_library(path):
     names: dict = {}
@@ -25,7 +26,7 @@ def test_formulas_of_a_page_are_those_of_the_library(path):
 
 
 @pytest.mark.parametrize("path", CHECKED)
-def test_a_page_names_its_sources_and_shows_pictures_that_are_there(path):
+def test_a_page_names_sources_and_shows_pictures(path):
     text = (pages.DOCS / path).read_text(encoding="utf-8")
     assert "*Source:*" in text or path == "theory/signs.md"
     for picture in re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text):
@@ -49,7 +50,7 @@ def test_a_drawing_comes_out_as_it_is_shown(name):
 
 
 @pytest.mark.parametrize("name", APART)
-def test_forces_on_each_body_of_a_drawing_are_in_equilibrium(name, monkeypatch):
+def test_drawn_bodies_are_in_equilibrium(name, monkeypatch):
     """All of them, with the load: so each is drawn on the right body, and with the right sign."""
     seen = {}
     monkeypatch.setattr(theory, "apart", lambda solution, *rest, **more: seen.update(solution=solution))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 TURN = 2 * np.pi
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875, inertia=0.4)
@@ -36,7 +36,7 @@ def test_what_the_motor_gives_arrives_somewhere(variant, motor):
     assert flow["PointDamper between 'B' and (0, 0.3)"] > 100.0
 
 
-def test_the_cut_takes_force_times_stroke_and_the_rotor_slip_times_the_air_gap():
+def test_cut_and_rotor_slip_take_their_energies():
     run = running(CUT)
     flow = run.energy_flow
     assert flow["ProcessForce on 'slider'"] == pytest.approx(8e3 * 0.6, rel=1e-12)
@@ -49,7 +49,7 @@ def test_the_cut_takes_force_times_stroke_and_the_rotor_slip_times_the_air_gap()
     assert run.energy_per_turn == pytest.approx(shaft, rel=1e-6)
 
 
-def test_what_flywheel_links_and_springs_hold_is_kinetic_and_potential_energy():
+def test_stored_energy_is_kinetic_and_potential():
     run = running(variant="cam-cosine", motor=MOTOR)
     held = {part.name: part.swing for part in run.energy_flow.parts}
     fine = ks.drive.steady(run.scene, MOTOR, 1000.0, angles=7200)
@@ -59,7 +59,7 @@ def test_what_flywheel_links_and_springs_hold_is_kinetic_and_potential_energy():
     assert held["Spring on 'slider'"] == pytest.approx(np.ptp(spring.potential_energy), rel=1e-6)
 
 
-def test_without_loss_no_energy_flows_and_rounding_is_0():
+def test_without_loss_no_energy_flows():
     run = running(motor=ks.drive.Motor.linear(4e3, 40.0))
     assert run.energy_per_turn == 0.0
     assert run.mean_power == 0.0

@@ -2,19 +2,17 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.drive.following import from_above
 from kinetostatics.drive.operating import operating_speed
-from support.driven_machines import DISC, MOTOR, driven
+from kinetostatics.drive.resolution import require_inertia, resolved
+from support.drives import DISC, DISC_MOTOR, driven
 
 
-def test_the_operating_speed_of_a_constant_torque_is_that_of_the_motor_s_line():
-    speed = operating_speed(driven(DISC, ks.Torque(-12.0, on="crank")))
-    assert MOTOR.torque_at_crank(speed) == pytest.approx(12.0, rel=1e-9)
-
-
-def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
+def test_weak_motor_and_runaway_are_reported():
     with pytest.raises(ks.errors.DriveError, match="too weak"):
         operating_speed(driven(DISC, ks.Torque(-1e4, on="crank")))
     with pytest.raises(ks.errors.DriveError, match="nothing holds the speed"):
@@ -22,14 +20,14 @@ def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
 
 
 @pytest.mark.parametrize("torque", [1e-3, 2.0, 5e4])
-def test_a_constant_torque_runs_as_fast_as_friction_of_an_unbalanced_disc_lets_it(torque):
+def test_constant_torque_runs_to_the_friction_limit(torque):
     disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(5.0, 0.02, 3.0)), ())
     scene = ks.Scene(disc, 1.0, friction={"O": ks.PinFriction(0.1, 0.03)})
     run = ks.drive.steady(scene, ks.drive.Motor.constant(torque), angles=5)
     assert run.mean_speed == pytest.approx(math.sqrt(torque / (0.1 * 0.03 * 5.0 * 0.02)), rel=1e-12)
 
 
-def test_a_motor_told_to_be_so_many_times_as_strong_carries_the_load():
+def test_stronger_motor_carries_the_load_as_advised():
     disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(10.0, 0.1, 3.0)), ())
     scene = ks.Scene(disc, 1.0, loads=ks.Torque(-20.0, on="crank"), friction={"O": ks.PinFriction(0.5, 0.1)})
 
@@ -42,3 +40,48 @@ def test_a_motor_told_to_be_so_many_times_as_strong_carries_the_load():
     times = float(str(caught.value).partition("give a motor ")[2].partition(" times")[0])
     assert 1.6 < times <= 1.667
     assert steady(1.001 * times).mean_speed < 2.0
+
+
+# A scene as one degree of freedom
+
+
+class Speedy:
+    """A torque on the crank by its speed, which declares where it jumps."""
+
+    def __call__(self, motion):
+        """Torque, N m."""
+        return np.where(np.mod(motion.crank_angle, 2 * np.pi) < 2.0, -0.1, -0.05) * motion.crank_speed
+
+    def kinks(self, motion):
+        """No kinks, and two jumps."""
+        return [], [0.0, 2.0]
+
+
+def test_declared_kinks_may_depend_on_speed():
+    found = driven(DISC, ks.Torque(Speedy(), on="crank"))
+    assert found.kinks.tolist() == [2.0]
+    assert found.loads_by_speed
+    left = [found.here(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
+    assert left == pytest.approx([-0.5, -1.0], rel=1e-12)
+    assert not driven(DISC, ks.Torque(ks.Table([0.0, 2.0, 4.0], [-1.0, -2.0, -1.5]), on="crank")).loads_by_speed
+
+
+# Running met by following a machine from above
+
+
+def test_standstill_names_angle_and_missing_torque():
+    machine = driven(DISC, ks.Torque(-1e3, on="crank"))
+    with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
+        from_above(machine, resolved(machine, 10.0), 10.0)
+    assert caught.value.missing == pytest.approx(1e3 - float(machine.motor_torque(0.0)), rel=1e-6)
+
+
+# Pieces of a turn in which a machine is resolved
+
+
+def test_vanishing_inertia_is_refused_with_its_angle():
+    motor = ks.drive.Motor.linear(100.0, 50.0)
+    machine = driven(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), motor=motor, flywheel=0.0)
+    with pytest.raises(ks.errors.DriveError, match="all inertia vanishes at crank angle"):
+        require_inertia(machine, resolved(machine, 3.0))
+    require_inertia(driven(), resolved(driven(), 3.0))

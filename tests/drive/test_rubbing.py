@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.rubbing import driven_by
-from support.driven_rubbing import MOTOR, PUMP, REFERENCE, RUBBING, SAW, SMALL
+from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 CAM = ks.Scene(
     ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0), coupler=ks.Link(2.0, 0.2, 0.03)),
@@ -20,7 +20,7 @@ CAM = ks.Scene(
         "guide": ks.GuideFriction(0.1),
     },
 )
-MACHINES = {"saw": (RUBBING, MOTOR, 1000.0), "pump": (PUMP, SMALL, 0.3), "cam": (CAM, SMALL, 1.0)}
+MACHINES = {"saw": (RUBBING, MOTOR, 1000.0), "pump": (FRICTION_PUMP, SMALL, 0.3), "cam": (CAM, SMALL, 1.0)}
 
 
 @pytest.fixture(scope="module", params=MACHINES)
@@ -29,13 +29,13 @@ def run(request):
     return ks.drive.steady(scene, motor, flywheel)
 
 
-def test_the_motor_drives_machine_and_flywheel_at_the_true_acceleration(run):
+def test_motor_drives_at_the_true_acceleration(run):
     torque = run.motor.transmission * run.motor_torque - run.flywheel * run.acceleration
     assert np.abs(torque - run.crank_torque).max() < 1e-13 * np.abs(run.crank_torque).max()
     assert run.solution.friction_loss.min() >= 0.0
 
 
-def test_what_the_motor_gives_is_what_loads_and_friction_take(run):
+def test_motor_gives_what_loads_and_friction_take(run):
     lost = sum(run.friction_energy_per_turn_at(joint) for joint in run.scene.friction)
     flowing = run.energy_per_turn
     assert flowing == pytest.approx(run.load_energy_per_turn + lost, rel=1e-12, abs=1e-12 * lost)
@@ -43,7 +43,7 @@ def test_what_the_motor_gives_is_what_loads_and_friction_take(run):
     assert run.friction_energy_per_turn == pytest.approx(lost, rel=1e-15)
 
 
-def test_energy_changes_between_any_two_angles_by_what_the_torques_do(run):
+def test_energy_changes_by_the_work_of_torques(run):
     """Motor, loads and friction by the tables of the run, integrated apart from its own series."""
     nodes, weights = np.polynomial.legendre.leggauss(16)
     edges = np.union1d(run._pieces.edges, np.linspace(0.0, run.period, 41))
@@ -62,7 +62,7 @@ def test_energy_changes_between_any_two_angles_by_what_the_torques_do(run):
 
 
 @pytest.mark.parametrize("speed", [30.0, -30.0])
-def test_without_motor_a_constant_torque_carries_the_losses(speed):
+def test_constant_torque_carries_the_losses(speed):
     scene = ks.Scene(SAW, speed, loads=ks.Gravity(), friction=RUBBING.friction)
     run = ks.drive.steady(scene, None, 1000.0)
     assert run.mean_speed == pytest.approx(speed, rel=1e-14)
@@ -75,9 +75,9 @@ def test_without_motor_a_constant_torque_carries_the_losses(speed):
     assert rate * run.motion(angle)[0] == pytest.approx(acceleration, rel=1e-6, abs=1e-6)
 
 
-def test_a_flywheel_for_a_fluctuation_is_the_one_that_runs_with_it():
-    textbook = ks.drive.flywheel(PUMP, 0.02)
-    s = PUMP.solve(7200)
+def test_flywheel_for_a_fluctuation_runs_with_it():
+    textbook = ks.drive.flywheel(FRICTION_PUMP, 0.02)
+    s = FRICTION_PUMP.solve(7200)
     spare = np.cumsum(s.balancing_torque.mean() - s.balancing_torque) * 2 * np.pi / 7200
     assert textbook.energy == pytest.approx(np.ptp(spare), rel=1e-3)
 
@@ -95,13 +95,13 @@ def test_friction_that_vanishes_changes_nothing():
 def test_the_rubbing_saw_runs_as_many_digits_say(engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    angles = np.radians(REFERENCE["angle [deg]"])
+    angles = np.radians(FRICTION_REFERENCE["angle [deg]"])
     run = ks.drive.steady(RUBBING, MOTOR, 1000.0, angles=angles, engine=engine)
     for name in ("speed", "acceleration", "motor_torque"):
-        exact = np.array(REFERENCE[name], dtype=float)
+        exact = np.array(FRICTION_REFERENCE[name], dtype=float)
         assert np.abs(getattr(run, name) - exact).max() < 1e-12 * np.abs(exact).max(), name
-    assert run.mean_speed == pytest.approx(float(REFERENCE["mean_speed"]), rel=1e-14)
-    assert run.friction_energy_per_turn == pytest.approx(float(REFERENCE["friction_energy"]), rel=1e-12)
+    assert run.mean_speed == pytest.approx(float(FRICTION_REFERENCE["mean_speed"]), rel=1e-14)
+    assert run.friction_energy_per_turn == pytest.approx(float(FRICTION_REFERENCE["friction_energy"]), rel=1e-12)
 
 
 def test_friction_that_jams_is_refused_with_its_angles():
@@ -121,7 +121,7 @@ def test_the_summary_tells_the_power_lost_by_joint():
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
 
 
-def test_without_numba_friction_beside_a_table_is_computed_by_numpy(monkeypatch):
+def test_friction_and_table_work_without_numba(monkeypatch):
     """One crank angle after another, as a start-up asks; a table needs rows, which no short loop has."""
     monkeypatch.setitem(sys.modules, "numba", None)
     work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875, inertia=0.4)
 SAW = shipped("sawframe_2r63").variants
@@ -30,6 +30,7 @@ def test_compare_takes_running_and_its_solution_alike(pair):
     assert compared.energies_per_turn == pytest.approx((1400.0 * math.pi,) * 2, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_all_that_the_drives_take_stands_in_the_table(pair):
     frame = ks.compare(*pair).frame()
     for quantity, name in (
@@ -55,7 +56,7 @@ def test_the_rms_torque_is_the_mean_over_time(pair):
     assert run.rms_motor_torque == pytest.approx(math.sqrt(mean), rel=1e-9)
 
 
-def test_the_flywheel_for_the_same_fluctuation_gives_it(pair):
+def test_flywheel_for_equal_fluctuation_gives_it(pair):
     compared = ks.compare(*pair)
     reference, balanced = compared.flywheels()
     assert reference == pytest.approx(1000.0, rel=1e-14)
@@ -67,6 +68,7 @@ def test_the_flywheel_for_the_same_fluctuation_gives_it(pair):
     )
 
 
+@pytest.mark.slow
 def test_a_motor_without_air_gap_leaves_its_rows_out():
     linear = ks.drive.Motor.linear(4e3, 40.0)
     frame = ks.compare(running("plain", linear), running("cam-cosine", linear)).frame()
@@ -80,7 +82,7 @@ def test_textbook_running_is_compared_too():
     assert compared.flywheels()[1] < 500.0
 
 
-def test_a_driven_machine_against_one_at_constant_speed_has_dynamic_coefficients_alone(pair):
+def test_mixed_comparison_has_coefficients_alone(pair):
     compared = ks.compare(pair[0], SAW["cam-cosine"].solve())
     assert not hasattr(compared, "flywheels")
     assert compared.mean_torque_ratio > 1.0

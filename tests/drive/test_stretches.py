@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.drive.rubbing import driven_by
 from kinetostatics.drive.stretches import followed, sense_from_rest
-from support.driven_rubbing import PUMP, REFERENCE, RUBBING, SMALL
+from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, RUBBING, SMALL
 
 PENDULUM = ks.Scene(
     ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)),
@@ -29,7 +29,7 @@ def test_a_wheel_on_a_rubbing_pin_stops_as_by_hand():
     assert motion.friction_energy[-1] == pytest.approx(4.0, rel=1e-12)
 
 
-def test_a_pendulum_swings_less_each_time_and_sticks_where_friction_holds_it():
+def test_pendulum_with_friction_slows_and_sticks():
     motion = ks.drive.coast(PENDULUM, 0.06, -1.0, 0.0, 60.0)
     names = [event.name for event in motion.events]
     assert names[0] == "start"
@@ -56,15 +56,15 @@ def test_what_sticks_does_not_move():
     assert motion.time.tolist() == [0.0]
 
 
-def test_the_rubbing_saw_coasts_to_a_standstill_as_many_digits_say():
-    given = REFERENCE["coasting"]
+def test_saw_with_friction_coasts_as_reference_says():
+    given = FRICTION_REFERENCE["coasting"]
     motion = ks.drive.coast(RUBBING, given["flywheel"], given["from_angle"], given["from_speed"], "standstill")
     assert motion.crank_angle[-1] == pytest.approx(float(given["angle"]), rel=1e-14)
     assert motion.time[-1] == pytest.approx(float(given["time"]), rel=1e-14)
 
 
 @pytest.mark.slow
-def test_a_saw_that_coasts_gives_its_energy_to_friction():
+def test_coasting_saw_gives_its_energy_to_friction():
     motion = ks.drive.coast(RUBBING, 20.0, 1.0, 8.0, "standstill")
     s = motion.solution
     given = motion.kinetic_energy[0] + s.potential_energy[0] - motion.kinetic_energy[-1] - s.potential_energy[-1]
@@ -74,16 +74,16 @@ def test_a_saw_that_coasts_gives_its_energy_to_friction():
     assert np.abs(balance).max() < 1e-12 * np.abs(s.balancing_torque).max()
 
 
-def test_a_start_takes_longer_with_friction_and_ends_running():
-    free = ks.Scene(PUMP.mechanism, 20.0, loads=PUMP.loads)
-    slow, fast = (ks.drive.start(scene, SMALL, 0.3, 0.4) for scene in (PUMP, free))
+def test_start_with_friction_takes_longer():
+    free = ks.Scene(FRICTION_PUMP.mechanism, 20.0, loads=FRICTION_PUMP.loads)
+    slow, fast = (ks.drive.start(scene, SMALL, 0.3, 0.4) for scene in (FRICTION_PUMP, free))
     assert slow.time[-1] > fast.time[-1]
-    assert slow.speed[-1] == pytest.approx(0.99 * ks.drive.steady(PUMP, SMALL, 0.3).mean_speed, rel=1e-12)
+    assert slow.speed[-1] == pytest.approx(0.99 * ks.drive.steady(FRICTION_PUMP, SMALL, 0.3).mean_speed, rel=1e-12)
 
 
-def test_a_machine_that_friction_holds_does_not_start_and_says_by_how_much():
+def test_held_machine_names_the_missing_torque():
     friction = {"guide": ks.GuideFriction(0.3), "O": ks.PinFriction(0.3, 0.05)}
-    scene = ks.Scene(PUMP.mechanism, 20.0, loads=(ks.Gravity(), ks.ProcessForce(-2000.0)), friction=friction)
+    scene = ks.Scene(FRICTION_PUMP.mechanism, 20.0, loads=(ks.Gravity(), ks.ProcessForce(-2000.0)), friction=friction)
     weak = ks.drive.Motor.constant(30.0)
     with pytest.raises(ks.DriveError, match=r"does not start: .* of them to overcome friction") as caught:
         ks.drive.start(scene, weak, 0.3, -math.pi / 2, until=1.0)
@@ -98,7 +98,7 @@ def test_a_machine_that_friction_holds_does_not_start_and_says_by_how_much():
     assert caught.value.missing == pytest.approx(float(still.balancing_torque) - 30.0, rel=1e-12)
 
 
-def test_a_start_from_a_dead_centre_where_nothing_presses_yet_goes_on():
+def test_start_from_an_unloaded_dead_centre_goes_on():
     pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
     scene = ks.Scene(pump, 100.0, friction={"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.05, 0.01)})
     motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
@@ -107,13 +107,13 @@ def test_a_start_from_a_dead_centre_where_nothing_presses_yet_goes_on():
     assert motion.energy_drift < 1e-12 * motion.kinetic_energy[-1]
 
 
-def test_what_is_steep_enough_starts_the_way_it_falls_and_what_is_not_stays():
+def test_steep_machines_start_and_flat_ones_stay():
     """Gravity has an arm of 0.15 m on the crank of 2 kg, friction one of 0.1 times 0.05 m."""
     hung = driven_by("test", PENDULUM, None, 0.06)
     assert [sense_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
 
 
-def test_a_motion_ends_at_its_target_speed_in_the_stretch_where_that_is_met():
+def test_motion_ends_at_its_target_speed():
     hung = driven_by("test", PENDULUM, None, 0.06)
     found = followed(hung, -1.0, 0.0, 5.0, target=-0.5)
     assert found.end == "ready"

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.driven_saws import MOTOR, SAW
-from support.shipped import shipped
+from support.case_files import shipped
+from support.drives import DISC as WHEEL
+from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
 
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 
 
-def test_the_slider_crank_of_sundials_swings_as_published():
+@pytest.mark.slow
+def test_sundials_slider_crank_swings_as_published():
     """Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8, as run by SUNDIALS' IDA.
 
     Crank 0.5, rod 1, J1 = 1, m2 = 1 at the slider, J2 = 2; spring (1, free at 1) and damper (1) between the middles of
@@ -60,8 +62,9 @@ def n_four_bar(windows):
     return ks.Scene(ks.Mechanism("N-four-bar", ks.Crank(1.0, bar), groups), 1.0, loads=ks.Gravity())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("windows", [2, 40])
-def test_the_n_four_bar_of_iftomm_passes_its_singular_positions(windows):
+def test_iftomm_four_bar_passes_singular_positions(windows):
     """IFToMM library of benchmark problems, A02: B0 starts on top with 1 m/s; compared after 10 s."""
     motion = ks.drive.coast(n_four_bar(windows), 0.0, math.pi / 2, -1.0, 10.0)
     found = motion.crank_angle[-1]
@@ -109,7 +112,7 @@ def test_a_damper_takes_what_energy_is_lost():
     assert motion.energy_drift < 1e-11 * motion.kinetic_energy[0]
 
 
-def test_a_pendulum_reverses_at_its_height_of_release_with_its_period():
+def test_pendulum_reverses_at_its_release_height():
     """Period by the complete elliptic integral."""
     motion = ks.drive.coast(PENDULUM, 0.055, from_angle=-1.0, until=5.0)
     reversals = [event for event in motion.events if event.name == "reversal"]
@@ -134,7 +137,7 @@ def test_coasting_until_standstill_ends_there():
     assert len(motion.frame()) == motion.time.size
 
 
-def test_a_start_runs_up_to_steady_running_with_the_motor_s_work():
+def test_start_ends_in_running_with_the_motors_work():
     scene = ks.Scene(SAW, 1.0, loads=ks.Gravity())
     motion = ks.drive.start(scene, MOTOR, 100.0, from_angle=0.4)
     steady = ks.drive.steady(scene, MOTOR, 100.0)
@@ -146,7 +149,7 @@ def test_a_start_runs_up_to_steady_running_with_the_motor_s_work():
     assert np.abs(left).max() < 1e-10 * np.abs(motion.solution.balancing_torque).max()
 
 
-def test_a_machine_in_periodic_running_stays_there_over_time():
+def test_periodic_running_is_kept_over_time():
     scene = ks.Scene(SAW, 1.0, loads=(ks.Gravity(), ks.Torque(-500.0, on="crank")))
     steady = ks.drive.steady(scene, MOTOR, 30.0, angles=[0.0])
     motion = ks.drive.coast(scene, 30.0, 0.0, steady.speed[0], 2.0 * steady.duration, MOTOR)
@@ -161,7 +164,7 @@ BALANCED = shipped("sawframe_2r63").variants["cam-cosine"].scene
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("angle", "words"), [(2.3, "it does not start"), (math.pi / 2, "it starts and stops after")])
-def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
+def test_balanced_saw_does_not_start_against_springs(angle, words):
     with pytest.raises(ks.DriveError, match=words) as caught:
         ks.drive.start(BALANCED, MOTOR, 1000.0, from_angle=angle)
     assert "What helps: a motor with" in str(caught.value)
@@ -193,14 +196,75 @@ def test_what_cannot_be_followed_is_refused(call, words):
         call()
 
 
-def test_a_machine_without_inertia_where_it_begins_is_refused():
-    massless = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), 1.0)
-    with pytest.raises(ks.DriveError, match="no inertia at crank angle 0 deg"):
-        ks.drive.coast(massless, until=1.0)
-
-
 def test_a_motion_into_a_gap_ends_with_the_gap():
     rocking = ks.Scene(ks.four_bar(0.6, 0.8, 0.3, rocker_pivot=(0.7, 0.4), crank=ks.Link(1.0, 0.3)), 1.0)
     angle = next(a for a in np.linspace(0.0, 6.0, 25) if np.all(rocking.solve(a, on_gap="nan").dynamics.closed))
     with pytest.raises((ks.AssemblyError, ks.DriveError)):
         ks.drive.coast(rocking, 0.0, float(angle), 5.0, 10.0)
+
+
+# Motion over time
+
+
+DISC = ks.Scene(
+    ks.Mechanism("disc", ks.Crank(0.1, ks.Link(inertia=3.0)), ()), 1.0, loads=(ks.Torque(-6.0, on="crank"),)
+)
+
+
+@pytest.fixture(scope="module")
+def coasting():
+    return ks.drive.coast(DISC, 1.0, from_speed=3.0, until="standstill")
+
+
+def test_coasting_ends_at_rest_with_energy_spent(coasting):
+    last = coasting.events[-1]
+    assert (last.name, last.time, last.crank_angle) == ("standstill", pytest.approx(2.0), pytest.approx(3.0))
+    assert coasting.kinetic_energy == pytest.approx(2.0 * coasting.speed**2, rel=1e-12)
+    assert coasting.energy_drift < 1e-9 * 18.0
+    assert "standstill" in repr(coasting)
+
+
+def test_the_table_has_a_row_for_each_time(coasting):
+    table = coasting.at(5).frame()
+    assert table["time [s]"].tolist() == pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0])
+    assert table["load_torque [N m]"].tolist() == pytest.approx([6.0] * 5)
+
+
+def test_times_beyond_the_motion_are_refused(coasting):
+    with pytest.raises(ks.ParameterError, match="time must lie between 0 and 2 s"):
+        coasting.at([0.0, 2.5])
+
+
+# Whether a machine that coasts comes to a standstill at all
+
+
+RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
+
+
+@pytest.mark.parametrize(
+    ("scene", "speed", "motor", "words"),
+    [
+        (ks.Scene(PUMP, 1.0), 3.0, None, "give back all that they take"),
+        (ks.Scene(PUMP, 1.0, loads=ks.Torque(2.0, on="crank"), friction=RUBS), 9.0, None, "times the kinetic energy"),
+        (ks.Scene(PUMP, 1.0), -30.0, ks.drive.Motor.linear(100.0, 50.0, transmission=-2.0), "its motor keeps it"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 60.0, DISC_MOTOR, "its motor keeps it running"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 4.0, DISC_MOTOR, "times the kinetic energy"),
+    ],
+)
+def test_a_machine_that_runs_on_never_stands_still(scene, speed, motor, words):
+    with pytest.raises(ks.errors.DriveError, match=f"never comes to a standstill: .*{words}"):
+        ks.drive.coast(scene, 5.0, from_speed=speed, until="standstill", motor=motor)
+
+
+@pytest.mark.parametrize("speed", [2.0, -2.0])
+def test_disc_with_friction_stops_by_its_momentum(speed):
+    disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(50.0, 0.0, 3.0)), ())
+    scene = ks.Scene(disc, 1.0, loads=ks.Gravity(10.0), friction={"O": ks.PinFriction(0.1, 0.03)})
+    motion = ks.drive.coast(scene, 1.0, from_speed=speed, until="standstill")
+    assert motion.time[-1] == pytest.approx(4.0 * 2.0 / (0.1 * 0.03 * 500.0), rel=1e-12)
+    assert motion.friction_energy[-1] == pytest.approx(0.5 * 4.0 * speed**2, rel=1e-12)
+
+
+def test_a_motor_against_the_motion_stops_it():
+    motion = ks.drive.coast(ks.Scene(WHEEL, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
+    assert motion.events[-1].name == "standstill"

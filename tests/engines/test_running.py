@@ -13,9 +13,9 @@ from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
+from support.case_files import shipped
 from support.every import every
 from support.graphs import COMPILED, WAYS, Case
-from support.shipped import shipped
 
 
 def bounds_of(graph, outputs, values, angle=0.0):

@@ -9,7 +9,7 @@ import kinetostatics as ks
 from kinetostatics.engines.engines import Kernels
 from kinetostatics.engines.series import harmonic_series
 from kinetostatics.studies import needs as ingredients
-from support.needed import MECHANISMS, TURN, alone, change, cranked, solved
+from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.operations import BY_DESIGN, made
 from kinetostatics.engines.trace import Graph, needed, operations
 from support import graphs
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 ANGLE = np.linspace(0.1, 6.0, 5)
 

@@ -14,8 +14,8 @@ from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.places import PLACES
 from support.bounded import FAMILIES, errors, solution
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 MORE = 1.0 + 1e-12
 """For the rounding of bounds themselves."""

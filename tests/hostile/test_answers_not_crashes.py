@@ -42,7 +42,7 @@ def follower(request):
 
 
 @pytest.mark.parametrize("tight", [False, True])
-def test_a_table_over_the_travel_of_a_follower_has_bounds_that_hold(follower, tight):
+def test_follower_table_bounds_hold(follower, tight):
     bounds, law = follower.error_bound("balancing_torque", tight=tight), ks.laws.cosine(0.01, 0.05)
     for angle, torque, bound in zip(TURN, follower.balancing_torque, bounds, strict=True):
         place, rate, second = (Fraction(float(part)) for part in law(angle)[:3])
@@ -54,7 +54,7 @@ def test_a_table_over_the_travel_of_a_follower_has_bounds_that_hold(follower, ti
         assert bound < 1e-13
 
 
-def test_uncertainty_and_hand_calculation_of_such_a_table_are_given(follower):
+def test_follower_table_has_uncertainty_and_steps(follower):
     found = follower.uncertainty("balancing_torque", {"follower.mass": 0.1})
     assert np.isfinite(found.total).all()
     assert found.rounding.max() < 1e-13
@@ -84,7 +84,7 @@ LONGEST = np.sqrt(0.2481**2 + 0.02**2) - 0.2
 
 @pytest.mark.slow_start
 @pytest.mark.parametrize("goal", ["range slider_position", "largest balancing_torque", "mean balancing_torque"])
-def test_the_best_design_reaches_the_end_of_the_table_and_runs_everywhere(goal):
+def test_best_design_reaches_the_end_of_the_table(goal):
     found = ks.design.optimise(machine(), CRANK, maximise=goal)
     assert dict(found.values)["crank_length"] == pytest.approx(LONGEST, rel=1e-8)
     assert found.active == ("largest slider_position <= 0.2481 m",)
@@ -92,7 +92,7 @@ def test_the_best_design_reaches_the_end_of_the_table_and_runs_everywhere(goal):
 
 
 @pytest.mark.slow_start
-def test_both_ends_of_a_table_hold_a_design_of_two_lengths():
+def test_both_table_ends_limit_two_lengths():
     found = ks.design.optimise(machine(), BOTH, maximise="mean balancing_torque")
     crank, coupler = dict(found.values)["crank_length"], dict(found.values)["coupler_length"]
     assert np.sqrt((coupler + crank) ** 2 - 0.02**2) == pytest.approx(0.2481, rel=1e-8)
@@ -103,14 +103,14 @@ def test_both_ends_of_a_table_hold_a_design_of_two_lengths():
 
 
 @pytest.mark.slow_start
-def test_searches_that_begin_outside_of_the_table_come_to_the_same_design():
+def test_searches_from_outside_find_the_same_design():
     inside = ks.design.optimise(machine(), CRANK, maximise="mean balancing_torque")
     outside = ks.design.optimise(machine(crank=0.06), CRANK, maximise="mean balancing_torque")
     assert dict(outside.values)["crank_length"] == pytest.approx(dict(inside.values)["crank_length"], rel=1e-8)
 
 
 @pytest.mark.slow
-def test_every_start_of_a_search_over_a_table_comes_to_an_end():
+def test_every_start_over_a_table_ends():
     found = ks.design.optimise(machine(), BOTH, maximise="mean balancing_torque", starts=4)
     assert found.starts == pytest.approx([max(found.starts)] * 4, rel=1e-7)
 
@@ -122,7 +122,7 @@ def test_a_front_of_designs_within_a_table_is_found():
 
 
 @pytest.mark.slow
-def test_limits_asked_for_hold_beside_those_of_the_table():
+def test_limits_hold_beside_those_of_the_table():
     found = ks.design.optimise(
         machine(), BOTH, maximise="mean balancing_torque", limits=["largest slider_position <= 0.24 m"]
     )
@@ -130,7 +130,7 @@ def test_limits_asked_for_hold_beside_those_of_the_table():
 
 
 @pytest.mark.slow_start
-def test_a_design_that_cannot_be_mended_ends_in_an_error_with_the_path_that_leads_there():
+def test_unmendable_design_names_the_path():
     with pytest.raises(
         ks.DesignError, match=r"crank_length = 0\.06: table over travel.*bounds of crank_length"
     ) as told:
@@ -139,7 +139,7 @@ def test_a_design_that_cannot_be_mended_ends_in_an_error_with_the_path_that_lead
 
 
 @pytest.mark.slow
-def test_a_robust_design_keeps_every_machine_of_its_spread_within_the_table():
+def test_robust_design_stays_within_the_table():
     spread = ks.design.Spread(0.05, {"crank_length": "normal 0 % +- 3 %"}, samples=64)
     found = ks.design.optimise(machine(), CRANK, maximise="mean balancing_torque", robust=spread)
     values = ks.design.over_spread(found.scene, "mean balancing_torque", spread, samples=64)
@@ -149,7 +149,7 @@ def test_a_robust_design_keeps_every_machine_of_its_spread_within_the_table():
 
 
 @pytest.mark.slow
-def test_a_spread_that_leaves_the_table_whatever_varies_is_named():
+def test_spread_that_leaves_the_table_is_named():
     spread = ks.design.Spread(0.05, {"crank_length": "normal 0 % +- 3 %"}, samples=64)
     with pytest.raises(ks.DesignError, match=r"within the spread of crank_length fails: table over travel"):
         ks.design.optimise(machine(0.0475), {"slider.mass": (0.5, 2.0)}, minimise="largest A", robust=spread)
@@ -159,7 +159,7 @@ def test_a_spread_that_leaves_the_table_whatever_varies_is_named():
 
 
 @pytest.mark.slow
-def test_without_a_compiler_many_angles_are_computed_by_numpy():
+def test_many_angles_work_without_a_compiler():
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     out, errors = run(
         "import numpy as np, kinetostatics as ks\n"
@@ -190,7 +190,7 @@ def test_without_a_compiler_sweeps_have_their_rows():
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")  # so short a coupler has too large an inertia
-def test_a_command_whose_designs_all_fail_does_not_end_with_success(capsys):
+def test_command_with_failed_designs_reports_failure(capsys):
     assert main(["sweep", "compressor", "--vary", "coupler_length=0.01..0.02 m:3", "--angles", "24"]) == 2
     assert "all 3 designs failed: crank-slider cannot be assembled" in capsys.readouterr().err
     assert main(["sweep", "compressor", "--vary", "coupler_length=0.01..0.2 m:3", "--angles", "24"]) == 0
@@ -308,7 +308,7 @@ def with_group(group, crank=0.05):
 
 @pytest.mark.parametrize(("group", "message"), WRONG)
 @pytest.mark.parametrize("on_gap", ["raise", "nan"])
-def test_groups_that_do_less_than_they_declare_are_refused_when_solved(group, message, on_gap):
+def test_incomplete_groups_are_refused_when_solved(group, message, on_gap):
     with pytest.raises(ks.ParameterError, match=message):
         ks.solve(with_group(group), TURN, crank_speed=10.0, on_gap=on_gap).reaction("O")
 
@@ -337,7 +337,7 @@ class NeverKnows(Own):
         return np.full_like(placement.angle, np.nan)
 
 
-def test_a_closure_that_is_always_one_is_refused_where_the_group_has_no_position():
+def test_constant_closure_without_position_is_refused():
     within = ks.solve(with_group(AlwaysCloses), TURN, crank_speed=10.0)
     assert np.isfinite(within.balancing_torque).all()
     with pytest.raises(ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ such"):
@@ -357,7 +357,7 @@ class WithoutWords(Own):
         return None
 
 
-def test_a_group_that_gives_no_requirement_is_named_where_it_does_not_close():
+def test_missing_requirement_names_the_group():
     with pytest.raises(ks.AssemblyError, match="the closure of WithoutWords is negative there"):
         ks.solve(with_group(WithoutWords, 0.3), TURN, crank_speed=10.0)
 
@@ -381,7 +381,7 @@ IDLE = {
 
 
 @pytest.mark.parametrize(("mechanism", "load"), IDLE.values(), ids=IDLE)
-def test_loads_that_do_nothing_take_no_torque_in_any_way(mechanism, load):
+def test_idle_loads_take_no_torque(mechanism, load):
     bare, loaded = ks.Scene(mechanism, 10.0), ks.Scene(mechanism, 10.0, loads=load)
     expected, found = bare.solve(TURN), loaded.solve(TURN)
     assert np.array_equal(found.balancing_torque, expected.balancing_torque)
@@ -416,7 +416,7 @@ def test_the_seed_of_tolerances_is_looked_at():
 
 @pytest.mark.parametrize("method", ["sobol", "latin_hypercube", "random", "grid"])
 @pytest.mark.parametrize("name", [None, 1, 1.5, ("a",), b"x"])
-def test_parameters_of_designs_that_are_no_names_are_refused(method, name):
+def test_design_parameters_must_be_names(method, name):
     given = ({name: "1..2 kg:2"},) if method == "grid" else ({name: "1..2 kg"}, 4)
     with pytest.raises(ks.ParameterError, match="a parameter must be a name"):
         getattr(ks.designs, method)(*given)
@@ -451,7 +451,7 @@ def test_methods_that_take_a_name_refuse_all_else(method, name):
 
 
 @pytest.mark.parametrize("names", [["O", "A"], ("O", "A"), {"O", "A"}, np.array(["O", "A"])])
-def test_several_names_are_to_be_asked_for_one_at_a_time(names):
+def test_several_names_are_refused_at_once(names):
     with pytest.raises(ks.QuantityError, match="ask for one at a time"):
         SCENE.solve(8).reaction(names)
 
@@ -516,7 +516,7 @@ def test_variants_are_asked_for_by_name(name):
 
 
 @pytest.mark.parametrize("given", [None, SCENE, "saw", [], 1.5])
-def test_two_masses_replace_couplers_of_mechanisms_only(given):
+def test_two_masses_need_a_mechanism(given):
     with pytest.raises(ks.ParameterError, match="mechanism must be a Mechanism"):
         ks.two_mass_coupler(given)
 
@@ -551,7 +551,7 @@ def test_arrays_that_no_memory_holds_are_refused(taken, numbers):
         taken(numbers)
 
 
-def test_designs_and_angles_that_together_take_all_memory_are_refused():
+def test_designs_times_angles_are_limited():
     many = ks.crank_slider(np.full((10**5, 1), 0.05), 0.2)
     with pytest.raises(ks.ParameterError, match="designs times crank angles must be at most"):
         ks.solve(many, np.linspace(0.0, 6.0, 10**5), crank_speed=30.0)
@@ -577,7 +577,7 @@ def test_a_backend_that_is_none_is_named(backend, code):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("backend", ["bogus", "module://nope"])
-def test_the_command_line_draws_its_files_whatever_backend_is_named(backend, tmp_path):
+def test_command_line_draws_with_any_backend(backend, tmp_path):
     done = subprocess.run(
         [sys.executable, "-m", "kinetostatics", "plot", "compressor", "--out", str(tmp_path)],
         env=os.environ | {"MPLBACKEND": backend},

@@ -95,7 +95,7 @@ FIELDS = {
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=[f"{n}-{type(x).__name__}" for n, x in enumerate(NO_NUMBERS)])
 @pytest.mark.parametrize("field", FIELDS)
-def test_what_is_no_number_is_refused_by_the_name_of_its_field(field, value):
+def test_non_numbers_are_refused_by_field(field, value):
     make, name, _ = FIELDS[field]
     with pytest.raises(ks.ParameterError, match=f"{name} must"):
         make(value)
@@ -203,7 +203,7 @@ def test_what_cannot_be_is_refused_in_one_sentence(make, message):
         (lambda: ks.plots.law_motion(laws.cosine(1, 2), ax=[1, 2]), "ax must be 4 Axes"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused_in_one_sentence(make, message):
+def test_impossible_drawings_are_refused(make, message):
     with pytest.raises(ks.ParameterError, match=message):
         make()
 
@@ -244,7 +244,7 @@ EXPORTS = [
 
 
 @pytest.mark.parametrize(("wrong", "message"), EXPORTS)
-def test_exports_that_cannot_be_are_refused_and_write_nothing(tmp_path, monkeypatch, wrong, message):
+def test_impossible_exports_write_nothing(tmp_path, monkeypatch, wrong, message):
     monkeypatch.chdir(tmp_path)
     given = {"path": "cam.svg", "roller_radius": 0.05, "points": 60} | wrong
     with pytest.raises((ks.ParameterError, ks.KinetostaticsError), match=message):
@@ -291,7 +291,7 @@ def test_a_law_that_fails_is_refused():
         ks.cams.from_law(lambda phi: 1 / 0)
 
 
-def test_a_law_that_is_farthest_behind_the_crank_is_told_its_phase():
+def test_shifted_law_is_given_its_phase():
     rise, back = laws.cycloidal(1.7, 2.3, np.pi), laws.cycloidal(2.3, 1.7, np.pi)
     law = laws.joined(rise, back)
     with pytest.raises(ks.ParameterError, match=r"farthest near 0 deg .* at 180") as caught:
@@ -301,6 +301,6 @@ def test_a_law_that_is_farthest_behind_the_crank_is_told_its_phase():
 
 
 @pytest.mark.parametrize("angle", ["a", [1.0, "b"], {}])
-def test_crank_angles_of_a_law_that_are_no_numbers_are_refused(angle):
+def test_law_angles_must_be_numbers(angle):
     with pytest.raises(ks.ParameterError, match="crank angles must be numbers"):
         laws.cosine(0.3, 2.0)(angle)

@@ -39,7 +39,7 @@ def test_names_must_be_texts(name, value):
 
 @pytest.mark.parametrize("value", NUMBERS, ids=range(len(NUMBERS)))
 @pytest.mark.parametrize("name", ["mass", "travel", "stiffness", "base_radius", "pressure_angle", "roller_radius"])
-def test_numbers_of_a_torque_balancing_cam_are_refused_or_make_one(drive, name, value):
+def test_torque_cam_numbers_are_checked(drive, name, value):
     given = {"mass": 0.3, "travel": 0.012, name: value}
     if value is None and name in ("stiffness", "base_radius", "roller_radius"):
         return
@@ -67,10 +67,3 @@ def test_machines_that_no_cam_balances_are_refused(drive, name):
     scene, text = machines(drive)[name]
     with pytest.raises(ks.KinetostaticsError, match=text):
         ks.design.torque_balancing_cam(scene, mass=0.3, travel=0.012)
-
-
-@pytest.mark.parametrize("pair", [("R", "R"), ("A", "R")])
-def test_two_followers_of_one_name_are_refused_by_name(pair):
-    groups = tuple(ks.RollerFollower(LAW, pin=name) for name in pair)
-    with pytest.raises(ks.ParameterError, match="'follower' a second time"):
-        ks.Mechanism("twins", ks.Crank(None), groups)

@@ -62,7 +62,7 @@ def test_all_that_is_wrong_is_said_at_once():
 
 @every(("make", "name"), NUMBERS)
 @every("value", [-0.1, np.nan, np.inf, -np.inf, "0.1", [0.1], 1e200, 1j, object()])
-def test_coefficients_and_sizes_that_no_machine_has_are_refused(make, name, value):
+def test_impossible_coefficients_are_refused(make, name, value):
     with pytest.raises(ks.ParameterError, match=name):
         make(value)
 
@@ -79,7 +79,7 @@ def test_a_roller_that_would_not_turn_is_refused():
 
 
 @pytest.mark.parametrize("speed", [0.0, 0, np.array([1.0, 0.0, 2.0, 3.0, 4.0])])
-def test_a_machine_that_neither_moves_nor_begins_to_is_refused(speed):
+def test_resting_machine_without_sense_is_refused(speed):
     with pytest.raises(ks.ParameterError, match="crank_speed and crank_acceleration are both 0"):
         ks.solve(PUMP, ANGLES, crank_speed=speed, friction={"O": PIN})
 
@@ -99,7 +99,7 @@ def test_unknown_paths_and_joints_are_refused():
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every("mu", [1e-300, 1e-12, 0.999, 5.0, 1e6, 1e140])
 @every("name", ["O", "A", "B", "guide"])
-def test_any_coefficient_gives_numbers_or_is_said_to_jam(mu, name):
+def test_any_coefficient_solves_or_jams(mu, name):
     friction = ks.GuideFriction(mu) if name == "guide" else ks.PinFriction(mu, 0.01)
     try:
         s = ks.solve(PUMP, ANGLES, crank_speed=3.0, loads=ks.Gravity(), friction={name: friction})

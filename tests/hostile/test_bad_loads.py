@@ -44,7 +44,7 @@ NO_NUMBER_CASES = [
 
 
 @every(("field", "what"), NO_NUMBER_CASES)
-def test_what_is_no_number_is_refused_by_the_name_of_its_field(field, what):
+def test_load_numbers_are_refused_by_field(field, what):
     name = field.partition(".")[2].partition(" ")[0]
     with pytest.raises(ks.ParameterError, match=name):
         MAKERS[field](NO_NUMBERS[what])
@@ -53,7 +53,7 @@ def test_what_is_no_number_is_refused_by_the_name_of_its_field(field, what):
 @pytest.mark.parametrize(
     "field", [name for name in MAKERS if "stiffness" in name or "coefficient" in name or "length" in name]
 )
-def test_negative_stiffness_damping_and_length_are_refused(field):
+def test_negative_stiffness_and_damping_are_refused(field):
     with pytest.raises(ks.ParameterError, match="at least 0"):
         MAKERS[field](-1.0)
 
@@ -74,7 +74,7 @@ PLACES = {
 
 
 @every("what", PLACES)
-def test_what_is_no_point_is_refused_with_the_forms_of_points(what):
+def test_wrong_points_name_the_allowed_forms(what):
     for make in (lambda at: ks.Force(1.0, at=at), lambda at: ks.PointForce(1.0, between=("A", at))):
         with pytest.raises(ks.ParameterError, match=r"(at|between 2) must be a"):
             make(PLACES[what])
@@ -126,7 +126,7 @@ FORCES = {
 
 @every("what", FORCES)
 @every("kind", ["Force", "Torque", "ProcessForce"])
-def test_a_function_of_the_motion_that_reads_a_force_is_told_what_it_may_read(kind, what):
+def test_load_reading_a_force_learns_what_it_may_read(kind, what):
     item = {
         "Force": lambda: ks.Force(FORCES[what], at="B"),
         "Torque": lambda: ks.Torque(FORCES[what], on="rocker"),
@@ -186,7 +186,7 @@ def test_arrays_over_other_angles_are_refused():
 
 
 @pytest.mark.parametrize("angles", [[0.1], [0.1, 0.2], np.linspace(0.0, 6.0, 50)], ids=len)
-def test_an_array_of_one_value_is_that_value_at_every_crank_angle(angles):
+def test_single_value_array_is_a_constant(angles):
     one, plain = (
         ks.solve(six_bar(), angles, crank_speed=1.0, loads=ks.Torque(value, on="rocker"))
         for value in (np.array([3.0]), 3.0)

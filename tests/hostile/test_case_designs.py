@@ -3,7 +3,7 @@
 import pytest
 
 import kinetostatics as ks
-from support.designs import saw_with
+from support.case_files import saw_with
 
 HEAD = '[design.one]\nkind = "optimum"\nvariant = "cam-circle"\n'
 VARY = 'vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"] }\n'

@@ -83,8 +83,3 @@ def test_a_wrong_drive_is_named_with_its_key(tmp_path, text, message):
 def test_a_drive_that_is_no_table_is_named(tmp_path, text):
     (found,) = problems(tmp_path, HEAD.replace("[variants.a.drive]", f"drive = {text}"))
     assert found.startswith("variants.a.drive")
-
-
-def test_all_that_no_motor_can_be_is_told_at_once(tmp_path):
-    (found,) = problems(tmp_path, HEAD + kloss(overload="1", transmission="0"))
-    assert "overload must be greater than 1, got 1.0; transmission must not be 0" in found

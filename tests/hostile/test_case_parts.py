@@ -171,14 +171,14 @@ WRONG = {
 
 
 @every("name", WRONG)
-def test_a_wrong_group_or_load_is_named_by_its_key_with_what_is_allowed(tmp_path, name):
+def test_wrong_part_is_named_by_key_and_allowed(tmp_path, name):
     text, message = WRONG[name]
     found = problems(tmp_path, HEAD + CHAIN + text + "\n")
     assert any(line.startswith(message) or message in line for line in found), found
     assert all(len(line) < 600 for line in found)
 
 
-def test_all_that_is_wrong_with_a_chain_is_said_at_once(tmp_path):
+def test_all_faults_of_a_chain_are_listed(tmp_path):
     """Of tables, then of files and of what loads name: a file that is missing hides no other problem."""
     keys = [
         ("groups[1].coupler_length", 'coupler_length = "0.4 m"', 'coupler_length = "0.4 kg"'),
@@ -201,7 +201,7 @@ def test_all_that_is_wrong_with_a_chain_is_said_at_once(tmp_path):
     ]
 
 
-def test_what_is_wrong_in_common_is_said_once_where_it_stands(tmp_path):
+def test_fault_in_common_is_reported_once(tmp_path):
     text = (HEAD + CHAIN + FORCE).replace("variants.a", "common").replace('"1 N"', '{ file = "none.csv" }')
     (found,) = problems(tmp_path, text.replace('"0.4 m"', '"4 dm"') + "[variants.a]\n[variants.b]\n")
     assert found.startswith("common.loads[1].value: ")
@@ -280,7 +280,7 @@ WRONG_TABLES = {
 
 
 @every("name", WRONG_TABLES)
-def test_a_wrong_table_is_refused_with_key_file_and_row(tmp_path, name):
+def test_wrong_table_names_key_file_and_row(tmp_path, name):
     content, options, message = WRONG_TABLES[name]
     (tmp_path / "t.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
     entry = f'{{ file = "t.csv"{", " if options else ""}{options} }}'

@@ -5,8 +5,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps import designs
+from support.case_files import BADLY_WRITTEN
 from support.every import every
-from support.written import BADLY_WRITTEN
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -35,7 +35,7 @@ def case_file(folder, text):
 
 
 @every("number", BADLY_WRITTEN)
-def test_a_badly_written_number_in_a_case_file_is_refused_with_what_would_be_right(tmp_path, number):
+def test_badly_written_number_suggests_the_right_one(tmp_path, number):
     path = case_file(tmp_path, CASE.replace('"2 m"', f'"{number} m"'))
     with pytest.raises(ks.CaseError, match=r"variants.a.coupler_length must be text") as caught:
         ks.load_case(path)
@@ -80,7 +80,7 @@ BAD_CASES = {
 
 
 @every("name", BAD_CASES)
-def test_a_case_file_that_is_none_is_refused_with_its_key(tmp_path, name):
+def test_impossible_case_file_names_its_key(tmp_path, name):
     text, message = BAD_CASES[name]
     with pytest.raises(ks.CaseError, match=message) as caught:
         ks.load_case(case_file(tmp_path, text))
@@ -107,7 +107,7 @@ NOT_A_TURN = {
 
 
 @every("name", NOT_A_TURN)
-def test_a_table_of_force_that_is_not_over_its_period_is_refused(tmp_path, name):
+def test_force_table_must_cover_its_period(tmp_path, name):
     angles, period, message = NOT_A_TURN[name]
     rows = (f"{angle}, {1 + place}" for place, angle in enumerate(angles))
     (tmp_path / "force.csv").write_text("\n".join(["crank_angle [deg], force [N]", *rows]))

@@ -38,12 +38,12 @@ def filled(command, **values):
 
 @pytest.mark.parametrize("spelling", SPELLINGS)
 @pytest.mark.parametrize("command", WRITERS)
-def test_no_command_writes_over_what_it_reads_whatever_its_name(saw, idle, command, spelling, capsys):
+def test_no_command_overwrites_its_input(saw, idle, command, spelling, capsys):
     message = refused(filled(command, case=saw, out=named(saw, spelling)), capsys)
     assert "is read as input and would be replaced; give another name" in message
 
 
-def test_precision_does_not_write_over_a_table_that_happens_to_have_its_name(saw, idle, capsys):
+def test_precision_keeps_tables_of_the_same_name(saw, idle, capsys):
     message = refused(["precision", saw, "--out", saw.parent], capsys)
     assert "saw_precision.csv is read as input" in message
 
@@ -73,7 +73,7 @@ def places(tmp_path):
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("command", ["run", "sweep"])
-def test_files_that_cannot_be_written_are_refused_before_the_work(saw, places, idle, command, place, capsys):
+def test_unwritable_files_are_refused_first(saw, places, idle, command, place, capsys):
     name, text = PLACES[place]
     assert text in refused(filled(command, case=saw, out=places / name), capsys)
 
@@ -88,7 +88,7 @@ FOLDERS = {
 
 @pytest.mark.parametrize("below", ["", "deeper/still"])
 @pytest.mark.parametrize("command", FOLDERS)
-def test_folders_that_cannot_be_made_are_refused_before_the_work(saw, idle, command, below, capsys):
+def test_impossible_folders_are_refused_first(saw, idle, command, below, capsys):
     file = saw.parent / "file"
     file.write_text("old")
     message = refused([text.format(case=saw, out=file / below) for text in FOLDERS[command]], capsys)

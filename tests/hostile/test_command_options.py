@@ -49,7 +49,7 @@ def test_options_that_cannot_be_are_refused_in_a_line(name, capsys):
     assert message in captured.err.splitlines()[-1]
 
 
-def test_so_many_angles_are_refused_with_the_memory_that_they_take(capsys):
+def test_too_many_angles_name_their_memory(capsys):
     with pytest.raises(SystemExit):
         main(["run", "saw", "--angles", "1000000000"])
     assert "must be at most 10000000, as 1000000000 would take 1000 GB of memory" in capsys.readouterr().err
@@ -73,7 +73,7 @@ UNKNOWN = {
 
 
 @pytest.mark.parametrize("name", UNKNOWN)
-def test_names_that_are_not_known_are_refused_before_the_work(saw, idle, name, capsys):
+def test_unknown_names_are_refused_first(saw, idle, name, capsys):
     arguments, message = UNKNOWN[name]
     assert message in refused([text.format(case=saw) for text in arguments], capsys)
 
@@ -85,7 +85,7 @@ def test_names_that_are_not_known_are_refused_before_the_work(saw, idle, name, c
         (["sweep", "{case}", *VARY, "--output", "largest forc"], "quantity is 'forc', allowed: "),
     ],
 )
-def test_quantities_that_are_not_known_are_refused_before_anything_is_written(saw, arguments, message, capsys):
+def test_unknown_quantities_write_nothing(saw, arguments, message, capsys):
     out = saw.parent / "out"
     assert message in refused([*(text.format(case=saw) for text in arguments), "--out", out], capsys)
     assert not out.exists()

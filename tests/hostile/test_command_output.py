@@ -12,11 +12,11 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.held import held
+from support.commands import held
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
-def test_letters_that_the_output_does_not_have_are_replaced(saw, encoding, monkeypatch):
+def test_unencodable_output_is_replaced(saw, encoding, monkeypatch):
     raw = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw, encoding=encoding, errors="strict"))
     assert main(["run", str(saw), "--variant", "plain", "--angles", "8"]) == 0
@@ -24,7 +24,7 @@ def test_letters_that_the_output_does_not_have_are_replaced(saw, encoding, monke
     assert title == ks.load_case(saw).title.encode(encoding, "replace").decode(encoding)
 
 
-def test_errors_with_letters_that_the_output_does_not_have_are_told(monkeypatch):
+def test_errors_with_unencodable_letters_are_printed(monkeypatch):
     raw = io.BytesIO()
     monkeypatch.setattr(sys, "stderr", io.TextIOWrapper(raw, encoding="ascii", errors="strict"))
     assert main(["run", "säge"]) == 2
@@ -33,7 +33,7 @@ def test_errors_with_letters_that_the_output_does_not_have_are_told(monkeypatch)
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_streams_that_are_closed_end_no_command_with_a_traceback(saw, stream, monkeypatch, capsys):
+def test_closed_streams_cause_no_traceback(saw, stream, monkeypatch, capsys):
     monkeypatch.setattr(sys, stream, None)
     assert main(["run", str(saw), "--variant", "plan"]) == 2
     captured = capsys.readouterr()
@@ -60,7 +60,7 @@ def test_a_full_disk_is_told_in_a_line(saw):
 @pytest.mark.parametrize(
     ("how", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
-def test_a_sweep_that_is_stopped_says_so_in_a_line_and_leaves_no_process(saw, how, status, word):
+def test_stopped_sweep_says_so_and_leaves_no_process(saw, how, status, word):
     """The signal goes to all its processes, as from a terminal, when one part is written and others wait."""
     vary = ["--vary", "slider.mass=600..700 kg:60000", "--variant", "plain", "--angles", "48", "--output", "rms O"]
     arguments = ["sweep", saw, *vary, "--workers", "1", "--out", saw.parent / "out"]

@@ -116,7 +116,7 @@ DAMAGE = {
 
 @pytest.mark.slow
 @every("name", DAMAGE)
-def test_a_part_that_is_not_as_it_was_written_is_made_anew(folder, expected, name):
+def test_a_damaged_part_is_made_anew(folder, expected, name):
     DAMAGE[name](part(folder))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", CacheWarning)
@@ -153,7 +153,7 @@ def test_one_warning_names_some_of_many(folder, expected):
     assert str(caught[0].message).endswith("and 1 more")
 
 
-def test_a_part_that_changes_while_the_sweep_runs_is_told(folder, monkeypatch):
+def test_a_part_changed_during_the_sweep_is_reported(folder, monkeypatch):
     part(folder, 2).unlink()
     put = Dataset._put
 
@@ -193,7 +193,7 @@ def test_a_manifest_of_other_values_is_another_sweep(folder, value):
         sweep(folder)
 
 
-def test_another_version_of_the_library_is_another_sweep(folder):
+def test_another_library_version_is_another_sweep(folder):
     record = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps(record | {"version": "0.0.1"}))
     with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in version;"):
@@ -282,7 +282,7 @@ def test_a_folder_that_may_not_be_written_is_refused(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="limits of POSIX")
-def test_a_full_disk_is_told_and_the_sweep_goes_on_later(tmp_path, expected):
+def test_full_disk_is_reported_and_sweep_resumes(tmp_path, expected):
     import resource
 
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -313,20 +313,20 @@ def together(monkeypatch, other):
     monkeypatch.setattr(dataset, "_create", late)
 
 
-def test_of_two_other_sweeps_that_start_together_the_second_is_refused(tmp_path, monkeypatch, expected):
+def test_second_of_two_simultaneous_sweeps_is_refused(tmp_path, monkeypatch, expected):
     together(monkeypatch, lambda: sweep(tmp_path))
     with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in designs"):
         sweep(tmp_path, DESIGNS * 1.1)
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
 
 
-def test_equal_sweeps_that_start_together_share_the_folder(tmp_path, monkeypatch, expected):
+def test_equal_simultaneous_sweeps_share_a_folder(tmp_path, monkeypatch, expected):
     together(monkeypatch, lambda: sweep(tmp_path))
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
 
 
-def test_where_there_are_no_hard_links_the_manifest_is_exclusive_too(tmp_path, monkeypatch, expected):
+def test_manifest_is_exclusive_without_hard_links(tmp_path, monkeypatch, expected):
     def refused(*_):
         raise OSError("no hard links")
 

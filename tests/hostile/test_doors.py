@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 import kinetostatics as ks
 from kinetostatics.views.figures import draw_case
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 mpl.use("agg")
 SAW = shipped("sawframe_2r63")
@@ -25,13 +25,13 @@ COUNTS = [-1, 0, 2.5, True, "many", None, math.nan, np.float64(3.0), np.int64(0)
 
 
 @every("count", COUNTS, ids=map(str, range(len(COUNTS))))
-def test_numbers_of_crank_angles_that_cannot_be_are_refused(count):
+def test_impossible_angle_counts_are_refused(count):
     for solve in (SAW.variant("plain").solve, lambda angles: SAW.solve("plain", angles=angles)):
         with pytest.raises(ks.ParameterError, match=r"^solve: angles must be (a whole number of at least 1|at most 1)"):
             solve(count)
 
 
-def test_numbers_of_crank_angles_may_be_integers_of_numpy():
+def test_angle_counts_may_be_numpy_integers():
     assert SAW.solve("plain", np.int16(8)).shape == (8,)
 
 
@@ -70,7 +70,7 @@ WANTED = {
 
 @every("other", OTHERS)
 @every("name", WANTED)
-def test_what_is_no_solution_is_refused_with_what_is_wanted(name, other):
+def test_functions_of_solutions_refuse_other_things(name, other):
     function, message = WANTED[name]
     with pytest.raises(ks.ParameterError) as caught:
         function(OTHERS[other])

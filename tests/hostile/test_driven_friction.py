@@ -1,15 +1,17 @@
-"""Drives with friction against an oracle of their own, and loads of which it is decided whether the speed matters."""
+"""Drives with friction against Newton's equations of all bodies, and loads that do or do not depend on the speed."""
 
 import math
 import re
 
 import numpy as np
 import pytest
+from scipy.integrate import simpson
 
 import kinetostatics as ks
-from support import friction_motion as oracle
+from support.friction_machines import Drawn
+from support.multibody import Body, CrankSlider, pin_on_crank
 
-CRANK, ROD = (1.5, 0.03, 0.01), (2.0, 0.12, 0.02)
+WEIGHT = (9.81, -math.pi / 2)
 HEAVY = ks.crank_slider(0.3, 0.5, slider=ks.Link(200.0))
 PUMP = ks.crank_slider(0.1, 0.35, slider=ks.Link(5.0))
 
@@ -36,14 +38,13 @@ KINKS = {
 def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
     scene = ks.Scene(HEAVY, 1.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.8)})
     motion = ks.drive.coast(scene, flywheel, from_angle=angle, from_speed=speed, until=1e-3)
-    rest = (0.0, 0.0, 0.0)
-    machine = oracle.crank_slider(0.3, 0.5, rest, rest, (200.0, 0.0, 0.0), {"guide": (0.8, None)}, flywheel=flywheel)
-    exact, _ = oracle.forces(machine(angle, speed), speed)
-    assert motion.acceleration[0] == pytest.approx(exact, rel=1e-12)
+    bodies, friction = {"slider": Body(200.0)}, {"guide": (0.8, None)}
+    machine = CrankSlider(pin_on_crank(0.3), False, 0.5, bodies=bodies, gravity=WEIGHT, friction=friction)
+    obeys(motion.at(motion.time[:1]), machine.system, flywheel)
 
 
 @pytest.mark.parametrize("step", [-4, -1, 0, 1, 4])
-def test_an_acceleration_is_found_where_the_guide_carries_nothing(step):
+def test_acceleration_at_zero_guide_force_is_found(step):
     force = 14078.237116336823 * (1.0 + step * 2.0**-52)
     rod = ks.Link(5.0, 0.2, 0.1)
     machine = ks.crank_slider(0.3, 0.5, coupler=rod, slider=ks.Link(200.0))
@@ -51,14 +52,17 @@ def test_an_acceleration_is_found_where_the_guide_carries_nothing(step):
     scene = ks.Scene(machine, 1.0, loads=[ks.Gravity(), ks.ProcessForce(force)], friction=friction)
     motion = ks.drive.coast(scene, 5.0, from_angle=1.427, from_speed=2.96, until=1e-7)
     assert abs(motion.solution.guide_force[0]) < 1e-7 * force
-    links = (0.0, 0.0, 0.0), (5.0, 0.2, 0.1), (200.0, 0.0, 0.0)
-    own = {"guide": (0.4, None), "O": 0.001}
-    known = oracle.crank_slider(0.3, 0.5, *links, own, push=lambda place: force, flywheel=5.0)
-    exact, _ = oracle.forces(known(1.427, 2.96), 2.96)
-    assert motion.acceleration[0] == pytest.approx(exact, rel=1e-12)
+    bodies, friction = (
+        {"coupler": Body(5.0, (0.2, 0.0), 0.1), "slider": Body(200.0)},
+        {"guide": (0.4, None), "O": 0.001},
+    )
+    machine = CrankSlider(
+        pin_on_crank(0.3), False, 0.5, bodies=bodies, gravity=WEIGHT, push=lambda place: force, friction=friction
+    )
+    obeys(motion.at(motion.time[:1]), machine.system, 5.0)
 
 
-def test_friction_that_truly_jams_says_where_and_which_flywheel_helps():
+def test_true_jamming_names_angle_and_flywheel():
     """The pin's lever mu radius, 0.3 m, is longer than the crank: its friction grows faster than inertia frees."""
     crank = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.1, 0.0))
     scene = ks.Scene(crank, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(1.5, 0.2)})
@@ -82,14 +86,14 @@ def _steady(value, crank_speed=10.0):
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])
-def test_a_function_of_the_crank_angle_alone_runs_without_a_motor(speed):
+def test_function_of_angle_runs_without_a_motor(speed):
     run = _steady(lambda motion: -100.0 * np.sin(np.mod(motion.crank_angle, 2.0 * np.pi)), speed)
     same = _steady(lambda motion: -1000.0 * motion.position("A")[1], speed)
     assert run.speed == pytest.approx(same.speed, rel=1e-12)
     assert run.energy_per_turn == pytest.approx(same.energy_per_turn, rel=1e-12)
 
 
-def test_a_function_of_the_position_alone_comes_to_no_standstill():
+def test_function_of_position_never_stands_still():
     """It gives back in a turn what it takes, which only a load that cannot depend on the speed surely does."""
     scene = ks.Scene(PUMP, 1.0, loads=ks.ProcessForce(lambda motion: np.round(0.0 * motion.slider_position) - 10.0))
     with pytest.raises(ks.DriveError, match="give back all that they take in a turn"):
@@ -129,78 +133,49 @@ def test_a_function_of_the_acceleration_is_refused(value):
         _steady(value)
 
 
-# motion against the oracle
-
-COASTING = {
-    "forwards": (0.35, 0.0, 0.1, None, 12.0, 0.4),
-    "backwards": (0.35, 0.03, 0.1, 0.02, -12.0, 0.4),
-    "short shoe": (0.25, -0.03, 0.2, 0.02, 9.0, 4.0),
-    "steep rod backwards": (0.2, 0.0, 0.3, 0.1, -9.0, 2.0),
-}
+# motion against Newton's equations of all bodies
 
 
-def _pump(length, offset, mu, half, speed):
-    """Mechanism with its friction, and what the oracle knows of it."""
-    links = {"crank": ks.Link(*CRANK), "coupler": ks.Link(*ROD), "slider": ks.Link(8.0)}
-    mechanism = ks.crank_slider(0.1, length, guide_offset=offset, **links)
-    friction = {"guide": ks.GuideFriction(mu, half), **{name: ks.PinFriction(mu, 0.02) for name in "OAB"}}
-    loads = [ks.Gravity(), ks.ProcessForce(lambda motion: -60.0 * np.sin(20.0 * motion.slider_position))]
-    own = {"guide": (mu, half), **dict.fromkeys("OAB", 0.02 * mu)}
-
-    def known(flywheel, torque=None):
-        def push(place):
-            return -60.0 * math.sin(20.0 * place)
-
-        slider = (8.0, 0.0, 0.0)
-        return oracle.crank_slider(0.1, length, CRANK, ROD, slider, own, push, offset, torque, flywheel)
-
-    return ks.Scene(mechanism, speed, loads=loads, friction=friction), known
-
-
-def _agrees(motion, known, angle, speed):
-    times = np.linspace(0.0, motion.time[-1], 5)
-    angles, speeds, lost = oracle.moved(known, angle, speed, times)
-    found = motion.at(times)
-    assert found.crank_angle == pytest.approx(angles, abs=1e-8)
-    assert found.speed == pytest.approx(speeds, abs=1e-7)
-    assert found.friction_energy[-1] == pytest.approx(lost[-1], rel=1e-7)
+def obeys(motion, system, flywheel, torque=lambda speed: 0.0):
+    """The motor gives what flywheel and machine take, and friction loses what the bodies' equations say."""
+    lost = motion.solution.friction_loss
+    for row in zip(motion.crank_angle, motion.speed, motion.acceleration, lost, strict=True):
+        angle, speed, acceleration, loss = map(float, row)
+        system.speed, system.acceleration = speed, acceleration
+        _, taken, _, losses = system.forces(angle)
+        size = abs(taken) + abs(flywheel * acceleration)
+        assert abs(taken + flywheel * acceleration - torque(speed)) < 1e-10 * size
+        assert float(sum(losses.values())) == pytest.approx(loss, rel=1e-9)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("length", "offset", "mu", "half", "speed", "angle"), COASTING.values(), ids=COASTING)
-def test_coasting_with_pins_and_guide_is_that_of_newtons_equations(length, offset, mu, half, speed, angle):
-    scene, known = _pump(length, offset, mu, half, speed)
-    _agrees(ks.drive.coast(scene, 0.4, angle, speed, until=0.1), known(0.4), angle, speed)
+@pytest.mark.parametrize("speed", [12.0, -9.0])
+@pytest.mark.parametrize("kind", ["slider", "lever", "yoke", "four-bar"])
+def test_coasting_obeys_newtons_equations(kind, speed):
+    drawn = Drawn(kind, 1)
+    motion = ks.drive.coast(drawn.scene, 4.0, 0.7, speed, until=0.1)
+    obeys(motion.at(5), drawn.system, 4.0)
+    fine = motion.at(2001)
+    step = fine.time[1] - fine.time[0]
+    assert simpson(fine.acceleration, dx=step) == pytest.approx(fine.speed[-1] - speed, abs=1e-5)
+    assert simpson(fine.speed, dx=step) == pytest.approx(fine.crank_angle[-1] - 0.7, abs=1e-7)
+    assert simpson(fine.solution.friction_loss, dx=step) == pytest.approx(motion.friction_energy[-1], rel=1e-4)
+    assert motion.energy_drift < 1e-9 * motion.kinetic_energy.max()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("half", "speed"), [(None, 9.0), (0.02, -9.0), (0.1, 7.0)])
-def test_coasting_with_a_slot_is_that_of_newtons_equations(half, speed):
-    lever = (4.0, 0.3, 0.2)
-    mechanism = ks.slotted_lever(0.15, pivot=(0.0, -0.3), crank=ks.Link(*CRANK), lever=ks.Link(*lever))
-    friction = {"slot": ks.SlotFriction(0.15, half), **{name: ks.PinFriction(0.1, 0.02) for name in ("O", "A", "O2")}}
-    scene = ks.Scene(mechanism, 1.0, loads=[ks.Gravity(), ks.Torque(-6.0, on="lever")], friction=friction)
-    own = {"slot": (0.15, half), **dict.fromkeys(("O", "A", "pivot"), 0.002)}
-    known = oracle.slotted_lever(0.15, (0.0, -0.3), CRANK, lever, own, torque=-6.0, flywheel=0.3)
-    _agrees(ks.drive.coast(scene, 0.3, 0.7, speed, until=0.1), known, 0.7, speed)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("way", [1.0, -1.0])
-def test_running_and_start_under_a_motor_obey_newtons_equations(way):
-    scene, known = _pump(0.35, 0.03, 0.1, 0.05, way)
-    motor = ks.drive.Motor.linear(200.0, 30.0, transmission=way)
-    machine = known(2.0, lambda speed: way * float(motor.torque(way * speed)))
-    run = ks.drive.steady(scene, motor, 2.0, angles=np.linspace(0.01, 6.2, 30))
-    started = ks.drive.start(scene, motor, 2.0, from_angle=0.7)
-    for motion, some in ((run, slice(None)), (started, slice(1, None, 9))):
-        rows = zip(motion.crank_angle[some].tolist(), motion.speed[some].tolist(), strict=True)
-        exact = np.array([oracle.forces(machine(*row), row[1])[0] for row in rows])
-        assert np.abs(motion.acceleration[some] - exact).max() < 1e-10 * np.abs(exact).max()
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_running_and_start_obey_newtons_equations(direction):
+    drawn, motor = Drawn("slider", 2), ks.drive.Motor.linear(400.0, 30.0, transmission=direction)
+    torque = lambda speed: direction * float(motor.torque(direction * speed))  # noqa: E731
+    run = ks.drive.steady(drawn.scene, motor, 2.0, angles=np.linspace(0.01, 6.2, 12))
+    started = ks.drive.start(drawn.scene, motor, 2.0, from_angle=0.7)
+    obeys(run, drawn.system, 2.0, torque)
+    obeys(started.at(started.time[1::40]), drawn.system, 2.0, torque)
     assert run.energy_per_turn == pytest.approx(run.load_energy_per_turn + run.friction_energy_per_turn, rel=1e-11)
     assert started.energy_drift < 1e-10 * started.kinetic_energy.max()
     wanted = 0.5 * run.fluctuation
-    again = run.with_flywheel(ks.drive.flywheel(scene, wanted, motor).inertia)
+    again = run.with_flywheel(ks.drive.flywheel(drawn.scene, wanted, motor).inertia)
     assert again.fluctuation == pytest.approx(wanted, rel=1e-6)
 
 

@@ -65,7 +65,7 @@ def test_machines_of_any_size(size):
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("angle", [0.0, math.pi / 2])
-def test_where_rounding_divides_rounding_nothing_is_taken_for_zero(angle):
+def test_rounding_over_rounding_is_not_zero(angle):
     link = ks.Link(2.0, 0.05, 0.01)
     folding = ks.crank_slider(0.3, 0.3, coupler=link, slider=link, assembly="open")
     bar = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0), coupler=link, rocker=link, assembly="open")

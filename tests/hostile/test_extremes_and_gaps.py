@@ -57,7 +57,7 @@ def usable_samples(solution, quantity, limits):
 
 @each_change_point
 @each_turn
-def test_extremes_beside_change_points_are_those_of_samples_that_have_digits(name, turn):
+def test_extremes_beside_change_points_equal_samples(name, turn):
     lengths, places = CHANGE_POINTS[name]
     solution = at_rest(four_bar(*lengths, np.radians(turn)))
     limits = [(place + turn) % 360 for place in places]
@@ -73,7 +73,7 @@ def test_extremes_beside_change_points_are_those_of_samples_that_have_digits(nam
 
 
 @each_change_point
-def test_reactions_that_grow_at_change_points_are_infinite_with_a_word(name):
+def test_growing_reactions_are_infinite_and_warned(name):
     lengths, _ = CHANGE_POINTS[name]
     found, said = silently(ks.extremes, at_rest(four_bar(*lengths)), "B")
     assert found.range[1] == np.inf
@@ -81,7 +81,7 @@ def test_reactions_that_grow_at_change_points_are_infinite_with_a_word(name):
 
 
 @each_change_point
-def test_the_mean_torque_beside_change_points_is_that_of_samples_that_have_digits(name):
+def test_mean_torque_beside_change_points_is_right(name):
     lengths, limits = CHANGE_POINTS[name]
     solution = at_rest(four_bar(*lengths))
     found, said = silently(mean_absolute_torque, solution)
@@ -90,7 +90,7 @@ def test_the_mean_torque_beside_change_points_is_that_of_samples_that_have_digit
 
 
 @each_change_point
-def test_the_table_of_extremes_says_once_what_is_left_out(name):
+def test_extremes_table_says_once_what_is_left_out(name):
     _, said = silently(extremes_frame, at_rest(four_bar(*CHANGE_POINTS[name][0])))
     assert said.count("no value has a correct digit") == 1
     assert "B grows without bound" in said
@@ -116,7 +116,7 @@ def test_tables_name_rows_without_a_digit(name):
 
 @each_change_point
 @pytest.mark.parametrize("angles", [36, 37, 360])
-def test_sweeps_give_a_reason_in_place_of_numbers_at_change_points(name, angles):
+def test_sweeps_name_change_points_as_reason(name, angles):
     (crank, coupler, rocker, frame), limits = CHANGE_POINTS[name]
 
     def made(coupler):
@@ -133,7 +133,7 @@ def test_the_torque_of_the_four_bar_4132_is_right():
     assert found.largest == pytest.approx(-48.5546, abs=1e-3)
 
 
-def test_positions_are_right_at_change_points_and_nothing_is_said():
+def test_positions_at_change_points_are_right():
     found, said = silently(ks.extremes, at_rest(ks.crank_slider(1.0, 1.0)), "slider_position")
     assert found.range == pytest.approx((0.0, 2.0), abs=2e-8)
     assert not said
@@ -148,7 +148,7 @@ def swept(function, designs, outputs, **options):
 
 @every("coupler", [0.5, 0.8, 0.99, 0.99999, 0.9999999])
 @every("guide", [0.0, 0.1, 77.0])
-def test_extremes_reach_to_the_ends_of_the_closed_intervals(coupler, guide):
+def test_extremes_reach_the_ends_of_closed_intervals(coupler, guide):
     """Under the ends the slider stands at the foot of the crank pin, where its velocity grows without bound."""
     mechanism = ks.crank_slider(1.0, coupler, guide_angle=np.radians(guide), slider=ks.Link(1.0))
     solution = at_rest(mechanism, (), 30.0)
@@ -165,7 +165,7 @@ def test_extremes_reach_to_the_ends_of_the_closed_intervals(coupler, guide):
 
 
 @pytest.mark.parametrize("coupler", [0.8, 0.9999999])
-def test_means_and_comparisons_over_gaps_are_refused_with_the_gaps(coupler):
+def test_means_over_gaps_are_refused(coupler):
     solution = at_rest(ks.crank_slider(1.0, coupler, slider=ks.Link(1.0)), ())
     half = np.degrees(np.arccos(coupler))
     with pytest.raises(ks.ParameterError, match=f"does not close for crank angles {90 - half:.6g} .. {90 + half:.6g}"):
@@ -202,7 +202,7 @@ def test_gaps_between_samples_are_found(name, short):
 
 
 @pytest.mark.slow_start
-def test_a_case_file_with_a_gap_between_samples_is_refused(tmp_path):
+def test_case_with_a_narrow_gap_is_refused(tmp_path):
     file = tmp_path / "narrow.toml"
     file.write_text(
         'title = "narrow"\nsource = "assumed"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\n'
@@ -284,7 +284,7 @@ REPEATING = {
 
 
 @pytest.mark.parametrize("turns", REPEATING)
-def test_a_load_that_repeats_after_turns_is_refused_with_its_period(turns):
+def test_load_of_several_turns_names_its_period(turns):
     solution = at_rest(SAW, [ks.ProcessForce(REPEATING[turns])], 33.5)
     for way in (lambda: ks.extremes(solution, "O"), lambda: mean_absolute_torque(solution)):
         with pytest.raises(ks.ParameterError, match=rf"repeats after {turns} turns only: give period={2 * turns}\*pi"):
@@ -333,7 +333,7 @@ def test_mean_torque_sees_narrow_pulses(half_width):
     assert mean_absolute_torque(solution) == pytest.approx(expected, rel=1e-9)
 
 
-def test_a_mean_that_does_not_converge_says_how_far_it_is_right():
+def test_unconverged_mean_says_its_accuracy():
     wild = ks.ProcessForce(lambda motion: 1e4 * np.sin(1e7 * np.sin(motion.crank_angle)))
     _, said = silently(mean_absolute_torque, at_rest(SAW, [wild]))
     assert "mean torque: it is right to about" in said
@@ -353,6 +353,7 @@ def test_a_noisy_table_is_compared_in_bounded_time():
 SHARP = (0.283648, 0.616619, 0.657347), (0.345486, -0.001611)
 
 
+@pytest.mark.slow
 @every("angles", [12, 37, 72, 180, 360, 720])
 def test_sweeps_take_as_many_angles_as_peaks_need(angles):
     lengths, pivot = SHARP
@@ -377,7 +378,7 @@ def test_sweeps_of_too_few_angles_are_refused(angles):
         swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, ()), {"mass": [1.0]}, ["rms O"], angles=angles)
 
 
-def test_a_peak_too_narrow_for_any_number_of_angles_is_no_number():
+def test_a_peak_too_narrow_gives_no_number():
     made = lambda short: ks.Scene(ks.crank_slider(1.0, 1.0 + short, slider=ks.Link(1.0)), 30.0, 0.0, ())  # noqa: E731
     table = swept(made, {"short": [1e-9, 0.2]}, ["largest O"])
     assert "passes so near a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
@@ -385,14 +386,14 @@ def test_a_peak_too_narrow_for_any_number_of_angles_is_no_number():
     assert table["failed"][1] == ""
 
 
-def test_a_mechanism_that_never_closes_has_no_extremes_and_says_so():
+def test_never_closing_mechanism_has_no_extremes():
     found, said = silently(ks.extremes, at_rest(ks.crank_slider(1.0, 0.5, guide_offset=3.0)), "balancing_torque")
     assert len(found) == 0
     assert np.isnan(found.range).all()
     assert "balancing_torque has no value: it does not close for crank angles 0 .. 360 deg" in said
 
 
-def test_the_period_is_the_turns_that_all_loads_have_in_common():
+def test_period_is_common_to_all_loads():
     loads = [ks.ProcessForce(0.0, period=2 * np.pi * turns) for turns in (1, 2, 3)]
     assert at_rest(SAW, loads[:2]).period == pytest.approx(4 * np.pi)
     assert at_rest(SAW, loads).period == pytest.approx(12 * np.pi)

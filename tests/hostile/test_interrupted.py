@@ -43,13 +43,13 @@ except KeyboardInterrupt:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", LINES)
-def test_a_command_is_stopped_while_machine_code_is_made(number, saw, numba, tmp_path):
+def test_command_stops_while_compiling(number, saw, numba, tmp_path):
     arguments = ["sweep", saw, "--vary", "slider.mass=600..700 kg:4000", "--variant", "plain", "--output", "rms O"]
     assert ended(WHILE_COMPILED + MODULE, int(number), *arguments, cache=tmp_path) == (*LINES[number], "")
 
 
 @pytest.mark.slow
-def test_a_call_is_stopped_while_machine_code_is_made_and_may_be_made_again(numba, tmp_path):
+def test_interrupted_compilation_can_be_repeated(numba, tmp_path):
     assert ended(WHILE_COMPILED + CALL, int(signal.SIGINT), cache=tmp_path) == (0, "", "stopped 50000\n")
 
 
@@ -77,7 +77,7 @@ SCRIPT = "from kinetostatics.__main__ import main; sys.exit(main())"
     "module",
     ["kinetostatics.cli", "numpy", "numpy._core._multiarray_umath", "kinetostatics.cli.commands", "pandas"],
 )
-def test_a_command_is_stopped_while_it_loads_its_libraries(module, start):
+def test_command_stops_while_loading_libraries(module, start):
     assert ended(WHILE_LOADED + start, module, "list") == (*LINES[signal.SIGINT], "")
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.mirrored import mirrored
+from support.mirror import mirrored
 from support.turning_machines import ANGLES, turning_scene
 
 PRESS = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.03, 0.02), slider=ks.Link(4.0))
@@ -17,11 +17,12 @@ OPPOSED = {
 """Laws of one force: 300 N against the motion of the slider."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", OPPOSED)
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("until", ["standstill", 0.2])
 @pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
-def test_a_machine_stops_against_loads_that_oppose_motion(law, sense, until, friction):
+def test_machine_stops_against_opposing_loads(law, sense, until, friction):
     """Steps of the integration end beyond the standstill; the loads may take no speed against the sense for it."""
     scene = ks.Scene(PRESS, 1.0, loads=OPPOSED[law], friction=friction)
     motion = ks.drive.coast(scene, 0.1, from_angle=sense * 0.7, from_speed=sense * 6.0, until=until)
@@ -38,7 +39,7 @@ INDICATOR = ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, over="travel", ba
 @pytest.mark.slow
 @pytest.mark.parametrize("drive", ["crank_speed", "crank_acceleration"])
 @pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
-def test_jax_differentiates_by_the_drive_where_the_sense_is_asked_for(drive, friction):
+def test_jax_differentiates_with_a_given_sense(drive, friction):
     """While JAX traces a speed its value is not known, so nothing is said of rest."""
     jax = pytest.importorskip("jax")
 
@@ -80,7 +81,7 @@ def test_nothing_is_derived_by_the_sense(name):
 
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("kind", ["crank slider", "lever", "roller follower", "two sliders"])
-def test_a_machine_at_rest_is_that_which_creeps_and_has_its_mirror_image(kind, sense):
+def test_machine_at_rest_equals_one_that_creeps(kind, sense):
     turning = turning_scene(kind, 60, friction=True)
     rest = ks.Scene(turning.mechanism, 0.0, 0.0, turning.loads, turning.friction, sense=sense)
     creeping = ks.Scene(turning.mechanism, sense * 1e-12, 0.0, turning.loads, turning.friction)
@@ -91,7 +92,7 @@ def test_a_machine_at_rest_is_that_which_creeps_and_has_its_mirror_image(kind, s
 
 
 @pytest.mark.parametrize("loads", [(), (ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, "travel", [100.0] * 2)),)])
-def test_a_machine_held_at_rest_from_the_start_has_a_solution(loads):
+def test_machine_at_rest_from_the_start_is_solved(loads):
     scene = ks.Scene(PRESS, 1.0, loads=[ks.Gravity(), *loads], friction={"O": ks.PinFriction(0.5, 0.3)})
     motion = ks.drive.coast(scene, 0.06, from_angle=1.4, until=2.0)
     assert motion.events[-1].name == "standstill"

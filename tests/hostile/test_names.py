@@ -90,7 +90,7 @@ def test_what_two_things_would_be_called_is_refused(parts, words):
 
 
 @every("kind", sorted({*COUNTS} - {"pin"}))
-def test_a_group_on_a_link_is_told_to_hang_on_a_pin_of_it(kind):
+def test_group_on_a_link_is_advised_to_use_a_pin(kind):
     made = group(kind, random.Random(1).choice)
     on = ("crank", "A") if kind == "dyad" else "crank"
     with pytest.raises(ks.ParameterError, match="hangs on 'crank', which is a link; put a Pin on that link"):

@@ -10,8 +10,8 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.numbers.units import factor, to_si
 from kinetostatics.sweeps import designs
+from support.case_files import BADLY_WRITTEN
 from support.every import every
-from support.written import BADLY_WRITTEN
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -23,7 +23,7 @@ def libraries():
 
 @every("unit", ["m", "kN/mm", "kg m^2"])
 @every("number", BADLY_WRITTEN)
-def test_a_badly_written_number_is_refused_with_what_would_be_right(number, unit):
+def test_badly_written_numbers_are_corrected(number, unit):
     with pytest.raises(ValueError, match=r"must be text of a number and a unit") as caught:
         to_si(f"{number} {unit}", unit)
     assert all(f'"{right} {unit}"' in str(caught.value) for right in BADLY_WRITTEN[number])
@@ -31,7 +31,7 @@ def test_a_badly_written_number_is_refused_with_what_would_be_right(number, unit
 
 @every("number", BADLY_WRITTEN)
 @every("form", ["0..{} m:3", "{}..9e9 m", "normal 1 m +- {} m", "triangular 0..{}..9e9 m"])
-def test_a_badly_written_number_in_a_spread_is_refused_with_what_would_be_right(number, form):
+def test_badly_written_spreads_are_corrected(number, form):
     made = designs.grid if ":" in form else designs.distributions
     with pytest.raises(ks.ParameterError, match=r"cannot read") as caught:
         made({"a": form.format(number)})
@@ -88,7 +88,7 @@ BAD_UNITS = [
 
 
 @every("unit", BAD_UNITS, ids=lambda text: repr(text)[:20])
-def test_a_unit_outside_the_grammar_or_of_no_length_is_refused(unit):
+def test_units_outside_the_grammar_are_refused(unit):
     with pytest.raises(ValueError, match=r"is not known|does not measure the same|must be text of a number"):
         to_si(f"5 {unit}", "m")
 
@@ -106,12 +106,12 @@ def test_a_unit_within_the_grammar_is_read(unit, value):
 
 
 @every("space", ["", " ", "  ", "\t", "\u00a0", "\u2009", "\u202f"])
-def test_any_space_or_none_may_stand_between_number_and_unit(space):
+def test_any_space_may_precede_the_unit(space):
     assert to_si(f"5{space}mm", "m") == 0.005
 
 
 @pytest.mark.parametrize("unit", ["m*10**10**10", "m/0", "kg)"])
-def test_columns_of_designs_take_units_of_the_same_grammar(unit):
+def test_design_columns_use_the_unit_grammar(unit):
     with pytest.raises(ValueError, match=r"is not known"):
         factor(unit, "m")
 
@@ -130,7 +130,7 @@ def test_columns_of_designs_take_units_of_the_same_grammar(unit):
         ({"a": "0..1 m*10**10**10:3"}, "is not known"),
     ],
 )
-def test_grids_that_are_too_large_or_no_text_are_refused(spreads, message):
+def test_large_or_untyped_grids_are_refused(spreads, message):
     with pytest.raises(ks.ParameterError, match=message):
         designs.grid(spreads)
 
@@ -144,7 +144,7 @@ def test_samples_of_no_or_too_many_designs_are_refused(kind, count):
 
 @settings(max_examples=300, deadline=None)
 @given(strategies.text("0123456789.,eE+-*/^ mkNsg()²\u2009\u2212٣'_", max_size=12))
-def test_any_text_is_one_number_with_one_unit_or_refused(text):
+def test_any_text_is_one_number_or_refused(text):
     """What is accepted is a number as Python writes it, up to the first letter that is no exponent, and a unit."""
     try:
         found = to_si(text, "m")
@@ -173,7 +173,7 @@ def test_any_text_is_one_number_with_one_unit_or_refused(text):
         (["=0..1 kN/m:2"], "parameter is ''"),
     ],
 )
-def test_sweeps_of_spreads_that_cannot_be_read_are_refused_in_one_line(capsys, vary, message):
+def test_wrong_spreads_are_refused_in_one_line(capsys, vary, message):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert main(["sweep", "sawframe_2r63", *(f"--vary={text}" for text in vary)]) == 2

@@ -109,14 +109,14 @@ def pin_load(load):
 
 @every("between", [("A", "O2"), ("O2", "A"), ("A", ("cylinder", 0.01, 0.0))])
 @every("kind", [ks.PointForce, lambda size, between: ks.PointSpring(size, 0.0, between=between), ks.PointDamper])
-def test_a_load_beside_the_rod_of_a_cylinder_is_asked_about(between, kind):
+def test_load_beside_a_cylinder_rod_is_questioned(between, kind):
     load = kind(1500.0, between=between)
     with pytest.warns(ks.HintWarning, match=r"on 'A', a joint of the crank, so the rod does not carry it; .*\"rod\""):
         assert pin_load(load) < 50.0
 
 
 @every("between", [(("rod", 0.0, 0.0), "O2"), ("O2", ("rod", 0.15, 0.0)), (("rod", 0.1), ("cylinder", 0.01))])
-def test_a_load_between_rod_and_cylinder_is_carried_by_the_pin(between):
+def test_load_from_rod_to_cylinder_acts_on_the_pin(between):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert pin_load(ks.PointForce(1500.0, between=between)) > 1400.0
@@ -135,7 +135,7 @@ def test_weight_along_the_guide_sets_no_bound(angle):
 
 
 @pytest.mark.slow
-def test_a_ratio_beyond_the_bound_is_refused_with_about_that_bound():
+def test_ratio_beyond_the_bound_names_the_bound():
     saw = ks.load_case("sawframe_2r63")
     limit = "ratio mean_absolute balancing_torque >= 1000"
     with pytest.raises(ks.DesignError, match=r"a ratio of mean torques of about \d+ at most \(.* changes by some"):
@@ -158,7 +158,7 @@ def test_limits_and_reports_know_the_cam_radius():
 
 
 @pytest.mark.slow
-def test_a_torque_balancing_cam_keeps_off_the_shaft_or_says_that_it_does_not():
+def test_torque_cam_keeps_clear_of_the_shaft():
     drive = ks.load_case("chain_unit").variants["rho-0.1"].scene
     given = {"mass": 0.3, "travel": 0.01, "shaft_radius": 0.2}
     clear = ks.design.torque_balancing_cam(drive, roller_radius=0.01, **given)
@@ -287,7 +287,7 @@ def test_a_full_disk_is_told_with_the_file(arguments, tmp_path, capsys):
 
 
 @full
-def test_a_full_disk_is_told_by_the_library_with_the_file(tmp_path):
+def test_full_disk_names_the_file_in_python(tmp_path):
     (tmp_path / "cam.svg").symlink_to("/dev/full")
     with pytest.raises(ks.FileError, match=r"cam.svg cannot be written: No space left on device"):
         CAM.groups[0].cam.export(tmp_path / "cam.svg", roller_radius=0.05)

@@ -117,7 +117,7 @@ DAMAGE = {
 
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("file", FILES)
-def test_damaged_machine_code_is_compiled_anew_with_one_warning(entry, file, damage):
+def test_damaged_machine_code_is_recompiled(entry, file, damage):
     DAMAGE[damage](next(entry.rglob(file)))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -193,7 +193,7 @@ def test_what_belongs_to_another_user_is_not_trusted(entry, name):
     assert_untrusted(entry, "belongs to another user")
 
 
-def test_a_link_into_a_folder_that_others_may_write_is_not_trusted(entry, tmp_path, monkeypatch):
+def test_link_into_a_writable_folder_is_not_trusted(entry, tmp_path, monkeypatch):
     (tmp_path / "open").mkdir()
     entry.parent.rename(tmp_path / "open" / "programs")
     (tmp_path / "open").chmod(0o777)
@@ -210,7 +210,7 @@ def test_a_link_that_others_may_replace_is_not_trusted(entry, tmp_path, monkeypa
     assert_untrusted(entry, "others may write to .*open")
 
 
-def test_a_folder_of_ones_own_in_a_shared_one_with_the_sticky_bit_is_trusted(tmp_path):
+def test_own_folder_in_a_sticky_one_is_trusted(tmp_path):
     (tmp_path / "shared" / "own").mkdir(parents=True, mode=0o700)
     (tmp_path / "shared").chmod(0o1777)
     require_private(tmp_path / "shared" / "own")

@@ -31,14 +31,15 @@ def motor(transmission):
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("others", [(), (FAINT,)])
-def test_coasting_reads_the_stroke_in_the_sense_of_the_motion(sense, others):
+def test_coasting_reads_the_stroke_by_its_motion(sense, others):
     scene = press([ks.ProcessForce(INDICATOR), *others])
     motion = ks.drive.coast(scene, 1.0, from_angle=-sense * 0.7, from_speed=sense * 8.0, until=1.0)
     assert motion.crank_angle[-1] == pytest.approx(sense * 6.20897, abs=1e-4)
     assert motion.energy_drift < 1e-11
 
 
-def test_energy_drift_compares_with_the_loads_that_solve_gives():
+@pytest.mark.slow
+def test_energy_drift_uses_the_solved_loads():
     """It shares nothing with the integration but the motion: a motion under another load does not balance."""
     scene = press(ks.ProcessForce(INDICATOR))
     motion = ks.drive.coast(scene, 1.0, from_angle=0.7, from_speed=-8.0, until=1.0)
@@ -50,6 +51,7 @@ def test_energy_drift_compares_with_the_loads_that_solve_gives():
     assert lost > 10.0
 
 
+@pytest.mark.slow
 def test_rocking_back_reads_the_other_stroke():
     """Thrown up against gravity, the machine comes back; the force takes energy on outward strokes alone."""
     hung = ks.crank_slider(0.1, 0.35, crank=ks.Link(6.0, 0.09, 0.02), slider=ks.Link(1.0))
@@ -84,7 +86,7 @@ def test_a_force_against_motion_lets_a_machine_stick(law):
     assert motion.crank_angle[-1] == pytest.approx(expected.crank_angle[-1], abs=1e-7)
 
 
-def test_a_machine_that_may_start_either_way_asks_which():
+def test_ambiguous_start_asks_for_a_direction():
     pushing = ks.Table([0.2, 0.5], [100.0, 100.0], over="travel", back=[-100.0, -100.0])
     with pytest.raises(
         ks.DriveError, match=r"at rest at crank angle 57\.2958 deg it may start either way: .* from_speed"
@@ -109,7 +111,7 @@ def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
 
 @pytest.mark.parametrize("law", STROKES)
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_motor_that_is_too_weak_is_told_the_same_torque_for_each_law(law, sense):
+def test_weak_motor_names_one_torque_for_all_laws(law, sense):
     scene = press(ks.ProcessForce(STROKES[law]))
     weak = ks.drive.Motor.constant(20.0, transmission=sense)
     with pytest.raises(ks.DriveError, match=r"the loads ask 166\.426 N m at rest, the motor gives 20 N m") as told:
@@ -125,7 +127,7 @@ def torque_of_1600_newton(angle):
 
 @pytest.mark.parametrize("ratio", [10.0, -10.0])
 @pytest.mark.parametrize("sense", [1, -1])
-def test_running_has_the_sense_of_its_motor_whatever_that_of_the_scene_at_rest(ratio, sense):
+def test_running_takes_its_sense_from_the_motor(ratio, sense):
     loads = ks.ProcessForce(INDICATOR)
     resting = ks.drive.steady(ks.Scene(PRESS, 0.0, loads=loads, sense=sense), motor(ratio), 5.0)
     moving = ks.drive.steady(press(loads), motor(ratio), 5.0)
@@ -137,7 +139,7 @@ def test_running_has_the_sense_of_its_motor_whatever_that_of_the_scene_at_rest(r
 
 
 @pytest.mark.parametrize("speed", [-10.0, 10.0])
-def test_starting_torque_is_that_of_the_sense_of_rotation(speed):
+def test_starting_torque_follows_the_rotation(speed):
     machine = ks.crank_slider(0.1, 0.35, guide_offset=np.copysign(0.03, -speed), slider=ks.Link(4.0))
     table = ks.Table([0.2, 0.34, 0.46], [-100.0, -100.0, -3000.0], over="travel", back=[-50.0, -2000.0, -50.0])
     loads = [ks.ProcessForce(table), ks.Gravity(direction=np.pi)]
@@ -149,7 +151,7 @@ def test_starting_torque_is_that_of_the_sense_of_rotation(speed):
 
 @pytest.mark.parametrize("law", ["comparison", "sign", "sense"])
 @pytest.mark.parametrize("speed", [-10.0, 10.0])
-def test_starting_torque_of_a_function_is_that_of_the_table(law, speed):
+def test_function_and_table_start_alike(law, speed):
     expected = ks.design.starting_torque(
         ks.solve(PRESS, 0.5, crank_speed=speed, loads=ks.ProcessForce(STROKES["table"]))
     )
@@ -157,7 +159,7 @@ def test_starting_torque_of_a_function_is_that_of_the_table(law, speed):
     assert found.value == pytest.approx(expected.value, rel=1e-12)
 
 
-def test_a_resting_solution_gives_its_sense_to_starting_torque_and_lift_off():
+def test_resting_solution_passes_on_its_sense():
     at_rest = ks.solve(PRESS, 0.5, crank_speed=0.0, sense=-1, loads=ks.ProcessForce(STROKES["table"]))
     turning = ks.solve(PRESS, 0.5, crank_speed=-1.0, loads=ks.ProcessForce(STROKES["table"]))
     assert ks.design.starting_torque(at_rest) == ks.design.starting_torque(turning)
@@ -194,7 +196,7 @@ gravity = {}"""
 @pytest.mark.parametrize(
     "drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}]
 )
-def test_functions_know_the_motion_about_to_begin_as_tables_do(law, drive):
+def test_functions_know_the_motion_as_tables_do(law, drive):
     """By the velocity, and of the acceleration's sense where the scene has none."""
     angle, speed = [1.0, 2.0, 4.0], np.zeros(3) if np.ndim(drive.get("crank_acceleration", 0.0)) else 0.0
     own, table = (
@@ -206,7 +208,7 @@ def test_functions_know_the_motion_about_to_begin_as_tables_do(law, drive):
 
 
 @pytest.mark.parametrize("sense", [1, -1])
-def test_at_rest_the_sense_is_given_or_that_of_the_acceleration(sense):
+def test_sense_at_rest_is_given_or_by_acceleration(sense):
     drive = {"friction": {"O": ks.PinFriction(0.1, 0.02)}, "loads": ks.ProcessForce(STROKES["table"])}
     angle = np.linspace(0.1, 6.2, 9)
     given = ks.solve(PRESS, angle, crank_speed=0.0, sense=sense, **drive)
@@ -237,7 +239,7 @@ def test_a_sense_that_cannot_be_is_refused(drive, words):
 
 
 @pytest.mark.slow_start
-def test_a_case_file_tells_the_sense_of_a_crank_at_rest(tmp_path):
+def test_case_file_gives_the_sense_at_rest(tmp_path):
     path = tmp_path / "rest.toml"
     path.write_text(CASE_AT_REST, encoding="utf-8")
     case = ks.load_case(path)
@@ -271,7 +273,7 @@ def test_a_case_file_refuses_what_is_no_sense(tmp_path, sense):
         ks.load_case(path)
 
 
-def test_a_function_cannot_ask_for_the_sense_of_a_crank_that_stands():
+def test_function_cannot_read_the_sense_at_rest():
     loads = ks.Torque(lambda q: -5.0 * q.crank_sense, on="crank")
     with pytest.raises(ks.ParameterError, match=r"asks for crank_sense, but .* both 0: give sense=\+1 or sense=-1"):
         _ = ks.solve(PRESS, 0.5, crank_speed=0.0, loads=loads).balancing_torque
@@ -292,7 +294,7 @@ def test_what_is_left_out_or_mistaken_is_named(call, words):
         call()
 
 
-def test_the_power_balance_at_rest_is_relative_to_friction():
+def test_power_balance_at_rest_scales_with_friction():
     machine = ks.crank_slider(0.1, 0.35, guide_offset=0.02, slider=ks.Link(4.0))
     friction = {"guide": ks.GuideFriction(0.2), "O": ks.PinFriction(0.1, 0.02)}
     angle = np.linspace(0.0, 6.0, 13)

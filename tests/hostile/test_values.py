@@ -137,7 +137,7 @@ SIZES = [("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("S
 
 @every("value", [0, -0.0, -0.3, np.int16(-1), np.array([[1.0], [-1.0]]), 1e-200, 1e90])
 @every(("kind", "field"), LENGTHS, ids=map(".".join, LENGTHS))
-def test_lengths_must_be_greater_than_zero_and_computable(kind, field, value):
+def test_lengths_must_be_positive_and_computable(kind, field, value):
     with pytest.raises(ks.ParameterError, match=r"must be greater than 0|in double precision"):
         made(kind, **{field: value})
 
@@ -191,7 +191,7 @@ def test_small_integers_do_not_overflow():
 
 
 @pytest.mark.parametrize("angles", [np.array(TURN, dtype=object), list(TURN), tuple(map(Fraction, TURN.tolist()))])
-def test_angles_of_plain_numbers_in_another_guise_are_floats(angles):
+def test_angles_of_any_plain_type_are_floats(angles):
     s = solve(crank_angle=angles)
     assert s.crank_angle.dtype == float
     assert np.array_equal(s.balancing_torque, solve().balancing_torque)

@@ -78,7 +78,7 @@ def test_no_running_is_told_with_what_is_missing(of, loads, motor, flywheel, wor
         steady(scene(*loads, of=of), motor, flywheel)
 
 
-def test_the_torque_that_is_missing_is_given_as_a_number():
+def test_the_missing_torque_is_a_number():
     with pytest.raises(ks.DriveError) as caught:
         steady(scene(torque(-30.0)), kloss(), 1.0)
     stronger = float(re.search(r"give a motor ([\d.]+) times", str(caught.value))[1])
@@ -206,7 +206,7 @@ def test_what_cannot_be_driven_says_why(call, kind, words):
         call()
 
 
-def test_a_motion_without_end_is_given_up_with_how_far_it_came(monkeypatch):
+def test_endless_motion_is_given_up_with_progress(monkeypatch):
     monkeypatch.setattr(stretches, "MOST_EVALUATIONS", 2000)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))
     with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
@@ -215,7 +215,7 @@ def test_a_motion_without_end_is_given_up_with_how_far_it_came(monkeypatch):
         coast(damped, 1.0, 0.0, 10.0, "standstill")
 
 
-def test_waiting_for_a_standstill_that_comes_is_no_fault():
+def test_waiting_for_a_standstill_is_no_fault():
     hill = scene(ks.Gravity(), of=ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)))
     assert coast(hill, 0.0, -math.pi / 2, 5.0, "standstill").events[-1].name == "standstill"
     assert coast(hill, 0.0, -math.pi / 2, -5.0, "standstill").events[-1].name == "standstill"

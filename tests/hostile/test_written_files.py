@@ -12,7 +12,7 @@ from support.every import every
 
 @pytest.mark.parametrize("link", [False, True])
 @every("mode", [0o600, 0o640, 0o644, 0o664, 0o777, 0o200])
-def test_a_file_that_is_replaced_keeps_its_permissions_and_links_to_it_stay(tmp_path, mode, link):
+def test_replaced_file_keeps_permissions_and_links(tmp_path, mode, link):
     file, name = tmp_path / "x.csv", tmp_path / "link.csv"
     file.write_text("old")
     file.chmod(mode)
@@ -29,9 +29,7 @@ def test_a_file_that_is_replaced_keeps_its_permissions_and_links_to_it_stay(tmp_
 
 
 @pytest.mark.parametrize("mask", [0o000, 0o022, 0o077])
-def test_a_new_file_has_the_permissions_that_the_process_gives_and_its_mask_is_never_touched(
-    tmp_path, mask, monkeypatch
-):
+def test_new_file_takes_the_process_permissions(tmp_path, mask, monkeypatch):
     before = os.umask(mask)
     set_mask = os.umask
     monkeypatch.setattr(os, "umask", None)
@@ -53,7 +51,7 @@ def test_a_file_that_is_replaced_keeps_its_owner(tmp_path):
     assert (file.stat().st_uid, file.stat().st_gid) == (12345, 54321)
 
 
-def test_a_file_that_is_read_only_is_refused_when_written_too(tmp_path):
+def test_read_only_file_is_refused(tmp_path):
     file = tmp_path / "x.csv"
     file.write_text("old")
     file.chmod(0o444)
@@ -71,7 +69,7 @@ def test_a_link_to_nothing_is_written_through(tmp_path):
 
 
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt, SystemExit, ValueError])
-def test_whatever_stops_the_writing_nothing_is_left_of_it(tmp_path, error):
+def test_interrupted_writing_leaves_nothing(tmp_path, error):
     file = tmp_path / "x.csv"
     file.write_text("old")
 
@@ -93,7 +91,7 @@ def test_names_that_no_file_can_have_are_told(name):
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc, where nothing can be made")
 @every("path", ["/proc/new.csv", "/proc/new/folder/new.csv"])
-def test_a_place_that_takes_no_file_is_told_by_an_error_of_our_own(path):
+def test_impossible_place_is_our_own_error(path):
     refused = pytest.raises(ks.FileError, match=f"{path} cannot be written: [A-Z][a-z ]*; give another place")
     with refused, files.written_whole(path):
         raise AssertionError("nothing is written there")

@@ -13,8 +13,8 @@ from kinetostatics.mechanics.assembly import HALF, NO_DIGIT
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import UNIT
 from support.bounded import FAMILIES, solution
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 LOOSE = 1000.0
 """How many times more than condition times rounding a bound may be: it has every operation on its worst side."""
@@ -68,7 +68,7 @@ def without_bound(made):
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("family", FAMILIES)
 @every("seed", (1000, 1001))
-def test_no_bound_is_missing_but_where_half_of_the_digits_or_more_are_lost(family, seed):
+def test_bounds_exist_unless_half_the_digits_are_lost(family, seed):
     made = solution(family, seed)
     for condition in without_bound(made) if made is not None else ():
         assert np.all(condition > HALF)
@@ -77,7 +77,7 @@ def test_no_bound_is_missing_but_where_half_of_the_digits_or_more_are_lost(famil
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("case", ks.shipped_cases())
-def test_the_condition_of_no_shipped_case_claims_digits_that_a_bound_does_not_prove(case):
+def test_condition_claims_no_unproven_digits(case):
     for variant in shipped(case).variants.values():
         made = variant.scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
         for quantity, bound, condition in looked_at(made):
@@ -87,7 +87,7 @@ def test_the_condition_of_no_shipped_case_claims_digits_that_a_bound_does_not_pr
 
 @every("family", ("chain", "plain", "four-bar", "place"))
 @every("seed", range(8))
-def test_where_the_condition_of_a_motion_is_large_a_warning_is_given_and_nowhere_else(family, seed):
+def test_warnings_match_large_conditions(family, seed):
     made = solution(family, seed)
     if made is not None:
         with np.errstate(all="ignore"):
@@ -98,7 +98,7 @@ def test_where_the_condition_of_a_motion_is_large_a_warning_is_given_and_nowhere
 @pytest.mark.slow
 @every("family", ("plain", "four-bar", "place", "cam"))
 @every("seed", range(2))
-def test_no_error_is_more_than_the_condition_times_rounding(flint, family, seed):
+def test_errors_stay_below_condition_times_rounding(flint, family, seed):
     made = solution(family, seed)
     for quantity, _, condition in looked_at(made) if made is not None else ():
         try:

@@ -105,7 +105,7 @@ def around(angle, random):
 
 @pytest.mark.parametrize("kind", GUIDES)
 @each_assembly
-def test_slider_position_is_within_4_ulp_of_the_exact_one(kind, assembly):
+def test_slider_position_is_within_4_ulp(kind, assembly):
     """Both the vector to B and its coordinate along the guide."""
     random, errors = np.random.default_rng(7), []
     for drive in drives(kind):
@@ -125,7 +125,7 @@ def test_slider_position_is_within_4_ulp_of_the_exact_one(kind, assembly):
 
 
 @each_assembly
-def test_dead_centre_is_one_to_the_last_digit_of_the_crank_angle(assembly):
+def test_dead_centre_is_exact_in_the_crank_angle(assembly):
     """So that the angles tried lie where they should: the slider turns back between the neighbours of the float."""
     for drive in drives("offset"):
         for angle in drive.dead_centres(assembly):
@@ -154,7 +154,7 @@ def misses(kind, reach, count=10):
 
 
 @pytest.mark.slow
-def test_function_of_the_study_fails_near_dead_centres_of_inclined_guides_and_ours_never():
+def test_study_function_fails_near_dead_centres():
     """It lands two coupler lengths away on the wrong side, or square off the guide where the sign is 0.
 
     Some 0.3 per cent of all and 7 per cent: rounding decides how many, so only that there are some is proved.
@@ -169,21 +169,21 @@ def test_function_of_the_study_fails_near_dead_centres_of_inclined_guides_and_ou
 
 
 @pytest.mark.parametrize(("kind", "reach"), [("mower", 1e-2), ("offset", 1e-14), ("level", 1e-14)])
-def test_function_of_the_study_agrees_to_rounding_elsewhere(kind, reach):
+def test_study_function_agrees_elsewhere(kind, reach):
     """Away from the dead centres, and at those of offset and of level guides."""
     for errors in misses(kind, reach):
         assert np.max(errors) < 1e-14
 
 
 @each_assembly
-def test_function_of_the_study_agrees_with_ours_over_the_turn(assembly):
+def test_study_function_agrees_over_the_turn(assembly):
     for drive in drives("offset"):
         s = drive.solve(np.linspace(0.05, 6.2, 40), assembly)
         error = np.hypot(*(drive.by_double_cross(s.position("A"), assembly) - s.position("B")))
         assert np.max(error) < 1e-14 * drive.coupler_length
 
 
-def test_function_of_the_study_gives_nan_where_the_coupler_does_not_reach():
+def test_study_function_is_nan_out_of_reach():
     pin = np.array([[0.0, 0.0], [0.5, 0.1]])
     x, y = slider_by_double_cross(pin, 0.3, (0.0, 0.0), (1.0, 0.0), (1.0, 0.0))
     np.testing.assert_array_equal(np.isnan([x, y]), [[True, False]] * 2)

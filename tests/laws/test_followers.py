@@ -19,14 +19,14 @@ def test_derivatives_forces_and_power_are_right(kind):
 
 
 @every_kind
-def test_motion_and_forces_agree_with_the_full_system_in_mpmath(kind):
+def test_followers_agree_with_the_mpmath_system(kind):
     solution = scene(KINDS[kind]()).solve(ANGLES)
     found = errors_beside_full_systems(solution, 2)
     assert max(found.values()) < 1e-13, found
 
 
 @every_kind
-def test_forces_agree_with_the_multipliers_of_constraint_equations(kind):
+def test_follower_forces_agree_with_multipliers(kind):
     assert error_beside_constraints(scene(KINDS[kind]()).solve(ANGLES)) < 1e-11
 
 

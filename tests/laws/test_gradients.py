@@ -58,7 +58,7 @@ def mean_absolute_torque(parameter, value, angles):
 
 
 @pytest.mark.parametrize("parameter", PARAMETERS)
-def test_gradient_of_the_mean_absolute_torque_equals_the_central_difference_at_high_precision(double, flint, parameter):
+def test_mean_torque_gradient_equals_differences(double, flint, parameter):
     """To 1e-12, at two values of each parameter by one compiled function."""
     angles = np.array([flint.arb(angle) for angle in ANGLES.tolist()])
     gradient = double.jit(

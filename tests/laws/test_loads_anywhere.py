@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.studies.methods import configurations, newton
-from support.loads import KINDS, between, load
+from support.chains import LOAD_KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
 
@@ -78,12 +78,12 @@ def by_newton_euler(s, names):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 @pytest.mark.parametrize("name", [*CHAINS, "cam"])
-def test_reactions_and_torque_under_any_load_are_those_of_the_full_system(name, kind):
+def test_any_load_agrees_with_the_full_system(name, kind):
     tried = 0
     for seed in range(6):
-        random = np.random.default_rng([seed, KINDS.index(kind)])
+        random = np.random.default_rng([seed, LOAD_KINDS.index(kind)])
         mechanism = cam(random) if name == "cam" else chain(random, name)
         item = load(random, kind, mechanism)
         if item is None:
@@ -102,9 +102,9 @@ def test_reactions_and_torque_under_any_load_are_those_of_the_full_system(name, 
     assert tried or kind in ("Spring", "ProcessForce")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 def test_loads_superpose(kind):
-    random = np.random.default_rng(KINDS.index(kind))
+    random = np.random.default_rng(LOAD_KINDS.index(kind))
     one, other = load(random, kind, six_bar()), load(random, "PointDamper", six_bar())
     both, first, second, none = (
         ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=loads) for loads in ([one, other], [one], [other], [])
@@ -115,7 +115,7 @@ def test_loads_superpose(kind):
 
 
 @pytest.mark.parametrize("engine", ["compiled", "arb"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 def test_every_engine_gives_the_same_under_any_load(kind, engine):
     item = load(np.random.default_rng(3), kind, six_bar())
     s = ks.solve(six_bar(), ANGLES[::4], crank_speed=9.0, crank_acceleration=-4.0, loads=item)
@@ -148,7 +148,7 @@ def loaded():
     )
 
 
-def test_derivatives_by_every_number_of_loads_are_those_of_differences():
+def test_load_derivatives_equal_differences():
     scene = ks.Scene(six_bar(), 9.0, -4.0, loaded())
     program = ks.compile(scene, ("balancing_torque", "B"), engine="numpy")
     paths = [path for path in program.parameters if not path.startswith(("crank_", "gravity"))]
@@ -180,7 +180,7 @@ def test_derivatives_by_every_number_of_loads_are_those_of_differences():
             assert largest(found - slope) < 1e-6 * max(largest(found), 1e-3 * size), (path, quantity)
 
 
-def test_the_independent_path_in_mpmath_agrees_under_all_loads_together():
+def test_mpmath_agrees_under_all_loads():
     pytest.importorskip("mpmath")
     pytest.importorskip("flint")
     from kinetostatics.studies.methods.enclosures import enclosure
@@ -204,7 +204,7 @@ def test_a_second_load_of_a_kind_has_a_path_of_its_own():
     assert scene.varied({"force2.value": 5.0, "torque.value": 4.0}).loads[1].value == 5.0
 
 
-def test_designs_of_loads_make_a_batch_and_sweeps_give_each_its_own_result():
+def test_load_designs_make_a_batch():
     import pandas as pd
 
     values = np.array([[10.0], [20.0], [40.0]])
@@ -253,7 +253,7 @@ def test_dampers_never_give_power(seed):
         assert torque.max() > 0 or kind == "TorsionDamper"
 
 
-def test_a_power_of_a_function_that_is_a_damper_is_that_damper():
+def test_a_function_as_damper_is_that_damper():
     damper = ks.TorsionDamper(0.7, on="rocker", against="coupler")
     function = ks.Torque(
         lambda motion: -0.7 * (motion.rate("rocker") - motion.rate("coupler")), on="rocker", against="coupler"
@@ -340,7 +340,7 @@ def test_a_load_said_in_two_ways_is_one_load(name):
     assert largest(one.balancing_torque - other.balancing_torque) < 1e-13 * one.largest_torque_term
 
 
-def test_a_force_on_the_crank_enters_torque_and_support():
+def test_crank_force_enters_torque_and_support():
     bare = ks.crank_slider(0.1, 0.4)
     s = ks.solve(
         bare, ANGLES, crank_speed=9.0, loads=[ks.Force(50.0, at="O", direction=1.0), ks.Torque(7.0, on="crank")]
@@ -355,7 +355,7 @@ def test_a_force_on_the_frame_ends_there():
     assert np.array_equal(s.balancing_torque, none.balancing_torque)
 
 
-def test_inertia_alone_shakes_the_frame_whatever_the_loads():
+def test_loads_do_not_shake_the_frame():
     s, none = (ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=x) for x in (loaded(), ()))
     assert np.array_equal(s.shaking_force, none.shaking_force)
     assert np.array_equal(s.shaking_moment, none.shaking_moment)

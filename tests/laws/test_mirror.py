@@ -1,7 +1,7 @@
 """A machine mirrored in the x axis, y -> -y, gives mirrored results: whatever is computed, for random machines.
 
-Forces are mirrored, torques change their sign, powers and energies stay. `support.mirrored` makes the mirror image,
-`support.mirror_laws` compares. What one machine and its image are both refused counts as agreement.
+Forces are mirrored, torques change their sign, powers and energies stay. `support.mirror` makes the mirror image
+and compares. What one machine and its image are both refused counts as agreement.
 """
 
 from dataclasses import replace
@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from support import mirror_laws as laws
-from support.mirrored import mirrored
+from support import mirror as laws
+from support.mirror import mirrored
 from support.turning_machines import KINDS, LOADS, SPEED_LOADS, turning_scene
 
 pytestmark = [
@@ -143,7 +143,7 @@ DWELL = np.pi / 4
 """Length of the dwell below, rad."""
 
 
-def test_a_level_stretch_has_its_extremum_in_its_middle():
+def test_level_stretch_has_its_extremum_in_the_middle():
     """In a dwell the force of a spring is level: the extremum stood anywhere in it, by rounding."""
     rise, back = ks.laws.cycloidal(0.1, 0.12, 2.0), ks.laws.cycloidal(0.12, 0.1, 2.0)
     rest = ks.laws.dwell(0.1, 2 * np.pi - 4.0 - DWELL)
@@ -211,7 +211,7 @@ def test_steady_running(motor):
     assert_mirrored(laws.running(one, other))
 
 
-def test_time_of_clockwise_running_counts_in_the_direction_of_motion():
+def test_clockwise_time_counts_forward():
     pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), -100.0, loads=ks.Gravity())
     run = ks.drive.steady(pump, None, 0.05, angles=[0.0, -0.5, -3.0, -6.0])
     assert run.time[0] == 0.0
@@ -266,7 +266,7 @@ def test_starting(motor):
 
 
 @pytest.mark.slow
-def test_starting_with_a_table_of_two_strokes_and_a_load_by_speed():
+def test_start_with_two_strokes_and_speed_load():
     scene = drawn("crank slider", 4, loads=("table with back", "torsion damper"))
     motor = MOTORS["kloss"]
     one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, until=0.2)
@@ -449,7 +449,7 @@ SEARCHES = ("torque_free_cam", "weight_options", "optimise")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.slow] if name in SEARCHES else []) for name in CALLS]
 )
-def test_drives_and_designs_take_both_senses_of_rotation(name):
+def test_drives_take_both_senses_of_rotation(name):
     """Without friction and loads by stroke a machine takes as much whichever way it turns."""
     call, _ = CALLS[name]
     one, other = call(10.0), call(-10.0)
@@ -458,7 +458,7 @@ def test_drives_and_designs_take_both_senses_of_rotation(name):
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n == "optimise" else []) for n in CALLS])
-def test_drives_and_designs_of_a_machine_that_stands_answer_or_say_why_not(name):
+def test_standing_machines_answer_or_say_why(name):
     call, refused = CALLS[name]
     if refused is None:
         assert np.isfinite(call(0.0))
@@ -467,7 +467,7 @@ def test_drives_and_designs_of_a_machine_that_stands_answer_or_say_why_not(name)
         call(0.0)
 
 
-def test_springs_of_a_machine_that_stands_swing_without_end_a_turn():
+def test_springs_of_a_standing_machine_swing():
     """Not as often as at 1 rad/s."""
     surge = ks.design.spring_surge(pump(0.0).solve(4), 0.5)
     assert surge.order == np.inf
@@ -475,7 +475,7 @@ def test_springs_of_a_machine_that_stands_swing_without_end_a_turn():
 
 
 @pytest.mark.parametrize("acceleration", [5.0, -5.0])
-def test_starting_torque_at_rest_is_of_the_motion_that_begins(acceleration):
+def test_starting_torque_is_of_the_coming_motion(acceleration):
     moving = ks.design.starting_torque(pump(np.sign(acceleration), friction=ROUND).solve(4))
     starting = ks.design.starting_torque(pump(0.0, acceleration, friction=ROUND).solve(4))
     assert starting.value == pytest.approx(moving.value, rel=1e-9)

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
-from support.four_bars import turning
-from support.machines import ANGLES, assert_close, largest, planar
+from support.machines import ANGLES, assert_close, largest, planar, turning
 from support.scenes import six_bar
 from support.strategies import body, either_sign, number, reproducible
 
@@ -143,10 +142,11 @@ def unbalanced(s):
     return {key: float(value / scale[key[1]]) for key, value in lack.items()}
 
 
+@pytest.mark.slow
 @every_scheme
 @settings(reproducible, max_examples=10)
 @given(data=st.data())
-def test_powers_balance_and_reactions_satisfy_newtons_laws_of_every_body(scheme, data):
+def test_bodies_obey_newton_and_powers_balance(scheme, data):
     """Joint forces, weight, loads and couples make mass times acceleration and inertia times angular acceleration."""
     s = data.draw(chains(scheme))
     assert s.power_residual < 1e-14
@@ -159,10 +159,11 @@ def whole(parts):
     return np.array(np.broadcast_arrays(*parts))
 
 
+@pytest.mark.slow
 @every_scheme
 @settings(reproducible, max_examples=5)
 @given(data=st.data())
-def test_velocities_and_accelerations_are_slopes_of_positions_and_make_the_shaking_force(scheme, data):
+def test_motion_is_the_slope_of_positions(scheme, data):
     """By complex steps, exact to rounding; so accelerations in Newton's laws are those of the positions."""
     s = data.draw(chains(scheme))
     placement, beside = s.placement, s.mechanism.place(ANGLES + 1e-30j)
@@ -181,7 +182,7 @@ def test_velocities_and_accelerations_are_slopes_of_positions_and_make_the_shaki
 # What a user sees
 
 
-def test_six_bar_in_a_few_lines_balances_its_powers_and_names_its_reactions():
+def test_short_six_bar_balances_its_powers():
     loads = [ks.Gravity(), ks.Spring(100.0, 0.5, on="slider2"), ks.ProcessForce(30.0, on="slider2")]
     s = ks.solve(six_bar(), ANGLES, crank_speed=20.0, crank_acceleration=5.0, loads=loads)
     assert s.power_residual < 1e-14
@@ -192,7 +193,7 @@ def test_six_bar_in_a_few_lines_balances_its_powers_and_names_its_reactions():
     assert ks.extremes(s, "C").range[1] >= largest(np.hypot(*s.reaction("C")))
 
 
-def test_massless_slider_chain_leaves_the_four_bar_as_it_is():
+def test_massless_chain_leaves_the_four_bar():
     chain = six_bar()
     for name in ("coupler2", "slider2"):
         chain = chain.with_link(name, ks.Link())
@@ -203,7 +204,7 @@ def test_massless_slider_chain_leaves_the_four_bar_as_it_is():
     assert largest(with_chain.reaction("C")) == 0
 
 
-def test_load_on_a_slider_that_is_not_there_names_the_one_that_is():
+def test_load_on_an_absent_slider_names_the_present():
     with pytest.raises(ks.ParameterError, match=r"'slider', allowed: 'slider2'"):
         ks.solve(six_bar(), ANGLES, crank_speed=1.0, loads=ks.ProcessForce(30.0))
 
@@ -215,13 +216,13 @@ def test_load_on_a_slider_that_is_not_there_names_the_one_that_is():
         ({"on": "B", "pin": "C"}, "'coupler' a second time"),
     ],
 )
-def test_group_hung_on_a_joint_that_is_not_there_or_with_names_taken_is_refused(names, words):
+def test_group_on_an_absent_joint_is_refused(names, words):
     chain = six_bar()
     with pytest.raises(ks.ParameterError, match=words):
         ks.Mechanism("six-bar", chain.crank, (chain.groups[0], ks.SliderGroup(0.5, **names)))
 
 
-def test_second_group_out_of_reach_is_reported_with_its_own_lengths_and_angles():
+def test_open_second_group_names_its_own_lengths():
     chain = six_bar()
     short = ks.SliderGroup(0.3, on="B", pin="C", label="2")
     with pytest.raises(ks.AssemblyError, match=r"six-bar .*distance from B to the guide.*coupler2 length, 0\.3 m"):

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.builders import crank_slider_parts, with_roller_follower
-from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 9)
 LINKS = {name: ks.Link(mass, (0.1, 0.01), 0.2) for mass, name in enumerate(("crank", "coupler", "slider"), 1)}
@@ -46,29 +44,3 @@ def test_a_yoke_follows_the_cosine():
     yoke = ks.scotch_yoke(0.1, slider=ks.Link(3.0))
     found = ks.solve(yoke, TURN, crank_speed=7.0)
     assert found.slider_acceleration == pytest.approx(-0.1 * 49.0 * np.cos(TURN), abs=1e-14)
-
-
-CIRCLE = ks.cams.Circle(0.1, (0.01, 0.0))
-
-
-def test_parts_of_a_crank_slider_are_those_that_its_builder_makes():
-    plain, cam = ks.crank_slider(0.1, 0.4), ks.cam_crank_slider(CIRCLE, 0.4)
-    assert crank_slider_parts(plain) == (None, plain.groups[0])
-    assert crank_slider_parts(cam) == cam.groups
-
-
-@every("groups", [
-    (), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),), (ks.SliderGroup(0.4), ks.SliderGroup(0.5, pin="C", label="2")),
-    (ks.SliderGroup(0.4, label="2"),), (ks.Pin("crank", (0.1, 0.1), "C"), ks.SliderGroup(0.4)),
-    (ks.Pin("crank", (0.1, 0.1), "C"), ks.SliderGroup(0.4, on="C")),
-])  # fmt: skip
-def test_other_machines_have_no_parts_of_a_crank_slider(groups):
-    assert crank_slider_parts(ks.Mechanism("chain", ks.Crank(0.1), groups)) is None
-
-
-def test_a_machine_with_a_follower_keeps_its_groups():
-    plain = ks.crank_slider(0.1, 0.4)
-    law = ks.laws.cosine(0.01, 0.05)
-    made = with_roller_follower(plain, "press with cam", law, ks.Guide.at(1.0), ks.Link(0.3), "R", "_cam")
-    assert (made.name, made.crank, made.groups[:-1]) == ("press with cam", plain.crank, plain.groups)
-    assert (made.groups[-1].follower.mass, made.groups[-1].pin, made.groups[-1].label) == (0.3, "R", "_cam")

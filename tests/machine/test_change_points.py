@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.change_points import LINKAGES, LINKS, SIDES, SINGLE, SPEED, each, four_bar, solve
+from support.change_points import LINKAGES, LINKS, NEAR, SIDES, SINGLE, SPEED, each, errors, four_bar, reference, solve
+from support.enclosed import assert_enclosed
 
 # What the branches are
 
@@ -19,7 +20,7 @@ def test_parallelogram_stays_a_parallelogram():
     assert set(solution.rate("rocker")) == {SPEED}
 
 
-def test_folded_kite_and_folded_rhombus_leave_the_rocker_at_rest():
+def test_folded_kite_and_rhombus_rest_the_rocker():
     for name in ("kite", "rhombus"):
         solution = solve(four_bar(name, "crossed"), np.linspace(-7.0, 7.0, 99))
         np.testing.assert_allclose(solution.position("B"), 0.0, atol=1e-15)
@@ -27,7 +28,7 @@ def test_folded_kite_and_folded_rhombus_leave_the_rocker_at_rest():
 
 
 @each
-def test_open_is_left_of_the_line_from_the_crank_pin_to_the_pivot_in_the_first_half_turn(name, assembly):
+def test_open_is_left_of_the_line_to_the_pivot(name, assembly):
     solution = solve(four_bar(name, assembly), np.linspace(0.1, 3.0, 9))
     along, reach = (solution.position(joint) - solution.position("A") for joint in ("O2", "B"))
     assert np.all(SIDES[assembly] * (along[0] * reach[1] - along[1] * reach[0]) > -1e-12)
@@ -51,7 +52,7 @@ def test_group_on_a_crank_is_checked_as_on_its_own():
 
 
 @each
-def test_motion_goes_on_through_every_change_point_and_closes_after_its_turns(name, assembly):
+def test_motion_passes_change_points_and_closes(name, assembly):
     """Positions by cubic interpolation of what is around them: no side is left, and no velocity jumps."""
     made = four_bar(name, assembly, (LINKAGES[name][3] * 0.6, LINKAGES[name][3] * 0.8))
     assert made.turns == (2 if name in SINGLE else 1)
@@ -68,14 +69,14 @@ def test_motion_goes_on_through_every_change_point_and_closes_after_its_turns(na
         np.testing.assert_allclose(first, turned.position("B"), atol=1e-13)
 
 
-def test_pin_that_passes_close_by_the_pivot_is_warned_of():
+def test_pin_close_to_its_pivot_is_warned_of():
     made = ks.four_bar(1.0, 2.0, 2.0 - 2.0**-24, rocker_pivot=(1.0 + 2.0**-24, 0.0), assembly="crossed", **LINKS)
     with pytest.warns(ks.ConditionWarning, match="correct digits"):
         solve(made, np.array([1e-8, 3e-8, 6e-8, 1e-7, 1.0]))
 
 
 @pytest.mark.parametrize("assembly", SIDES)
-def test_linkages_without_change_points_keep_their_side_to_the_last_bit(assembly):
+def test_other_linkages_keep_their_side_exactly(assembly):
     word, number = (
         ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), assembly=way) for way in (assembly, SIDES[assembly])
     )
@@ -86,7 +87,7 @@ def test_linkages_without_change_points_keep_their_side_to_the_last_bit(assembly
     np.testing.assert_array_equal(solve(word, angles).acceleration("B"), solve(number, angles).acceleration("B"))
 
 
-def test_lengths_in_decimals_count_as_equal_and_close_everywhere():
+def test_decimal_lengths_count_as_equal():
     for crank, coupler, rocker, ground in (
         (0.1 + 0.2, 0.7, 0.3, 0.7),
         (0.4, 0.7, 0.9, 0.2),
@@ -111,7 +112,7 @@ def test_lengths_beyond_eight_ulp_are_no_change_point():
 
 @pytest.mark.filterwarnings("ignore:.*stands still:kinetostatics.errors.HintWarning")
 @pytest.mark.parametrize("guide_angle", [0.0, 0.7, -2.0])
-def test_coupler_as_long_as_the_crank_carries_the_slider_through_the_centre(guide_angle):
+def test_equal_coupler_takes_slider_through_centre(guide_angle):
     angles = np.linspace(-7.0, 7.0, 41)
     made = {
         way: ks.crank_slider(
@@ -126,7 +127,7 @@ def test_coupler_as_long_as_the_crank_carries_the_slider_through_the_centre(guid
     assert {item.turns for item in made.values()} == {1}
 
 
-def test_slider_with_an_offset_passes_its_only_change_point_in_two_turns():
+def test_offset_slider_passes_in_two_turns():
     made = ks.crank_slider(0.5, 0.75, guide_offset=0.25, assembly="open", coupler=LINKS["coupler"], slider=ks.Link(3.0))
     assert made.turns == 2
     (change,) = made.change_points
@@ -138,7 +139,7 @@ def test_slider_with_an_offset_passes_its_only_change_point_in_two_turns():
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-def test_forces_of_an_upright_slider_at_the_exact_angle_are_infinite_across_the_guide_and_finite_along_it():
+def test_upright_slider_force_is_infinite_across():
     guide = ks.Guide.through((-0.25, 0.0), (-0.25, 1.0))
     made = ks.crank_slider(0.5, 0.75, guide=guide, assembly="open", coupler=LINKS["coupler"], slider=ks.Link(3.0))
     solution = solve(made, np.array([0.0, 1e-10]))
@@ -157,7 +158,7 @@ def test_change_points_just_below_zero_lie_in_the_turn():
 
 
 @each
-def test_a_turn_is_solved_without_a_warning_until_reactions_are_read(name, assembly):
+def test_reactions_alone_warn_at_change_points(name, assembly):
     """Warnings are errors in the tests."""
     solution = ks.Scene(four_bar(name, assembly), SPEED, loads=ks.Gravity()).solve(72)
     assert solution.crank_angle[-1] > 2 * np.pi * (solution.mechanism.turns - 0.1)
@@ -172,7 +173,7 @@ def test_a_turn_is_solved_without_a_warning_until_reactions_are_read(name, assem
 @pytest.mark.parametrize(
     ("name", "places"), [("parallelogram", "0, 180"), ("4/1/3/2", "180, 540"), ("deltoid", "0, 360")]
 )
-def test_extremes_of_torque_are_ordinary_and_those_of_reactions_infinite_at_change_points(name, places):
+def test_torque_extremes_stay_finite(name, places):
     solution = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(12)
     torque = ks.extremes(solution, "balancing_torque")
     fine = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(7200).balancing_torque
@@ -183,14 +184,14 @@ def test_extremes_of_torque_are_ordinary_and_those_of_reactions_infinite_at_chan
     assert 0 < found.range[0] < 100
 
 
-def test_reactions_that_no_load_makes_grow_stay_what_they_are():
+def test_unloaded_reactions_stay_finite():
     made = replace(four_bar("parallelogram", "open", crank=LINKS["crank"]))
     solution = solve(made, np.linspace(0.0, 6.0, 13))
     assert not solution.reaction("B").any()
     assert np.isfinite(solution.reaction("O")).all()
 
 
-def test_work_of_the_torque_over_the_period_is_zero_without_friction():
+def test_torque_does_no_work_over_the_period():
     for name in LINKAGES:
         torque = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(360).balancing_torque
         assert abs(torque.mean()) < 1e-9 * abs(torque).max()
@@ -200,3 +201,130 @@ def test_fixed_side_names_its_kinks_and_jumps():
     for name, words in (("parallelogram", "a kink at 0 deg and a kink at 180 deg"), ("deltoid", "a jump, as A meets")):
         with pytest.warns(ks.ConditionWarning, match=words):
             solve(four_bar(name, 1), np.array([0.0, 1.0]))
+
+
+# Change points passed
+
+
+@each
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_both_sides_of_a_change_point_are_exact(name, assembly):
+    """The change point lies at crank angle 0, near which angles are as fine as they can be."""
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
+    solution = solve(made, angles)
+    wrong = {
+        (angle, quantity): error
+        for place, angle in enumerate(angles.tolist())
+        for quantity, error in errors(solution, place, reference(name, assembly, behind, angle)).items()
+        if not error < 1e-12
+    }
+    assert not wrong
+
+
+@each
+def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    solution = solve(made, np.array([-1e-10, 0.0, 1e-10]))
+    for values in (
+        solution.balancing_torque,
+        *solution.velocity("B"),
+        *solution.acceleration("B"),
+        solution.rate("rocker"),
+        solution.angular_acceleration("coupler"),
+    ):
+        assert np.ptp(values) < 1e-6
+    with pytest.warns(ks.ConditionWarning, match="B is infinite at crank angle 0 deg, at a change point"):
+        force = solution.reaction("B")
+    assert np.isinf(np.hypot(*force)[1])
+    assert np.isinf(np.hypot(*solution.reaction("O"))[1])
+
+
+@each
+def test_engines_agree(name, assembly, interpreted):
+    scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
+    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
+    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
+    kernels = numpy.dynamics
+    for found in (compiled, kernels):
+        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-13, atol=1e-13)
+        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        four_bar("4/1/3/2", "open"),
+        four_bar("deltoid", "crossed"),
+        ks.four_bar(2.5, 5.0, 2.5, rocker_pivot=(-3.0, -4.0), assembly="crossed", **LINKS),
+        ks.crank_slider(0.5, 0.75, guide_angle=2.5, guide_offset=-0.25, assembly="crossed", slider=LINKS["rocker"]),
+        ks.crank_slider(0.5, 0.5, guide_angle=0.4, assembly="open", slider=LINKS["rocker"], coupler=LINKS["coupler"]),
+    ],
+    ids=lambda made: f"{made.name} {made.groups[0].passage}",
+)
+def test_enclosures_contain_other_formulas(made):
+    assert_enclosed(solve(made, np.array([0.3, 4.0, 9.0])), "B")
+
+
+# Programs, batches, sweeps and case files keep to the kind that the words have chosen
+
+
+def program(name, quantities="balancing_torque"):
+    return ks.compile(ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()), quantities, engine="numpy")
+
+
+def test_program_takes_values_that_keep_the_kind():
+    longer = {"crank_length": 2.0, "rocker_length": 2.0, "coupler_length": 3.0, "rocker_pivot.x": 3.0}
+    found = program("parallelogram")(0.3, longer)["balancing_torque"]
+    made = ks.four_bar(2.0, 3.0, 2.0, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    assert found == ks.Scene(made, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque
+    assert program("parallelogram")(0.3, {"crank_length": 1.0 + 2.0**-52})["balancing_torque"] > 0
+
+
+def test_program_refuses_a_new_change_point():
+    made = ks.four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    found = ks.compile(ks.Scene(made, SPEED), "balancing_torque", engine="numpy")
+    assert found.derivatives(0.3, "crank_length")["balancing_torque"]["crank_length"] != 0
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        found(0.3, {"rocker_length": 1.0})
+
+
+@pytest.mark.parametrize("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
+def test_only_mass_derivatives_are_given(path):
+    found = program("4/1/3/2")
+    with pytest.raises(ks.ParameterError, match=f"no derivative by {path}"):
+        found.derivatives(0.3, (path, "crank.mass"))
+    slopes = found.derivatives(0.3)["balancing_torque"]
+    assert path not in slopes
+    step = 1e-3
+    difference = (
+        found(0.3, {"coupler.mass": 1.5 + step})["balancing_torque"]
+        - found(0.3, {"coupler.mass": 1.5 - step})["balancing_torque"]
+    )
+    assert slopes["coupler.mass"] == pytest.approx(difference / (2 * step), rel=1e-9)
+
+
+def test_batches_must_be_of_one_kind():
+    scale = np.array([[1.0], [2.5], [0.3]])
+    made = ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4 * scale, 0.0), assembly="open")
+    assert solve(made, np.linspace(0.0, 12.0, 9)).position("B").shape == (2, 3, 9)
+    with pytest.raises(
+        ks.ParameterError, match=r"must be of one kind, but these have change points none; a \+ d = b"
+    ) as error:
+        ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4.0, 0.0), assembly="open")
+    assert error.value.designs.tolist() == [True, False, False]
+
+
+def test_sweeps_refuse_means_of_growing_forces():
+    import pandas as pd
+
+    scene = ks.Scene(four_bar("4/1/3/2", "open"), SPEED, loads=ks.Gravity())
+    designs = pd.DataFrame({"coupler.mass": [1.0, 2.0]})
+    with pytest.raises(ks.ParameterError, match="no mean and no largest value"):
+        ks.sweep(scene, designs, ["mean B"], progress=False)
+    table = ks.sweep(scene, designs, ["largest balancing_torque"], angles=720, progress=False)
+    with_mass = scene.varied({"coupler.mass": 2.0})
+    largest = ks.extremes(with_mass.solve(12), "balancing_torque").range[1]
+    assert table.iloc[1, 1] == pytest.approx(largest, rel=1e-6)

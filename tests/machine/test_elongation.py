@@ -4,8 +4,8 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.studies.methods.enclosures import on_arb
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 STRAIGHT = np.linspace(5.7, 6.28, 40)
 """Crank angles at which the knuckle of the toggle press is nearly straight."""
@@ -24,7 +24,7 @@ def off(found, exact):
 
 
 @every("name", [*WAYS, "knuckle"])
-def test_elongation_near_a_dead_centre_is_without_the_rounding_of_the_travel(name, flint):
+def test_elongation_near_dead_centre_is_exact(name, flint):
     """Its error is less than half that of their difference, where it is counted from a place near the dead centre."""
     scene, turn = shipped("toggle_press").variants["idle"].scene, STRAIGHT
     if name in WAYS:
@@ -38,7 +38,7 @@ def test_elongation_near_a_dead_centre_is_without_the_rounding_of_the_travel(nam
 
 
 @every("name", WAYS)
-def test_departure_is_the_second_derivative_plus_the_elongation(name, flint):
+def test_departure_is_curvature_plus_elongation(name, flint):
     """On a pin of the crank, from the coupler alone."""
     mechanism, turn = WAYS[name]
     s = ks.Scene(mechanism, 30.0).solve(turn)
@@ -51,36 +51,7 @@ def test_departure_is_the_second_derivative_plus_the_elongation(name, flint):
     assert off(group.departure(s.dynamics.placement, free), exact) < 1e-17
 
 
-CAM = ks.cams.Harmonic((0.27, -0.012, 0.024), (0.0002,), 0.1)
-SAWS = {
-    "level": ks.cam_crank_slider(CAM, 2.01, slider=ks.Link(600.0)),
-    "inclined, beside O": ks.cam_crank_slider(CAM, 2.01, guide_angle=0.4, guide_offset=0.03, slider=ks.Link(600.0)),
-    "behind": ks.cam_crank_slider(CAM, 2.01, guide_angle=-2.0, assembly=-1, slider=ks.Link(600.0)),
-}
-
-
-@every("name", SAWS)
-def test_elongation_parts_into_the_mean_radius_of_the_cam_and_what_it_has_more(name, flint):
-    """Near dead centres that is without the rounding of the elongation itself, anywhere without that of the travel."""
-    mechanism = SAWS[name]
-    group = mechanism.groups[-1]
-    for turn, least in (
-        (group.guide.guide_angle + np.r_[ENDS, ENDS + np.pi], 3e-17),
-        (np.linspace(0.0, 6.2, 60), 1.2e-16),
-    ):
-        s = ks.Scene(mechanism, 30.0).solve(turn)
-        length, more = group.outward(s.dynamics.placement, group.side * 1.99)
-        run = on_arb(flint.arb, s)
-        whole, part = run.mechanism.groups[-1].outward(run.placement, flint.arb(group.side * 1.99))
-        elongation = run.elongation(flint.arb(group.side * 1.99), "slider")
-        assert length == 0.27
-        assert (
-            max(abs(float(abs(one) - abs(whole + other))) for one, other in zip(elongation, part, strict=True)) < 1e-50
-        )
-        assert off(more, part) < least
-
-
-def test_what_a_cam_of_the_user_s_adds_to_a_harmonic_one_is_not_left_out():
+def test_own_cam_beside_a_harmonic_one_counts():
     class Larger(ks.cams.Harmonic):
         """By a millimetre."""
 

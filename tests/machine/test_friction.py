@@ -24,7 +24,7 @@ def test_each_pair_has_its_kind(mechanism, joint, kind):
     assert friction.kind_for(mechanism.pairs[name]) is kind
 
 
-def test_a_mapping_keeps_all_joints_and_acts_where_it_is_not_zero():
+def test_mapping_keeps_joints_without_friction():
     given = {"O": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.0)}
     kept = friction.taken(given)
     assert dict(kept) == given
@@ -33,11 +33,3 @@ def test_a_mapping_keeps_all_joints_and_acts_where_it_is_not_zero():
     assert friction.taken({}) is friction.NONE
     with pytest.raises(KeyError):
         kept["A"]
-
-
-def test_what_is_wrong_is_told_by_joint():
-    given = {"X": ks.PinFriction(0.1, 0.02), "O": ks.GuideFriction(0.1), "guide": ks.GuideFriction(0.1)}
-    unknown, unlike = friction.problems(SAW, given)
-    assert "joint is 'X'" in unknown
-    assert "'O' turns on a pin and takes a PinFriction" in unlike
-    assert "must be a dict" in next(friction.problems(SAW, 0.1))

@@ -182,7 +182,7 @@ def reference(angle):
     return found
 
 
-def test_its_forces_are_those_of_a_full_system_that_shares_no_formula(solution):
+def test_group_agrees_with_an_independent_system(solution):
     with mp.workdps(40):
         expected = [reference(angle) for angle in ANGLES]
     for name in QUANTITIES:
@@ -198,13 +198,14 @@ def test_its_class_takes_at_most_sixty_lines_of_code():
     assert sum(bool(line.strip()) for line in source.splitlines()) - documented <= 60
 
 
-def test_it_passes_the_check_of_groups_and_balances_its_powers(solution):
+def test_group_passes_the_check_and_powers_balance(solution):
     report = ks.check(mechanism().groups[0])
     assert report.ok, report
     assert solution.power_residual < 1e-13
 
 
-def test_its_outputs_stand_in_the_frame_and_among_the_extremes_with_the_units_declared():
+@pytest.mark.slow
+def test_group_outputs_stand_in_frame_and_extremes():
     s = scene("_saw").solve(ANGLES)
     columns = set(s.frame().columns)
     assert {"guide_moment_saw [N m]", "guide_force_saw [N]", "slot_moment_saw [N m]"} <= columns
@@ -229,7 +230,7 @@ def test_engines_and_programs_agree_with_the_kernels(solution, engine):
         assert np.max(np.abs(found - expected)) <= 1e-13 * scale, name
 
 
-def test_derivatives_by_its_own_numbers_are_those_of_differences():
+def test_group_derivatives_equal_differences():
     program = compiled(scene(), ("balancing_torque", "guide_moment"), engine="numpy")
     paths = ("slot_angle", "guide_offset", "slider.mass", "block.centre.along", "crank_length")
     assert set(paths) <= set(program.parameters)
@@ -247,7 +248,8 @@ def test_condition_is_small_where_nothing_is_lost(solution):
     assert np.all((solution.condition >= 1.0) & (solution.condition < 1e4))
 
 
-def test_needs_offers_what_it_is_made_of_and_a_series_follows_it():
+@pytest.mark.slow
+def test_needs_and_series_work_with_the_group():
     s = ks.solve(mechanism(), np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=30.0)
     found = ks.needs(s, "balancing_torque", 0.01)
     names = {made.name for made in found.alone}
@@ -264,7 +266,8 @@ def test_principal_points_find_the_shaking_force(solution):
     assert np.max(np.abs(solution.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
 
 
-def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(solution, tmp_path):
+@pytest.mark.slow
+def test_group_is_drawn_and_animated(solution, tmp_path):
     ax = plt.subplots()[1]
     ks.plots.mechanism(solution, angles=(30,), ax=ax)
     pose = solution.at(np.radians([30.0]))
@@ -313,7 +316,8 @@ class Paired(Yoke):
         return {self.on: Turning("block", self.on), "slot": slot, "guide": guide}
 
 
-def test_methods_under_study_know_it_once_it_declares_its_pairs(solution):
+@pytest.mark.slow
+def test_methods_know_the_group_by_its_pairs(solution):
     own = vars(mechanism().groups[0])
     paired = replace(solution, mechanism=replace(mechanism(), groups=(Paired(**own),)))
     for name in QUANTITIES:

@@ -28,7 +28,7 @@ def series(angle):
     return mp.fsum(terms + [mp.mpf(b) * mp.sin(k * angle) for k, b in enumerate(SINE, 1)])
 
 
-def test_radius_and_derivatives_equal_the_series_in_30_digits():
+def test_radius_equals_the_series_in_30_digits():
     with mp.workdps(30):
         for order, found in enumerate(CAM.radius(ANGLES)):
             expected = [float(mp.diff(series, float(angle), order)) for angle in ANGLES]
@@ -36,7 +36,7 @@ def test_radius_and_derivatives_equal_the_series_in_30_digits():
 
 
 @pytest.mark.parametrize(("cosine", "sine"), [((0.3,), ()), ((0.3, 0.0), (0.0,)), ([0.3], []), (np.array([0.3]), ())])
-def test_cam_of_its_mean_radius_alone_is_a_circle_about_the_crank(cosine, sine):
+def test_mean_radius_alone_is_a_circle(cosine, sine):
     found, circle = scene(ks.cams.Harmonic(cosine, sine)).solve(24), scene(ks.cams.Circle(0.3)).solve(24)
     for name in ("O", "cam_force", "balancing_torque", "pressure_angle"):
         assert_allclose(
@@ -55,7 +55,7 @@ def test_first_harmonics_may_turn_with_the_guide():
         assert_allclose(one, other, rtol=0, atol=1e-16)
 
 
-def test_each_coefficient_is_a_parameter_with_its_exact_derivative():
+def test_coefficients_have_exact_derivatives():
     """Against central differences of the solution itself."""
     made = scene()
     program = ks.compile(made, ("balancing_torque", "cam_force"), engine="numpy")
@@ -70,7 +70,7 @@ def test_each_coefficient_is_a_parameter_with_its_exact_derivative():
             assert largest(found[name][path] - slope) < 1e-8 * largest(slope)
 
 
-def test_a_harmonic_that_is_zero_costs_nothing_and_can_be_asked_for():
+def test_zero_harmonic_costs_nothing():
     few, many = ks.cams.Harmonic((0.3, 0.01)), ks.cams.Harmonic((0.3, 0.01, 0.0, 0.0), (0.0,))
     plain, kept = (ks.compile(scene(cam), "balancing_torque") for cam in (few, many))
     assert plain._program.recording.operations == kept._program.recording.operations
@@ -81,7 +81,7 @@ def test_a_harmonic_that_is_zero_costs_nothing_and_can_be_asked_for():
 
 
 @pytest.mark.slow
-def test_batches_of_coefficients_solve_as_each_design_does():
+def test_batch_of_coefficients_equals_each_design():
     third = np.array([[0.0], [0.003], [-0.002]])
     found = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, third))).solve(24).balancing_torque
     for row, value in zip(found, third.ravel(), strict=True):
@@ -124,7 +124,7 @@ def test_coefficients_no_cam_can_have_are_refused(cosine, sine, message):
         ks.cams.Harmonic(cosine, sine)
 
 
-def test_a_pitch_curve_that_does_not_go_around_the_crank_is_refused():
+def test_harmonic_pitch_curve_must_go_around_o():
     with pytest.raises(ks.AssemblyError, match=r"must go around O, but its radius falls to -0\.01 m"):
         scene(ks.cams.Harmonic((0.3, 0.31))).solve(360)
 
@@ -144,7 +144,7 @@ cam = { kind = "harmonic", cosine = ["310 mm", "0.4 cm", "0 m", "-12 mm"], sine 
 """
 
 
-def test_case_file_gives_a_harmonic_cam_that_turns_with_the_guide(tmp_path):
+def test_case_harmonic_cam_turns_with_the_guide(tmp_path):
     path = tmp_path / "saw.toml"
     path.write_text(CASE)
     variant = ks.load_case(path).variant("saw")

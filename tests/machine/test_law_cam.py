@@ -36,7 +36,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_the_slider_follows_the_law_also_at_and_near_the_singular_angles(name):
+def test_slider_follows_the_law_at_singular_angles(name):
     """Position, velocity and acceleration through the whole mechanism, in a guide turned by 0.3 rad."""
     law, offset = LAWS[name]
     cam = ks.cams.from_law(law, guide_angle=0.3, guide_offset=offset)
@@ -51,7 +51,7 @@ def test_the_slider_follows_the_law_also_at_and_near_the_singular_angles(name):
     assert_allclose(solution.slider_acceleration, expected.acceleration, rtol=0, atol=3e-14)
 
 
-def test_the_cosine_law_is_the_closed_form_of_the_sawframe():
+def test_cosine_law_is_the_closed_form():
     law, cam = ks.cams.CosineLaw(0.3, 2.0, 0.2), ks.cams.from_law(laws.cosine(0.3, 2.0), guide_angle=0.2)
     assert cam.coupler_length == pytest.approx(law.coupler_length, rel=1e-15)
     assert cam.singular_angles[0] - 0.2 == pytest.approx(law.singular_angle, abs=1e-8)
@@ -109,7 +109,7 @@ def test_a_mechanism_off_the_law_is_warned_of():
         ks.cam_crank_slider(cam, cam.coupler_length)
 
 
-def test_a_cam_from_a_table_follows_the_spline_exactly_and_tells_its_error():
+def test_table_cam_follows_its_spline():
     angle = np.linspace(0.0, TURN, 120, endpoint=False)
     law = laws.table(angle, 2.0 + 0.3 * np.cos(angle))
     cam = ks.cams.from_law(law)
@@ -118,3 +118,47 @@ def test_a_cam_from_a_table_follows_the_spline_exactly_and_tells_its_error():
     assert_allclose(ks.solve(machine, turn, crank_speed=1.0).slider_acceleration, law(turn).acceleration, atol=3e-12)
     assert cam.force_error == law.force_error < 1e-4
     assert ks.cams.from_law(laws.cosine(0.3, 2.0)).force_error is None
+
+
+# The coupler length with which a law has a smooth cam, and laws that have none
+
+
+def test_cosine_law_off_the_guide_is_refused():
+    law = laws.cosine(0.3, 2.0)
+    message = (
+        r"coupler would have to be 2\.019120\d+ m long at 82\.26\d+ deg .* and 2\.02487\d+ m at 278\.79\d* deg.*"
+        r"later by 0\.5608 deg needs one only: law\.shifted\(0\.00978856"
+    )
+    with pytest.raises(ks.ParameterError, match=message) as caught:
+        ks.cams.from_law(law, guide_offset=0.02)
+    phase = float(str(caught.value).split("law.shifted(")[1].rstrip(")"))
+    cam = ks.cams.from_law(law.shifted(phase), guide_offset=0.02)
+    assert abs(cam.far.length - cam.near.length) < 1e-14
+    assert 2.0191 < cam.coupler_length < 2.0249
+
+
+def test_a_law_of_ones_own_is_told_how_to_shift_itself():
+    own = laws.cosine(0.3, 2.0)
+    with pytest.raises(ks.ParameterError, match=r"needs one only: lambda phi: law\(phi - 0\.0097"):
+        ks.cams.from_law(lambda phi: own(phi), guide_offset=0.02)
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (laws.cosine(0.3, -2.0), "the slider must stay ahead of the roller along the guide, but is 2.02"),
+        (
+            laws.joined(laws.cycloidal(0.1, 2.0, np.pi), laws.cycloidal(2.0, 0.1, np.pi)),
+            "the pitch curve must go around O, but its radius falls to -1.3",
+        ),
+        (lambda phi: phi, "must give 4 arrays"),
+        (lambda phi: (phi, phi, phi, phi), "must repeat after a turn, but gives 0.5 m at 0.5 rad and 6.78"),
+        (lambda phi: (phi * np.nan,) * 4, "must give finite values"),
+        (laws.cycloidal(1.7, 2.3, 1.0), "angles must lie from 0 to its 1 rad"),
+        (laws.Law, "must be one of ks.laws"),
+        (3.0, "must be one of ks.laws"),
+    ],
+)
+def test_what_is_no_law_of_a_slider_is_refused(law, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        ks.cams.from_law(law)

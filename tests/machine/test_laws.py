@@ -1,12 +1,15 @@
 """Laws of the whole turn: a cosine, segments that are joined or do not join, tables."""
 
 import warnings
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine import segments
+from kinetostatics.machine.law import Law, bends_of, knots_of
 
 laws = ks.laws
 TURN = 2 * np.pi
@@ -43,7 +46,7 @@ def rise_dwell_return(name="cycloidal", **options):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_rise_dwell_return_runs_through_its_segments_and_repeats(name):
+def test_rise_dwell_return_runs_and_repeats(name):
     law = rise_dwell_return(name)
     assert_allclose(law([0.0, 1.0, 2.2, 3.75, 5.5]).position, [1.7, 2.0, 2.3, 2.0, 1.7], rtol=1e-15)
     phi = np.linspace(0.0, TURN, 77)
@@ -52,7 +55,7 @@ def test_rise_dwell_return_runs_through_its_segments_and_repeats(name):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_position_velocity_and_acceleration_are_continuous_where_segments_meet(name):
+def test_motion_is_continuous_between_segments(name):
     law = rise_dwell_return(name)
     knots = np.unique(law.knots)
     before, after = law(knots - 1e-9), law(knots + 1e-9)
@@ -67,7 +70,7 @@ def test_a_table_gives_the_law_that_it_was_taken_from():
         assert_allclose(found, expected, rtol=0, atol=10.0 ** (2 * order - 12))
 
 
-def test_a_measured_law_smoothed_by_its_noise_tells_forces_a_hundred_times_better():
+def test_smoothed_law_gives_better_forces():
     angle = np.linspace(0.0, TURN, 360, endpoint=False)
     exact = laws.cosine(0.3, 2.0)
     rounded = np.round(exact(angle).position, 6)
@@ -98,12 +101,12 @@ def test_a_measured_law_smoothed_by_its_noise_tells_forces_a_hundred_times_bette
         ([], "no segments"),
     ],
 )
-def test_segments_that_do_not_join_are_refused_with_the_place_and_both_numbers(segments, message):
+def test_open_segments_are_refused_with_the_place(segments, message):
     with pytest.raises(ks.ParameterError, match=message):
         laws.joined(*segments)
 
 
-def test_a_jump_of_the_acceleration_is_taken_where_it_is_allowed():
+def test_allowed_acceleration_jump_is_taken():
     law = rise_dwell_return("harmonic", smooth="velocity")
     assert law(2.0 - 1e-9).acceleration == pytest.approx(-0.5 * 0.6 * (np.pi / 2) ** 2, rel=1e-6)
     assert law(2.0 + 1e-9).acceleration == 0.0
@@ -116,3 +119,93 @@ def test_laws_are_silent_and_leave_plain_arrays():
             for part in rise_dwell_return(name, smooth="velocity")(np.linspace(0.0, TURN, 721)):
                 assert part.dtype == float
                 assert np.isfinite(part).all()
+
+
+# What a law of motion is
+
+
+RISING = ks.laws.joined(
+    ks.laws.cycloidal(1.7, 2.3, 2.0), ks.laws.dwell(2.3, 0.5), ks.laws.cycloidal(2.3, 1.7, 2 * np.pi - 2.5)
+)
+
+
+def test_a_law_comes_later_by_a_phase():
+    assert_allclose(RISING.shifted(0.4)(1.3), RISING(0.9), rtol=0, atol=1e-15)
+    assert_allclose(RISING.shifted(0.4).knots, np.add(RISING.knots, 0.4))
+    assert_allclose(RISING.shifted(0.4).shifted(-0.4)(1.3), RISING(1.3), rtol=1e-14)
+
+
+def test_what_is_only_called_has_no_knots_and_no_error():
+    class Own(Law):
+        def __call__(self, phi):
+            return ks.laws.cosine(0.3, 2.0)(phi)
+
+    assert Own().knots == knots_of(np.sin) == ()
+    assert Own().shifted(0.1).force_error is None
+    assert_allclose(Own().shifted(0.1)(0.5), Own()(0.4), rtol=0, atol=1e-15)
+
+
+def test_law_without_values_cannot_be_called():
+    class Empty(Law):
+        pass
+
+    with pytest.raises(TypeError, match="Empty must define __call__"):
+        Empty()(0.0)
+
+
+def test_knots_mark_jumps_of_acceleration_or_jerk():
+    rise, back = ks.laws.harmonic(0.05, 0.07, 2.0), ks.laws.cycloidal(0.07, 0.05, 2.0)
+    rest = 2 * np.pi - 5.0
+    law = ks.laws.joined(rise, ks.laws.dwell(0.07, 1.0), back, ks.laws.dwell(0.05, rest), smooth="velocity")
+    found = bends_of(law)
+    assert [round(knot.angle, 12) for knot in found if knot.jumps] == [0.0, 2.0]
+    assert [round(knot.angle, 12) for knot in found if not knot.jumps] == [3.0, 5.0]
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    assert bends_of(ks.laws.table(angle, 0.05 + 0.01 * np.cos(angle))) == ()
+    assert bends_of(ks.laws.cosine(0.01, 0.05)) == ()
+
+
+# Segments of a turn
+
+
+RISING = {
+    "harmonic": segments.harmonic,
+    "cycloidal": segments.cycloidal,
+    "modified sine": segments.modified_sine,
+    "modified trapezoid": segments.modified_trapezoid,
+    "3-4-5": segments.polynomial,
+    "4-5-6-7": lambda *args: segments.polynomial(*args, powers="4-5-6-7"),
+    "powers of one's own": lambda *args: segments.polynomial(*args, powers=[3, 5, 8]),
+}
+
+
+@pytest.mark.parametrize("name", RISING)
+def test_every_derivative_is_that_of_the_one_before(name):
+    """By the interpolating polynomial between the knots, whose derivative is exact to rounding."""
+    segment = RISING[name](0.2, -0.3, 1.7)
+    for low, high in pairwise(segment.knots):
+        motion = np.polynomial.Chebyshev.interpolate(lambda x: segment(x).position, 24, [low, high])
+        inner = np.linspace(low, high, 9)[1:-1]
+        for order, part in enumerate(segment(inner)):
+            assert_allclose(
+                part, motion.deriv(order)(inner) if order else motion(inner), rtol=0, atol=10.0 ** (3 * order - 13)
+            )
+
+
+@pytest.mark.parametrize("name", RISING)
+def test_peaks_scale_with_stroke_and_angle(name):
+    """Velocity by stroke / angle, acceleration by stroke / angle^2, jerk by stroke / angle^3."""
+    segment = RISING[name](2.0, 1.5, 0.8)
+    found = [np.abs(part).max() for part in segment(np.linspace(0.0, 0.8, 40_001))[1:]]
+    assert_allclose(found, np.array(segment.coefficients) * 0.5 / 0.8 ** np.arange(1, 4), rtol=1e-6)
+
+
+def test_a_dwell_rests():
+    assert_allclose(segments.dwell(0.1, 1.0)([0.0, 0.4, 1.0]), [[0.1] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3])
+
+
+def test_angle_beyond_a_segment_is_refused():
+    segment = segments.cycloidal(0.0, 1.0, 1.0)
+    assert segment(1.0 + 1e-13).position == 1.0
+    with pytest.raises(ks.ParameterError, match=r"segment: angles must lie from 0 to its 1 rad, got -0\.1 to 0\.5"):
+        segment([-0.1, 0.5])

@@ -63,7 +63,7 @@ def test_motion_is_that_of_the_angles_to_rounding(pivot, offset):
         assert np.max(np.abs(own - np.array(expected))) < 1e-14 * max(np.max(np.abs(expected)), 1.0), name
 
 
-def test_the_lever_stands_still_at_its_dead_centres_and_keeps_its_acceleration():
+def test_lever_rests_at_dead_centres():
     angles = dead_centres(SHAPER)
     s = solve(SHAPER, angles)
     assert np.max(np.abs(s.rate("lever"))) < 4 * EPSILON
@@ -71,7 +71,7 @@ def test_the_lever_stands_still_at_its_dead_centres_and_keeps_its_acceleration()
     assert np.max(np.abs(s.angular_acceleration("lever") - expected)) < 4 * EPSILON
 
 
-def test_a_pivot_inside_the_crank_circle_lets_the_lever_make_full_turns():
+def test_inner_pivot_lets_the_lever_turn_fully():
     angles = np.linspace(0.0, 2 * np.pi, 256, endpoint=False)
     inside, outside = (solve(pivot, angles).rate("lever") for pivot in (WHITWORTH, SHAPER))
     assert np.all(inside > 0.0)
@@ -86,7 +86,7 @@ def test_a_pivot_at_o_turns_with_the_crank():
     assert np.max(np.abs(s.measure("block_position") - 0.08)) < EPSILON
 
 
-def test_the_slot_lies_at_its_offset_to_the_left_of_the_pivot():
+def test_slot_lies_left_of_the_pivot():
     s = solve(SHAPER, np.linspace(0.0, 6.0, 7), offset=0.04)
     x, y = np.array(s.placement.links["lever"].direction)
     across = x * (s.position("A")[1] - SHAPER[1]) - y * (s.position("A")[0] - SHAPER[0])
@@ -94,7 +94,7 @@ def test_the_slot_lies_at_its_offset_to_the_left_of_the_pivot():
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
-def test_near_its_pivot_the_lever_keeps_what_its_condition_leaves(gap):
+def test_lever_near_its_pivot_keeps_its_condition(gap):
     """Crank as long as the pivot's distance but for a gap: the lever turns over within a small angle."""
     pivot, angles = (0.0, -R * (1.0 + gap)), -np.pi / 2 + np.array([-2.0, -0.5, 0.0, 0.3, 1.0]) * gap
     s = solve(pivot, angles)
@@ -105,7 +105,7 @@ def test_near_its_pivot_the_lever_keeps_what_its_condition_leaves(gap):
         assert abs(s.angular_acceleration("lever")[row] - slope) <= allowed * max(abs(slope), 1.0 / gap**2)
 
 
-def test_forces_of_a_lever_on_its_own_are_those_of_its_moments():
+def test_lever_forces_are_those_of_moments():
     """A lever with weight only, at rest: the slot bears its moment about the pivot."""
     lever = ks.Link(4.0, (0.3, 0.05), 0.2)
     made = ks.slotted_lever(R, pivot=SHAPER, lever=lever)
@@ -122,7 +122,7 @@ def test_forces_of_a_lever_on_its_own_are_those_of_its_moments():
 # Where it does not close
 
 
-def test_an_offset_beyond_the_pin_is_refused_with_distances_and_intervals():
+def test_offset_beyond_the_pin_is_refused():
     with pytest.raises(AssemblyError) as refused:
         solve((0.0, -0.2), np.linspace(0.0, 6.0, 20), offset=0.15)
     words = str(refused.value)
@@ -136,7 +136,7 @@ def test_an_offset_beyond_the_pin_is_refused_with_distances_and_intervals():
     assert np.isfinite(s.rate("lever")[0])
 
 
-def test_a_pin_that_meets_the_pivot_warns_with_the_crank_angle():
+def test_pin_meeting_the_pivot_warns():
     with pytest.warns(ConditionWarning, match="at crank angle 0 deg .* near a limit position"):
         s = solve((R, 0.0), np.array([0.0, 1.0]))
     assert s.condition[0] > 1e8
@@ -173,7 +173,7 @@ def test_a_lever_on_the_block_of_a_cam_needs_a_label():
         ks.Mechanism("chain", ks.Crank(), (ks.CamRoller(ks.cams.Circle(0.3, (0.05, 0.0))), ks.LeverGroup((0.0, -0.6))))
 
 
-def test_one_position_of_the_block_is_of_the_lever_and_one_of_its_label():
+def test_block_position_belongs_to_its_label():
     groups = ks.LeverGroup(SHAPER), ks.LeverGroup((0.4, 0.1), pivot_name="O3", label="2")
     s = ks.solve(ks.Mechanism("two levers", ks.Crank(R), groups), 0.3, crank_speed=1.0)
     for name, pivot in (("block_position", SHAPER), ("block2_position", (0.4, 0.1))):

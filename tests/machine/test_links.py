@@ -21,24 +21,7 @@ def z(vector):
 ARM = complex(ALONG, ACROSS) * np.exp(1j * ANGLE)
 
 
-def test_points_of_a_link_move_as_complex_numbers_do():
-    arm = links.arm(LINK.direction, ALONG, ACROSS)
-    assert z(arm) == pytest.approx(ARM, rel=1e-15)
-    assert z(links.first_at(LINK, arm)) == pytest.approx(z(JOINT.first) + 1j * RATIO * ARM, rel=1e-15)
-    assert z(links.second_at(LINK, arm)) == pytest.approx(z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM, rel=1e-15)
-    assert links.arm(LINK.direction, None, None) is None
-
-
-def test_a_link_between_two_joints_has_their_direction_and_rate():
-    direction = np.exp(1j * ANGLE)
-    length, end = 0.9, z(JOINT.position) + 0.9 * direction
-    first = z(JOINT.first) + 1j * RATIO * length * direction
-    second = z(JOINT.second) + (1j * SLOPE - RATIO**2) * length * direction
-    found = links.between(JOINT, Joint(*((part.real, part.imag) for part in (end, first, second))), length)
-    assert (z(found.direction), found.ratio, found.ratio_slope) == pytest.approx((direction, RATIO, SLOPE), rel=1e-14)
-
-
-def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
+def test_load_is_weight_less_inertia_at_the_joint():
     body = ks.Link(3.0, (ALONG, ACROSS), 0.2).body
     found = links.load(LINK, body, SPEED**2, ACCELERATION, (0.0, -9.81))
     centre = (z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM) * SPEED**2
@@ -51,7 +34,7 @@ def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
     assert links.virtual_work(LINK, found) == pytest.approx(work, rel=1e-14)
 
 
-def test_what_turns_a_link_is_as_exact_however_fast_it_spins():
+def test_fast_spin_keeps_the_moment_exact():
     """The pull of its mass centre, 1e16 times as large, goes through its reference joint."""
     body = links.Body(2.0, ALONG, ACROSS, 0.3)
     spinning = LINK._replace(ratio=1e8)
@@ -59,7 +42,3 @@ def test_what_turns_a_link_is_as_exact_however_fast_it_spins():
     slow, fast = (links.load(link, body, SPEED**2, None, (0.0, -9.81)) for link in (LINK._replace(ratio=0.0), spinning))
     assert fast.moment == slow.moment
     assert z(fast.force) == pytest.approx(2.0 * SPEED**2 * 1e16 * z(arm), rel=1e-14)
-
-
-def test_a_massless_link_has_no_load():
-    assert links.load(LINK, ks.Link().body, SPEED**2, ACCELERATION, None) == (None, None)

@@ -88,7 +88,7 @@ def test_any_link_bears_what_hangs_on_a_pin(link):
 
 
 @pytest.mark.parametrize("link", ["crank", "block"])
-def test_a_slotted_crank_with_a_cam_bears_what_hangs_on_a_pin(link):
+def test_slotted_crank_bears_what_hangs_on_a_pin(link):
     s = solve(
         ks.CamRoller(ks.cams.Circle(0.3, (0.05, -0.03)), PISTON),
         ks.Pin(on=link, at=(0.06, -0.09), name="P"),
@@ -100,9 +100,10 @@ def test_a_slotted_crank_with_a_cam_bears_what_hangs_on_a_pin(link):
     assert s.power_residual < 1e-13
 
 
+@pytest.mark.slow
 @reproducible
 @given(offset=st.floats(-3.0, 3.0), radius=st.floats(0.02, 0.1), length=st.floats(0.25, 0.5))
-def test_an_articulated_rod_is_where_a_circle_about_its_pin_meets_the_guide(offset, radius, length):
+def test_articulated_rod_meets_the_guide(offset, radius, length):
     """Slave rod of a master coupler: its pin turns with the master rod, its piston stays on the other bank."""
     bank = np.exp(1j * np.pi / 3)
     s = solve(
@@ -117,13 +118,6 @@ def test_an_articulated_rod_is_where_a_circle_about_its_pin_meets_the_guide(offs
     assert np.max(np.abs(s.travel("slider2") - expected)) < 1e-14
 
 
-def test_a_pin_costs_no_condition_of_closure_and_adds_no_link():
-    s = solve(ks.SliderGroup(0.4), ks.Pin(on="slider", at=(0.1, 0.1)))
-    assert list(s.mechanism.links) == ["crank", "coupler", "slider"]
-    assert set(s.reactions) == {"A", "B", "guide", "O"}
-    assert np.all(s.closure[1] == 1.0)
-
-
 # What is refused
 
 
@@ -136,7 +130,7 @@ def test_a_pin_on_no_link_names_those_there_are():
         names(ks.RockerGroup(0.4, 0.3, (0.3, 0.1)), ks.Pin(on="couplr", at=(0.1, 0.0)))
 
 
-def test_a_pin_before_its_link_is_told_to_stand_behind_it():
+def test_pin_must_follow_its_link():
     with pytest.raises(ParameterError, match="the part that adds a link stands before what is fixed to it"):
         names(ks.Pin(on="coupler", at=(0.1, 0.0)), ks.RockerGroup(0.4, 0.3, (0.3, 0.1)))
 
@@ -151,7 +145,7 @@ def test_a_second_rod_on_a_pin_needs_a_label():
         names(ks.SliderGroup(0.4), ks.CylinderGroup((0.3, 0.3)))
 
 
-def test_a_pin_called_as_a_joint_with_its_label_loses_no_reaction():
+def test_pin_named_like_a_labelled_joint_works():
     """Pin "B2" of one group beside label "2" on "B" of another: both would be reaction "B2"."""
     for first, second in (
         (ks.RockerGroup(0.4, 0.3, (0.3, 0.1)), ks.SliderGroup(0.9, on="B", pin="B2", label="2")),

@@ -26,7 +26,7 @@ def test_the_working_curve_of_a_circle_is_a_circle(side, radius):
 
 
 @pytest.mark.parametrize("name", CAMS)
-def test_pressure_angle_and_curvature_are_those_of_the_curve_as_points(name):
+def test_angle_and_curvature_equal_those_of_points(name):
     """By derivatives of the points x(phi), y(phi) with complex numbers, not by the formulas of polar curves."""
     cam = CAMS[name]
     made = cam.profile(0.02, ANGLES)
@@ -72,7 +72,7 @@ def test_the_roller_touches_the_cam_and_never_cuts_it(name, side):
 
 
 @pytest.mark.parametrize("side", ["disk", "ring"])
-def test_a_cutter_of_another_radius_cuts_the_same_curve(side):
+def test_other_cutter_cuts_the_same_curve(side):
     """It touches the surface where the roller does, its centre a cutter's radius away from it."""
     made = LOBES.profile(0.02, 400, side)
     for radius in (0.005, 0.02, 0.04):
@@ -94,7 +94,7 @@ def test_extremes_lie_between_the_samples():
     assert lobes.smallest_hollow.value == pytest.approx(1.0 / fine.min(), rel=1e-9)
 
 
-def test_a_disk_is_undercut_from_the_smallest_radius_of_curvature_on():
+def test_disk_is_undercut_beyond_its_curvature():
     largest = LOBES.profile(0.01, 8).largest_roller_radius
     assert LOBES.profile(0.999 * largest, 8).smallest_curvature_radius.value == pytest.approx(0.001 * largest, rel=1e-6)
     message = (
@@ -105,7 +105,7 @@ def test_a_disk_is_undercut_from_the_smallest_radius_of_curvature_on():
         LOBES.profile(1.001 * largest, 8)
 
 
-def test_a_ring_is_undercut_where_the_pitch_curve_is_hollow():
+def test_ring_is_undercut_where_hollow():
     largest = LOBES.profile(0.01, 8, "ring").largest_roller_radius
     hollow = -LOBES.curvature_radius(np.pi)
     assert largest == pytest.approx(hollow, rel=1e-6)
@@ -114,7 +114,7 @@ def test_a_ring_is_undercut_where_the_pitch_curve_is_hollow():
     assert LAW.profile(0.2, 8, "ring").largest_roller_radius == np.inf
 
 
-def test_a_cutter_that_cuts_another_part_of_the_cam_is_refused():
+def test_cutter_reaching_another_part_is_refused():
     """A ring of two bulbs, each wider than the neck between them: 0.11 m on both sides of O."""
     made = ks.cams.Harmonic((0.3, 0.0, 0.2)).profile(0.01, 3600, "ring")
     assert made.smallest_hollow.value < -0.2
@@ -126,7 +126,7 @@ def test_a_cutter_that_cuts_another_part_of_the_cam_is_refused():
             made.cutter_path(radius)
 
 
-def test_a_roller_that_cuts_another_part_of_the_cam_is_refused():
+def test_roller_reaching_another_part_is_refused():
     """A lobe that widens outward from a narrow neck: the roller fits every bend of it, but cuts through the neck."""
     angle = np.linspace(-np.pi, np.pi, 1440, endpoint=False)
     neck = ks.cams.Sampled(angle, 0.03 + 0.27 / (1.0 + (angle / 0.45) ** 8))
@@ -143,7 +143,7 @@ def test_a_roller_that_covers_the_crank_is_refused():
         ks.cams.Circle(0.2, (0.1, 0.0)).profile(0.12, 8)
 
 
-def test_a_cutter_that_does_not_fit_the_hollow_is_refused():
+def test_cutter_larger_than_the_hollow_is_refused():
     hollow = LOBES.profile(0.02, 8).smallest_hollow
     LOBES.profile(0.02, 8).cutter_path(-0.999 * hollow.value)
     with pytest.raises(
@@ -152,7 +152,7 @@ def test_a_cutter_that_does_not_fit_the_hollow_is_refused():
         LOBES.profile(0.02, 8).cutter_path(-1.001 * hollow.value)
 
 
-def test_limits_tell_what_exceeds_them_with_both_numbers():
+def test_limits_name_what_exceeds_them():
     made = LOBES.profile(0.02, 8)
     assert made.exceeded(pressure_angle=np.radians(40.0), curvature_radius=0.01) == ()
     first, second = made.exceeded(pressure_angle=np.radians(20.0), curvature_radius=0.05)
@@ -164,7 +164,7 @@ def test_limits_tell_what_exceeds_them_with_both_numbers():
 
 @pytest.mark.parametrize("name", CAMS)
 @pytest.mark.parametrize("degrees", [3.0, 20.0, 35.0])
-def test_the_base_circle_gives_just_the_largest_pressure_angle(name, degrees):
+def test_base_circle_gives_the_largest_angle(name, degrees):
     """The cam of the same rise on that base circle, sampled anew, has that pressure angle as its largest."""
     cam = CAMS[name]
     base = cam.base_radius(np.radians(degrees))

@@ -1,16 +1,18 @@
-"""Rollers and faces as parts of a scene: what they refuse, and their paths."""
+"""Rollers and faces as parts of a scene, and the pressure of Hertz."""
 
 import re
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine import hertz
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
 
 ROLLER = (0.05, 0.06, *STEEL)
 
 
-def test_materials_of_the_cam_are_those_of_the_roller_unless_told():
+def test_cam_material_defaults_to_the_rollers():
     alike = ks.Roller(*ROLLER).modulus
     assert ks.Roller(*ROLLER, cam_youngs_modulus=210e9, cam_poissons_ratio=0.3).modulus == alike
     softer = ks.Roller(*ROLLER, cam_youngs_modulus=110e9)
@@ -40,7 +42,7 @@ def test_values_that_no_roller_has_are_refused():
         ks.FlatFollower(ks.laws.cosine(0.01, 0.05), face=ks.Roller(*ROLLER))
 
 
-def test_its_numbers_have_paths_and_a_scene_without_it_has_none():
+def test_roller_numbers_have_paths():
     scene = ks.Scene(rolled(), 33.5, loads=LOADS)
     assert {path: scene.parameters[path] for path in scene.parameters if path.startswith("roller")} == dict(
         zip(("roller.radius", "roller.width", "roller.youngs_modulus", "roller.poissons_ratio"), ROLLER, strict=True)
@@ -53,7 +55,7 @@ def test_its_numbers_have_paths_and_a_scene_without_it_has_none():
         bare.solve(12).contact_pressure  # noqa: B018
 
 
-def test_friction_of_another_radius_than_the_roller_s_is_refused():
+def test_friction_radius_must_be_the_rollers():
     friction = {"cam": ks.RollerFriction(0.01, 0.02, 0.04)}
     with pytest.raises(
         ks.ParameterError, match=r"roller_radius of 'cam', 0\.04 m, must be that of the roller .* 0\.05 m"
@@ -71,3 +73,25 @@ def test_two_contacts_of_one_name_are_refused():
     follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.5), roller=ks.Roller(*ROLLER))
     with pytest.raises(ks.ParameterError, match="adds quantity 'contact_pressure' a second time"):
         ks.Mechanism("both", ks.Crank(None), (ks.CamRoller(CAM, roller=ks.Roller(*ROLLER)), follower))
+
+
+# Line contact by Hertz
+
+
+STEEL_PAIR = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+
+
+def test_equal_materials_have_half_a_plane_modulus():
+    assert pytest.approx(2.1e11 / 0.91 / 2.0, rel=1e-14) == STEEL_PAIR
+
+
+def test_pressure_ellipse_bears_the_force():
+    p, b = (part(-5e3, 0.02, STEEL_PAIR, 0.015) for part in (hertz.pressure, hertz.half_width))
+    assert 0.5 * np.pi * b * p * 0.02 == pytest.approx(5e3, rel=1e-14)
+    assert p / b == pytest.approx(STEEL_PAIR / (2.0 * 0.015), rel=1e-14)
+
+
+def test_roller_conforms_to_a_ring_not_a_disk():
+    disk, ring = hertz.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
+    assert 1.0 / disk == pytest.approx(1.0 / 0.03 + 1.0 / 0.27, rel=1e-14)
+    assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)

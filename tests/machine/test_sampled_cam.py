@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine.turn_tables import TurnTable
 from support.every import every
 from support.machines import ANGLES, assert_equal, largest, results
 
@@ -20,7 +21,7 @@ def circle_table(count, start=0.3):
 
 
 @pytest.mark.parametrize("start", [-4.0, 0.3])
-def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
+def test_sampled_cam_converges_by_spline_order(start):
     """Twice the points: a quintic spline errs 2^6 less in r, 2^5 in r', 2^4 in r''."""
     phi = np.linspace(-7.0, 7.0, 400)
     errors = []
@@ -32,7 +33,7 @@ def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
         assert_allclose(np.log2(np.divide(coarse, fine)), [6, 5, 4], atol=0.7)
 
 
-def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
+def test_sampled_cam_passes_its_points():
     _, angle, radius = circle_table(40)
     cam = ks.cams.Sampled(angle, radius)
     assert_allclose(cam.radius(angle)[0], radius, rtol=1e-15)
@@ -40,7 +41,7 @@ def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
         assert_allclose(far, near, rtol=0, atol=1e-13)
 
 
-def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
+def test_sampled_cam_drives_like_its_circle():
     circle, angle, radius = circle_table(360)
     machines = [
         ks.cam_crank_slider(cam, 1.1, coupler=ks.Link(7.0, 0.5, 0.9), slider=ks.Link(11.0))
@@ -52,14 +53,14 @@ def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
 
 
 @pytest.mark.parametrize("digits", [4, 5])
-def test_sampled_cam_warns_of_a_table_whose_rounding_shows_in_the_second_derivative(digits):
+def test_rounding_in_the_second_derivative_warns(digits):
     """A radius read to 0.1 or 0.01 mm at every degree: the error over the step squared is of the size of r."""
     _, angle, radius = circle_table(360)
     with pytest.warns(UserWarning, match=r"360 points are too coarse or too noisy: r'' is uncertain by up to"):
         ks.cams.Sampled(angle, np.round(radius, digits))
 
 
-def test_sampled_cam_warns_of_too_few_points_for_its_harmonics():
+def test_too_few_points_for_harmonics_warn():
     angle = 2 * np.pi * np.arange(12) / 12
     with pytest.warns(UserWarning, match="12 points are too coarse"):
         ks.cams.Sampled(angle, 0.3 + 0.05 * np.cos(4 * angle))
@@ -108,7 +109,7 @@ def rounded(cam, count, step):
 @every("step", [1e-7, 1e-6, 1e-5])
 @every("count", [90, 360, 3600])
 @every("name", CAMS)
-def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count, step):
+def test_stated_force_error_is_within_ten_times(name, count, step):
     sampled = ks.cams.Sampled(*rounded(CAMS[name], count, step))
     exact = balanced_cam_force(CAMS[name])
     true = largest(balanced_cam_force(sampled) - exact) / largest(exact)
@@ -118,9 +119,10 @@ def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count
     assert 0.5 * found <= sampled.second_derivative_error <= 2 * found
 
 
+@pytest.mark.slow
 @every("count", [90, 360, 3600])
 @every("name", CAMS)
-def test_exact_tables_are_silent_and_state_their_truncation(name, count):
+def test_exact_tables_state_their_truncation(name, count):
     angle = 2 * np.pi * np.arange(count) / count
     sampled = ks.cams.Sampled(angle, CAMS[name].radius(angle)[0])
     exact = balanced_cam_force(CAMS[name])
@@ -140,11 +142,12 @@ def test_a_warning_comes_from_one_per_cent(step, warned):
         assert ks.cams.Sampled(*table).force_error < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam")
 @pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
 @pytest.mark.parametrize("count", [90, 360])
 @pytest.mark.parametrize("name", CAMS)
-def test_stated_noise_is_smoothed_away_and_what_is_left_is_stated(name, count, step):
+def test_stated_noise_is_smoothed_away(name, count, step):
     """What is stated bounds the error in each, and at every degree smoothing takes nine tenths of it and more."""
     table = rounded(CAMS[name], count, step)
     smooth = ks.cams.Sampled(*table, noise=step / np.sqrt(12))
@@ -156,7 +159,7 @@ def test_stated_noise_is_smoothed_away_and_what_is_left_is_stated(name, count, s
         assert true < rough / 10
 
 
-def test_a_table_rounded_to_a_micrometre_gives_forces_to_a_thousandth_once_its_noise_is_stated():
+def test_micrometre_rounding_gives_force_to_1e_3():
     """The sawframe at every degree: 12 per cent without."""
     exact = balanced_cam_force(LAW)
     with pytest.warns(UserWarning, match="state their noise to have them smoothed"):
@@ -176,7 +179,46 @@ def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
         ks.cams.Sampled(*table, noise=noise)
 
 
-def test_a_sampled_cam_that_jax_traces_is_refused_with_what_to_do(double):
+def test_traced_sampled_cam_is_refused(double):
     mechanism = ks.cam_crank_slider(ks.cams.Sampled(*rounded(LAW, 360, 1e-9)), 2.0, slider=ks.Link(600.0))
     with pytest.raises(ks.NotGivenError, match=r"sampled cam.*ks.compile"):
         double.jit(lambda angle: ks.solve(mechanism, angle, crank_speed=3.0, on_gap="nan").balancing_torque)(np.ones(3))
+
+
+# A value over the turn from a table
+
+
+def value(angle, order=0):
+    """Two harmonics, or a derivative of them."""
+    return (
+        2.0 * (order == 0)
+        + 0.1 * np.cos(angle + order * np.pi / 2)
+        + 0.01 * 3**order * np.cos(3 * angle + order * np.pi / 2)
+    )
+
+
+def uneven(count, start=0.3):
+    even = 2 * np.pi * np.arange(count) / count
+    return start + even + 0.1 * np.sin(even)
+
+
+def table(angle, values, noise=None):
+    return TurnTable.of("table", angle, values, "value", noise)
+
+
+def test_second_derivative_is_continuous():
+    """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
+    angle = uneven(24)
+    second, third = table(angle, value(angle)).splines[2:]
+    for width in (1e-4, 1e-7):
+        assert largest(second(angle + width) - second(angle - width)) < 2 * width * largest(third(FINE)) * 1.01
+
+
+def test_noise_stated_too_small_hides_no_error():
+    """The spline follows the scatter there is, and errs by it."""
+    angle = 2 * np.pi * np.arange(90) / 90
+    scattered = value(angle) + np.random.default_rng(0).normal(0.0, 1e-4, angle.size)
+    with pytest.warns(UserWarning, match="less than"):
+        made = table(angle, scattered, 1e-9)
+    error = largest(made.splines[2](FINE) - value(FINE, 2))
+    assert error / 3 <= made.second_derivative_error <= 10 * error

@@ -25,7 +25,7 @@ def test_a_massless_coupler_is_a_two_force_member():
     assert s.guide_force - 2.0 * 9.81 == pytest.approx(force[1] * np.sign(force[1] * (s.guide_force - 19.62)), abs=1e-9)
 
 
-def test_a_coupler_too_short_is_refused_with_where_it_would_close():
+def test_short_coupler_is_refused_with_its_intervals():
     with pytest.raises(ks.AssemblyError) as caught:
         ks.solve(ks.crank_slider(0.4, 0.3), TURN, crank_speed=1.0)
     assert caught.value.intervals[0][1] == pytest.approx(np.pi - np.arcsin(0.75), abs=1e-12)

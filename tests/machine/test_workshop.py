@@ -1,6 +1,8 @@
 """What the workshop is given: files read back give the same points, nothing is half written."""
 
+import re
 import sys
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ GIVEN = {"roller_radius": 0.05, "cutter_radius": 0.02, "points": 500}
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("units", UNITS)
 def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
     ezdxf = pytest.importorskip("ezdxf")
@@ -33,7 +36,7 @@ def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
 
 
 @pytest.mark.parametrize("units", UNITS)
-def test_a_csv_read_back_gives_the_same_points_and_the_same_cam(tmp_path, units):
+def test_csv_gives_back_points_and_cam(tmp_path, units):
     LAW.export(tmp_path / "cam.csv", units=units, **GIVEN)
     names = dict.fromkeys(("roller_x", "roller_y", "surface_x", "surface_y", "cutter_x", "cutter_y", "radius"), "m")
     columns = dict(zip(names, read_columns(tmp_path / "cam.csv", names), strict=True))
@@ -67,3 +70,37 @@ def test_a_dxf_without_ezdxf_names_the_extra(tmp_path, monkeypatch):
     with pytest.raises(ks.KinetostaticsError, match=r'pip install "kinetostatics\[workshop\]"'):
         LAW.export(tmp_path / "cam.dxf", roller_radius=0.05, points=60)
     assert not list(tmp_path.iterdir())
+
+
+# Drawings of cams
+
+
+def read_svg(path):
+    root = ET.parse(path).getroot()
+    return root, {"svg": "http://www.w3.org/2000/svg"}
+
+
+@pytest.mark.parametrize("side", ["disk", "ring"])
+def test_drawing_is_one_to_one(tmp_path, side):
+    LAW.export(tmp_path / "cam.svg", side=side, **GIVEN)
+    root, space = read_svg(tmp_path / "cam.svg")
+    left, top, width, height = map(float, root.get("viewBox").split())
+    assert root.get("width") == f"{width:.6g}mm"
+    assert root.get("height") == f"{height:.6g}mm"
+    path = root.find("svg:path[@id='surface']", space).get("d")
+    points = np.array(re.findall(r"(\S+) (\S+)(?= [LZ])", path), dtype=float).T * [[1e-3], [-1e-3]]
+    made = LAW.profile(0.05, 500, side)
+    assert_allclose(points, made.surface, rtol=0, atol=1e-9)
+    for x, y in 1e3 * made.surface.T:
+        assert left < x < left + width
+        assert top < -y < top + height
+
+
+def test_drawing_has_dimensions_and_rotation_mark(tmp_path):
+    LAW.export(tmp_path / "cam.svg", clockwise=True, **GIVEN)
+    root, space = read_svg(tmp_path / "cam.svg")
+    texts = [item.text for item in root.findall("svg:text", space)]
+    for expected in ("0° zero mark", "roller goes clockwise", "500 mm", "roller ⌀ 100 mm"):
+        assert expected in texts
+    assert "smallest R 278.095 mm at 0°" in texts
+    assert "largest R 321.905 mm at 180°" in texts

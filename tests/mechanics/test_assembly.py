@@ -22,7 +22,7 @@ def gaps(mechanism, angle=TURN):
     return caught.value
 
 
-def test_assembly_error_names_mechanism_condition_numbers_and_intervals():
+def test_assembly_error_names_condition_and_intervals():
     """Crank 1 m, coupler 0.8 m, guide through O: no closure where |sin| > 0.8."""
     error = gaps(ks.crank_slider(1.0, 0.8))
     limit = np.arcsin(0.8)
@@ -34,7 +34,7 @@ def test_assembly_error_names_mechanism_condition_numbers_and_intervals():
     )
 
 
-def test_a_cam_mechanism_with_a_round_cam_has_the_gaps_of_the_plain_one():
+def test_round_cam_has_the_gaps_of_the_plain_crank():
     error = gaps(ks.cam_crank_slider(ks.cams.Circle(1.0), 0.8))
     assert_allclose(error.intervals, gaps(ks.crank_slider(1.0, 0.8)).intervals, rtol=1e-15)
     assert str(error).startswith("cam-balanced crank-slider cannot be assembled")
@@ -55,7 +55,7 @@ def test_intervals_of_an_offset_guide(guide_angle, offset):
     assert end - start == pytest.approx(np.pi - 2 * limit, abs=4e-15)
 
 
-def test_interval_that_runs_through_zero_ends_beyond_a_turn():
+def test_interval_through_zero_ends_beyond_a_turn():
     """Guide upright: no closure where |cos| > 0.8."""
     limit = np.arccos(0.8)
     error = gaps(ks.crank_slider(1.0, 0.8, guide_angle=np.pi / 2))
@@ -64,7 +64,7 @@ def test_interval_that_runs_through_zero_ends_beyond_a_turn():
     assert "143.13 .. 216.87 deg, 323.13 .. 396.87 deg" in str(error)
 
 
-def test_a_gap_narrower_than_any_grid_is_found_at_the_angle_that_falls_into_it():
+def test_a_narrow_gap_is_found_at_its_angle():
     """Coupler a billionth shorter than the crank: gaps of 5 thousandths of a degree, square to the guide, both told."""
     middle, half = 0.4 + np.pi / 2, np.arccos(1.0 - 1e-9)
     mechanism = ks.crank_slider(1.0, 1.0 - 1e-9, guide_angle=0.4)
@@ -73,12 +73,12 @@ def test_a_gap_narrower_than_any_grid_is_found_at_the_angle_that_falls_into_it()
     assert_allclose(np.array(second) - np.pi, [middle - half, middle + half], rtol=0, atol=1e-11)
 
 
-def test_a_mechanism_that_never_closes_has_the_whole_turn_as_its_gap():
+def test_never_closing_mechanism_is_one_gap():
     error = gaps(ks.crank_slider(1.0, 0.5, guide_offset=3.0))
     assert error.intervals == ((0.0, 2 * np.pi),)
 
 
-def test_angles_outside_the_gap_are_solved_though_the_mechanism_has_one():
+def test_angles_outside_the_gap_are_solved():
     angle = np.array([0.0, 0.9, 2.3, 4.0])
     assert_allclose(
         solve(ks.crank_slider(1.0, 0.8), angle).slider_position,
@@ -94,7 +94,7 @@ LINKS = {
 }
 
 
-def test_nan_exactly_in_the_gap_and_the_rest_as_if_there_were_none():
+def test_nan_stands_exactly_in_the_gap():
     mechanism = ks.crank_slider(1.0, 0.8, guide_offset=0.05, **LINKS)
     angle = np.linspace(-1.0, 6.0, 211)
     closed = np.abs(0.05 - np.sin(angle)) < 0.8
@@ -123,7 +123,7 @@ def test_nan_exactly_in_the_gap_and_the_rest_as_if_there_were_none():
     assert s.power_residual < 1e-14
 
 
-def test_a_batch_names_its_first_impossible_design_and_its_gap():
+def test_batch_names_its_first_impossible_design():
     lengths = np.array([[1.5], [0.8], [2.0], [0.5]])
     error = gaps(ks.crank_slider(1.0, lengths))
     limit = np.arcsin(0.8)
@@ -132,7 +132,7 @@ def test_a_batch_names_its_first_impossible_design_and_its_gap():
     assert_allclose(error.intervals, [(limit, np.pi - limit), (np.pi + limit, 2 * np.pi - limit)], rtol=1e-15)
 
 
-def test_a_batch_has_nan_only_in_the_gaps_of_its_impossible_design():
+def test_batch_has_nan_in_impossible_designs_only():
     lengths = np.array([[1.5], [0.8], [2.0]])
     s = solve(ks.crank_slider(1.0, lengths, **LINKS), on_gap="nan")
     assert_array_equal(np.isnan(s.balancing_torque), np.abs(np.sin(TURN)) > lengths)
@@ -149,14 +149,14 @@ class Limacon(ks.cams.Cam):
         return 0.1 + 0.2 * ray[0], -0.2 * ray[1], -0.2 * ray[0]
 
 
-def test_a_pitch_curve_that_does_not_go_around_the_pivot_is_refused_where_its_radius_is_negative():
+def test_negative_pitch_radius_is_refused():
     error = gaps(ks.cam_crank_slider(Limacon(), 2.0))
     assert_allclose(error.intervals, [(2 * np.pi / 3, 4 * np.pi / 3)], rtol=1e-15)
     assert "pitch curve must go around O, but its radius falls to -0.1 m" in str(error)
 
 
 @pytest.mark.parametrize(("margin", "digits"), [(1e-6, 6), (1e-9, 2), (1e-12, 0)])
-def test_a_crank_angle_near_a_limit_position_is_warned_of_with_a_number(margin, digits):
+def test_angle_near_a_limit_position_is_warned_of(margin, digits):
     """Coupler longer than the crank by a hair: cos is sqrt(2 margin) at 90 degrees, and reactions lose it thrice."""
     mechanism = ks.crank_slider(1.0, 1.0 + margin, slider=ks.Link(1.0))
     with pytest.warns(ks.ConditionWarning, match=f"at crank angle 90 deg .* about {digits} correct") as caught:
@@ -170,13 +170,13 @@ def test_no_warning_while_half_the_digits_are_left():
 
 
 @pytest.mark.parametrize("tilt", [-2.9, 0.7, 1.3])
-def test_rounding_at_the_limit_position_itself_is_no_gap(tilt):
+def test_rounding_at_a_limit_position_is_no_gap(tilt):
     """Crank as long as the coupler: across the guide both lie in one line, where sine is 1 but for rounding."""
     mechanism = ks.crank_slider(0.3, 0.3, guide_angle=tilt, slider=ks.Link(1.0))
     with pytest.warns(ks.ConditionWarning, match="near a limit position"):
         solve(mechanism, np.array([tilt + np.pi / 2]))
 
 
-def test_power_residual_of_a_mechanism_that_never_closes_is_nan():
+def test_power_residual_without_closure_is_nan():
     never = solve(ks.crank_slider(0.1, 0.2, guide_offset=1.0), np.array([0.0, 1.0]), on_gap="nan")
     assert np.isnan(never.power_residual)

@@ -34,7 +34,7 @@ def cam():
 
 @pytest.mark.parametrize("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
 @pytest.mark.parametrize("engine", ["numpy", "kernels"])
-def test_reduced_inertia_its_slope_and_load_torque_make_up_the_balancing_torque(scene, engine):
+def test_reduced_inertia_makes_up_the_torque(scene, engine):
     s = scene.solve(ANGLES)
     s = s.dynamics if engine == "kernels" else s
     whole = s.reduced_inertia * scene.crank_acceleration
@@ -43,7 +43,7 @@ def test_reduced_inertia_its_slope_and_load_torque_make_up_the_balancing_torque(
 
 
 @pytest.mark.parametrize("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
-def test_potential_energy_and_reduced_inertia_are_integrals_of_load_torque_and_slope(scene):
+def test_energies_are_integrals_of_torque_and_slope(scene):
     nodes, weights = np.polynomial.legendre.leggauss(40)
     start, end = 0.3, 1.9
     inside = scene.solve((start + end) / 2 + (end - start) / 2 * nodes)
@@ -53,7 +53,7 @@ def test_potential_energy_and_reduced_inertia_are_integrals_of_load_torque_and_s
         assert change == pytest.approx((end - start) / 2 * weights @ getattr(inside, slope), rel=1e-12)
 
 
-def test_kinetic_energy_is_that_of_mass_centres_and_rates():
+def test_kinetic_energy_is_of_mass_centres_and_rates():
     scene = bar()
     s = scene.solve(ANGLES)
     found = sum(
@@ -63,7 +63,7 @@ def test_kinetic_energy_is_that_of_mass_centres_and_rates():
     assert s.kinetic_energy == pytest.approx(found, rel=1e-14)
 
 
-def test_energies_are_quantities_of_extremes_and_programs_but_stand_in_no_table():
+def test_energies_are_outputs_outside_tables():
     scene = slider()
     assert ks.extremes(scene.solve(3), "kinetic_energy").range[1] > 0.0
     program = ks.compile(scene, "kinetic_energy", engine="numpy")
@@ -72,7 +72,7 @@ def test_energies_are_quantities_of_extremes_and_programs_but_stand_in_no_table(
     assert not any("energy" in column or "inertia" in column for column in scene.solve(3).frame().columns)
 
 
-def test_a_machine_without_masses_and_loads_has_no_energy():
+def test_machine_without_mass_has_no_energy():
     s = ks.solve(ks.crank_slider(0.1, 0.4), ANGLES, crank_speed=5.0)
     for name in ("reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "potential_energy", "load_torque"):
         assert np.array_equal(getattr(s, name), np.zeros(ANGLES.size)), name

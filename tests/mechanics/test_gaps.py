@@ -83,7 +83,7 @@ def computed(scene, angles):
 @every("machine", STAYING, ids=lambda machine: machine.__name__)
 @every("inner, outer, loads", [(BODY, BODY, (ks.Gravity(),)), (BODY, NONE, ()), (NONE, NONE, (ks.Gravity(),))])
 @pytest.mark.filterwarnings("ignore:crank angles are in single precision")
-def test_what_hangs_on_a_gap_or_carries_its_forces_has_no_value_in_any_way(machine, inner, outer, loads):
+def test_dependents_of_a_gap_have_no_value(machine, inner, outer, loads):
     scene = made(machine, inner, outer, loads)
     s = scene.solve(TURN, on_gap="nan")
     open_ = np.any([margin < 0.0 for margin in s.closure], axis=0)
@@ -105,7 +105,7 @@ def test_a_compiled_loop_has_the_gaps_of_numpy(numba):
         np.testing.assert_array_equal(np.isnan(found[name]), np.isnan(expected[name]), name)
 
 
-def test_what_stays_beside_a_gap_is_what_the_group_has_alone():
+def test_groups_beside_a_gap_keep_their_values():
     inner, outer = vee(BODY, BODY)
     both, alone = (
         ks.Scene(ks.Mechanism("engine", ks.Crank(0.05, BODY), groups), 7.0, 3.0, ks.Gravity()).solve(TURN, on_gap="nan")
@@ -116,7 +116,7 @@ def test_what_stays_beside_a_gap_is_what_the_group_has_alone():
 
 
 @every("machine", [vee, on_the_rocker], ids=lambda machine: machine.__name__)
-def test_friction_has_the_gaps_of_the_forces_it_comes_of(machine):
+def test_friction_has_the_gaps_of_its_forces(machine):
     """Of the first group a cylinder's joint stays beside the other's gap, a rocker's that carries it does not."""
     pin = ks.PinFriction(0.1, 0.01)
     s = replace(made(machine), friction={"O": pin, "A": pin, "C": pin}).solve(TURN, on_gap="nan")
@@ -127,7 +127,7 @@ def test_friction_has_the_gaps_of_the_forces_it_comes_of(machine):
 
 
 @pytest.mark.slow
-def test_derivatives_by_jax_are_finite_where_the_machine_closes(double):
+def test_jax_derivatives_are_finite_outside_gaps(double):
     """Beside a gap nothing of it comes into what is differentiated."""
     mechanism = made(vee, outer=NONE).mechanism
     closed = ks.solve(mechanism, TURN, crank_speed=7.0, on_gap="nan").closed

@@ -15,7 +15,7 @@ def solved(load):
     return ks.solve(MACHINE, ANGLES, crank_speed=5.0, loads=load, engine="numpy")
 
 
-def test_a_function_that_counts_is_refused_and_one_that_does_not_is_remembered():
+def test_counting_functions_are_refused():
     calls = []
 
     def push(motion):
@@ -28,7 +28,7 @@ def test_a_function_that_counts_is_refused_and_one_that_does_not_is_remembered()
     assert len(calls) == 2
 
 
-def test_a_method_and_a_load_of_ones_own_are_remembered_too():
+def test_methods_and_own_loads_are_remembered():
     class Own:
         on, calls = "slider", []
 
@@ -44,7 +44,7 @@ def test_a_method_and_a_load_of_ones_own_are_remembered_too():
 
 
 @pytest.mark.parametrize("give", [lambda q: 1 / 0, lambda q: "text", lambda q: q.balancing_torque])
-def test_a_function_that_fails_is_left_to_whoever_needs_its_values(give):
+def test_failing_function_is_left_to_its_user(give):
     s = solved(ks.ProcessForce(give))
     with pytest.raises((ZeroDivisionError, ks.ParameterError)):
         s.balancing_torque  # noqa: B018
@@ -65,3 +65,21 @@ def test_what_has_no_hash_is_asked_each_time():
     push = Push()
     solved(ks.ProcessForce(push))
     solved(ks.ProcessForce(push))
+
+
+# What a user's function of the motion gives
+
+
+PUMP = ks.crank_slider(0.1, 0.4)
+TURN = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
+
+
+def guide_force(function):
+    return ks.solve(PUMP, TURN, crank_speed=2.0, loads=ks.ProcessForce(function)).balancing_torque
+
+
+def test_function_returns_one_number_or_one_an_angle():
+    found = guide_force(lambda motion: -50.0 * motion.travel_velocity("slider"))
+    speeds = ks.solve(PUMP, TURN, crank_speed=2.0).slider_velocity
+    assert found == pytest.approx(50.0 * speeds**2 / 2.0, abs=1e-12)
+    assert np.array_equal(guide_force(lambda motion: 3), guide_force(lambda motion: np.full(12, 3.0)))

@@ -6,7 +6,6 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.design.shapes import crank_sliders, four_bar
 from kinetostatics.mechanics.quantities import of_mechanism
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
@@ -40,8 +39,9 @@ def v_engine(second=0.5):
     return ks.Mechanism("V engine", ks.Crank(0.1, ks.Link(2.0)), groups)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", ["2", "_saw", "_rate", "_position", "_torque"])
-def test_the_six_bar_shows_force_and_moment_of_its_guide_with_their_units_under_any_label(label):
+def test_six_bar_guide_outputs_have_their_units(label):
     solution = ks.solve(chain(label), TURN, crank_speed=20.0, loads=ks.Gravity())
     assert {f"guide_force{label} [N]", f"guide_moment{label} [N m]"} <= set(solution.frame().columns)
     table = extremes_frame(solution)
@@ -50,7 +50,7 @@ def test_the_six_bar_shows_force_and_moment_of_its_guide_with_their_units_under_
     assert table.loc[f"guide moment{words}", "unit"] == "N m"
 
 
-def test_a_moment_under_the_label_saw_is_drawn_in_newton_metres():
+def test_moment_with_label_saw_is_in_newton_metres():
     solution = ks.solve(swinging("_saw"), TURN, crank_speed=20.0)
     ax = ks.plots.over_turn(solution, "guide_moment_saw")
     assert ax.get_ylabel() == "guide moment saw [N m]"
@@ -59,14 +59,15 @@ def test_a_moment_under_the_label_saw_is_drawn_in_newton_metres():
     plt.close(ax.figure)
 
 
-def test_comparison_and_needs_call_quantities_as_they_are_declared():
+@pytest.mark.slow
+def test_comparison_uses_declared_names():
     solution = ks.solve(swinging("_saw"), TURN, crank_speed=20.0)
     rows = ks.compare(solution, solution).frame().index
     assert {"largest reaction A_saw", "largest shaking force", "largest coupler_saw inertia force"} <= set(rows)
     assert ks.needs(solution, "A_saw", 0.1).label == "reaction A_saw"
 
 
-def test_needs_of_a_six_bar_simplifies_links_of_one_kind_together_whatever_their_labels():
+def test_needs_simplifies_links_of_a_kind_together():
     parts = ingredients(chain("2"))
     assert list(parts)[-5:-1] == ["crank", "rocker", "slider", "coupler"]
     assert [choice.name for choice in parts["coupler"]] == [
@@ -80,7 +81,7 @@ def test_needs_of_a_six_bar_simplifies_links_of_one_kind_together_whatever_their
 
 
 @pytest.mark.parametrize(("on", "pin"), [("O", "C"), ("B", "C")])
-def test_two_masses_of_a_coupler_keep_the_forces_of_one_with_such_inertia_wherever_it_hangs(on, pin):
+def test_two_masses_keep_the_forces_of_a_coupler(on, pin):
     """On the frame, as a rod from O, and on the pin of a slider; the inertia of two masses is m s (l - s)."""
     rod = ks.Link(4.0, 0.3, 4.0 * 0.3 * (0.9 - 0.3))
     first = ks.SliderGroup(0.4, ks.Guide.at(0.0, 0.02), slider=ks.Link(1.0))
@@ -94,31 +95,15 @@ def test_two_masses_of_a_coupler_keep_the_forces_of_one_with_such_inertia_wherev
     assert np.max(np.abs(one.scalar("guide_force2") - two.scalar("guide_force2"))) < 1e-12 * scale
 
 
-def test_a_coupler_that_hangs_on_a_coupler_loses_no_mass():
+def test_coupler_on_a_coupler_keeps_its_mass():
     chained = chain("2")
     masses = two_mass_coupler(chained)
     total, kept = (sum(link.mass for link in made.links.values()) for made in (chained, masses))
     assert kept == pytest.approx(total, rel=1e-15)
 
 
-def test_four_bars_and_crank_sliders_are_known_by_their_bars():
-    bar = ks.Mechanism(
-        "other names", ks.Crank(0.2), (ks.RockerGroup(0.5, 0.4, (0.6, 0.0), pin="P", pivot_name="Q", label="x"),)
-    )
-    found = four_bar(bar)
-    assert (found.coupler.link, found.rocker.link, found.pivot) == ("couplerx", "rockerx", (0.6, 0.0))
-    assert ks.linkage.grashof(bar).kind == "crank-rocker"
-    s = ks.solve(bar, TURN, crank_speed=1.0)
-    assert ks.linkage.swing(s).range > 0
-    assert four_bar(chain("2")) is None
-    assert four_bar(ks.crank_slider(0.1, 0.3)) is None
-    assert [(chain.coupler.link, chain.slider) for chain in crank_sliders(v_engine())] == [
-        ("coupler", "slider"),
-        ("coupler2", "slider2"),
-    ]
-
-
-def test_effect_of_counterweights_is_told_for_every_guide():
+@pytest.mark.slow
+def test_counterweight_effect_covers_every_guide():
     engine = v_engine()
     balanced = ks.balancing.counterweight(engine, "crank", -0.05, ks.balancing.Counterweight(arm=-0.05))
     rows = balanced.effect(crank_speed=10.0).index
@@ -127,19 +112,21 @@ def test_effect_of_counterweights_is_told_for_every_guide():
             assert f"largest shaking force {way} guide of {slider} [N]" in rows
 
 
-def test_along_the_guide_is_refused_where_guides_are_not_parallel():
+def test_along_needs_parallel_guides():
     with pytest.raises(ks.ParameterError, match="guides of slider and slider2 that are not parallel"):
         ks.balancing.optimal(v_engine(), "along", crank=ks.balancing.Counterweight(arm=0.05))
 
 
-def test_reactions_of_a_second_group_start_at_the_joint_they_act_at_in_the_animation(tmp_path):
+@pytest.mark.slow
+def test_second_group_reactions_start_at_their_joint(tmp_path):
     film = ks.plots.animation(ks.solve(chain("2"), TURN, crank_speed=20.0), joints=("B2", "guide2"), frames=2)
     film.save(tmp_path / "chain.gif", writer=PillowWriter(fps=10))
     assert (tmp_path / "chain.gif").stat().st_size
     plt.close("all")
 
 
-def test_every_quantity_of_every_shipped_case_has_a_unit_and_a_label():
+@pytest.mark.slow
+def test_shipped_quantities_have_unit_and_label():
     for name in ("sawframe_2r63", "mower_drive"):
         case = ks.load_case(name)
         for variant in case.variants.values():

@@ -1,7 +1,5 @@
 """What the Python API says to values no machine can have, and where a mechanism does not close."""
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -122,14 +120,6 @@ def test_solve_refuses(changes, message):
         solve(crank_slider(), **changes)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_solve_refuses_crank_angles_that_are_not_finite(bad):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # numpy's own, on the sine of infinity
-        with pytest.raises(ks.ParameterError, match="crank angles must be finite"):
-            solve(crank_slider(), np.array([0.0, bad]))
-
-
 def test_all_errors_are_one_family_and_value_errors():
     assert issubclass(ks.ParameterError, ks.KinetostaticsError)
     assert issubclass(ks.ParameterError, ValueError)
@@ -165,16 +155,9 @@ def test_single_precision_angles_are_warned_of():
         (lambda s: s.pressure_angle, "crank-slider: quantity is 'pressure_angle', allowed: 'balancing_torque'"),
     ],
 )
-def test_unknown_names_are_answered_with_the_valid_ones_and_the_nearest(ask, message):
+def test_unknown_names_list_valid_and_nearest(ask, message):
     with pytest.raises(ks.QuantityError, match=message):
         ask(solve(crank_slider()))
-
-
-def test_every_reaction_is_in_the_list_of_valid_ones():
-    s = solve(crank_slider())
-    with pytest.raises(ks.QuantityError) as caught:
-        s.reaction("C")
-    assert all(repr(name) in str(caught.value) for name in ("O", "A", "B", "guide"))
 
 
 # Cams
@@ -213,24 +196,6 @@ def test_a_class_of_cam_must_say_its_radius():
         type("Flat", (ks.cams.Cam,), {})().radius(0.0)
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda m: solve(m, []), "no crank angles"),
-        (lambda m: solve(m, ["a"]), "crank_angle must be a number"),
-        (lambda m: solve(m, [0.0, 1.0, 2.0], crank_speed=[1.0, 2.0]), "do not fit together"),
-        (lambda m: solve(m, [0.0], loads=None), "loads must be"),
-        (lambda m: ks.crank_slider(1.0, 2.0, guide=0.3), "guide must be made by Guide.at"),
-        (lambda m: ks.crank_slider(1.0, 2.0, coupler=3.0), "coupler must be a Link"),
-        (lambda m: ks.cam_crank_slider(0.3, 2.0), "cam must be one of"),
-        (lambda m: ks.cams.Sampled(np.linspace(0, 1, 10), np.ones(10)), "leaves a gap"),
-    ],
-)
-def test_wrong_kinds_and_shapes_are_refused_at_the_door(call, words):
-    with pytest.raises(ks.ParameterError, match=words):
-        call(ks.crank_slider(0.3, 2.0))
-
-
-def test_a_constant_of_a_batch_has_the_shape_of_the_batch():
+def test_constant_of_a_batch_has_its_shape():
     batch = solve(ks.crank_slider(np.array([[0.2], [0.3]]), 2.0, slider=ks.Link(1.0)), np.array([0.0, 1.0, 2.0]))
     assert batch.guide_moment.shape == batch.balancing_torque.shape == (2, 3)

@@ -104,7 +104,7 @@ WAYS = {
 
 
 @pytest.mark.parametrize("name", WAYS)
-def test_constants_changed_between_two_equal_solutions_are_seen(name, monkeypatch):
+def test_changed_constants_are_seen(name, monkeypatch):
     load, place = WAYS[name]
     found = []
     for gain in (1.0, 500.0):
@@ -129,6 +129,6 @@ def test_what_may_change_unseen_has_no_key():
 
 
 @pytest.mark.parametrize("kind", [ByGlobal, ByClassConstant, ByTable, Structural])
-def test_ordinary_classes_have_a_key_so_that_their_programs_are_kept(kind):
+def test_ordinary_classes_have_a_key(kind):
     assert of_class(kind, (kind,)) is not None
     assert of_class(kind, (kind,)) == of_class(kind, (kind,))

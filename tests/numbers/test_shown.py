@@ -14,7 +14,7 @@ from support.every import every
     (2.1e-16, 2, "2.1e-16"), (math.nan, 6, ""), (math.inf, 6, "inf"), (-math.inf, 6, "-inf"), ("words", 6, "words"),
     (123.456, 0, "100"), (123.456, 15, "123.456"), (5, 6, "5"), (True, 6, "1"),
 ])  # fmt: skip
-def test_a_number_has_at_most_six_digits_and_no_power_of_ten_where_none_is_needed(value, digits, text):
+def test_number_has_six_digits_without_exponent(value, digits, text):
     assert number(value, digits) == text
 
 
@@ -25,12 +25,12 @@ def test_a_number_has_at_most_six_digits_and_no_power_of_ten_where_none_is_neede
     (1234567.8, 40.0, "1234570"), (1234567.8, 4e5, "1200000"), (3.0, math.inf, "3"), (3.0, math.nan, "3"),
     (math.nan, 1.0, ""), (math.inf, 1.0, "inf"), (0.0, 1.0, "0"), (1e-300, 1e-305, "1e-300"),
 ])  # fmt: skip
-def test_no_digit_is_shown_below_the_first_of_what_a_number_may_be_wrong_by(value, bound, text):
+def test_uncertain_digits_are_not_shown(value, bound, text):
     assert number(value, bound=bound) == text
 
 
 @pytest.mark.parametrize("power", [-300, -12, -3, 0, 4, 8, 12, 300])
-def test_what_is_shown_is_never_off_by_more_than_half_the_place_of_the_bound_or_of_the_sixth_digit(power):
+def test_shown_value_is_within_half_a_place(power):
     for share in (1.0, 0.3, 2e-2, 7e-4, 3e-6, 5e-9):
         value = 1.7632549871 * 10.0**power
         told = float(number(value, bound=share * value) or "0")

@@ -1,10 +1,12 @@
-"""Text with a unit to SI."""
+"""Text with a unit to SI, and the dimension of a unit."""
 
 import math
 
 import pytest
 
+from kinetostatics.numbers.dimensions import dimension, spelled
 from kinetostatics.numbers.units import base_factor, factor, quoted, to_si
+from tests.support.every import every
 
 
 @pytest.mark.parametrize(
@@ -29,7 +31,7 @@ def test_what_measures_something_else_is_refused(text, unit):
 
 @pytest.mark.parametrize("unit", ["degC", "°C", "degF", "°F", "dB"])
 @pytest.mark.parametrize("wanted", ["K", "m"])
-def test_units_with_a_zero_of_their_own_are_refused_in_words(unit, wanted):
+def test_units_with_their_own_zero_are_refused(unit, wanted):
     with pytest.raises(ValueError, match=f'unit "{unit}" has a zero of its own.* as K, or delta_degC'):
         to_si(f"20 {unit}", wanted)
 
@@ -64,3 +66,34 @@ def test_long_values_are_shown_short():
 def test_advice_is_in_the_units_of_drawings(text, unit, advice):
     with pytest.raises(ValueError, match=f"write for example {advice}$"):
         to_si(text, unit)
+
+
+# Dimensions
+
+
+@every(
+    "unit, powers",
+    [
+        ("m", (1, 0, 0)),
+        ("N*m*s/rad", (2, 1, -1)),
+        ("N*m/rad", (2, 1, -2)),
+        ("kg*m**2", (2, 1, 0)),
+        ("N/m**3", (-2, 1, -2)),
+        ("rad/s**2", (0, 0, -2)),
+        ("m/s2", (1, 0, -2)),
+        ("Pa", (-1, 1, -2)),
+        ("1", (0, 0, 0)),
+        ("", (0, 0, 0)),
+    ],
+)
+def test_powers_of_a_unit(unit, powers):
+    assert dimension(unit) == powers
+
+
+@every("unit", ["1", "m", "m2", "kg m2", "rad/s", "m/s2", "N", "N/m", "N m", "W", "N s/m"])
+def test_units_that_engineers_write_come_back(unit):
+    assert spelled(dimension(unit)) == unit
+
+
+def test_other_powers_are_written_by_bases():
+    assert spelled((5.0, 1.0, -1.5)) == "m5 kg s-1.5"

@@ -40,7 +40,7 @@ def case():
     return ks.load_case("chain_unit")
 
 
-def test_shipped_case_has_the_studys_variants_and_its_powers_balance(case):
+def test_chain_unit_case_balances_its_powers(case):
     assert list(case.variants) == ["rho-0.1", "rho-0.5", "free-start"]
     assert case.reference == "rho-0.1"
     assert all(case.solve(name).power_residual < 1e-14 for name in case.variants)
@@ -60,7 +60,7 @@ def test_variant_equals_the_chain_unit_built_in_python(case, name, crank, pivot_
 
 
 @pytest.mark.slow
-def test_compare_prints_the_published_figures_in_brackets_behind_ours(capsys):
+def test_compare_prints_published_figures_in_brackets(capsys):
     assert main(["compare", "chain_unit"]) == 0
     lines = capsys.readouterr().out.splitlines()
     rows = {name: next(line for line in lines if line.startswith(name)) for name in PRINTED}
@@ -77,7 +77,7 @@ def test_run_lists_reactions_and_rates_of_a_four_bar(capsys):
 
 
 @pytest.mark.slow
-def test_plot_draws_the_studys_figures_and_the_mechanism(tmp_path, capsys):
+def test_plot_draws_study_figures_and_mechanism(tmp_path, capsys):
     assert main(["plot", "chain_unit", "--out", str(tmp_path), "--format", "svg"]) == 0
     written = {path.name for path in tmp_path.iterdir()}
     assert {f"chain_unit_{name}.svg" for name in FIGURES} <= written
@@ -100,7 +100,7 @@ def test_curve_on_the_figure_equals_the_50_digit_table(case, axes, rho, link, or
     assert axes.get_ylabel() == f"relative angular {'velocity' if order == 1 else 'acceleration'} of the {link} [1]"
 
 
-def test_figure_counts_in_the_cranks_own_sense_whatever_its_speed(axes):
+def test_figure_counts_in_the_cranks_sense(axes):
     """The same position passed the other way has the same relative rate, and the opposite relative acceleration."""
     mechanism, angle = ks.linkage.chain_unit(0.5, 1.0, 2 / 3), np.radians(np.arange(0, 360, 5))
     for speed in (-1.0, 31.4):
@@ -114,7 +114,7 @@ def test_figure_counts_in_the_cranks_own_sense_whatever_its_speed(axes):
 # Four-bars in case files
 
 
-def test_plain_four_bar_of_a_file_equals_the_one_built_in_python(tmp_path):
+def test_four_bar_case_equals_python(tmp_path):
     found = ks.load_case(case_file(tmp_path, FOUR_BAR)).solve("bar", angles=36)
     mechanism = ks.four_bar(
         0.1,
@@ -149,7 +149,7 @@ def test_wrong_key_of_a_four_bar_is_named(tmp_path, change, words):
     assert any(line.startswith(words) for line in problems(tmp_path, FOUR_BAR.replace(*change)))
 
 
-def test_linkage_that_does_not_close_all_the_way_is_reported_with_its_angles(tmp_path):
+def test_open_linkage_is_reported_with_its_angles(tmp_path):
     """With a crank of 500 mm and a frame of 364 mm A comes farther from O2 than coupler and rocker reach together."""
     found = problems(tmp_path, FOUR_BAR.replace('"100 mm"\ncoupler', '"500 mm"\ncoupler'))
     assert len(found) == 1
@@ -172,7 +172,7 @@ rocker_length = "200 mm"
 """
 
 
-def test_chain_unit_without_room_for_a_parallel_start_is_told_to_give_the_pivot(tmp_path):
+def test_parallel_start_without_room_needs_a_pivot(tmp_path):
     (found,) = problems(tmp_path, CHAIN_UNIT)
     assert found.startswith("variants.unit: chain unit: parallel start needs a coupler longer than the crank")
     assert "pivot_x" in found

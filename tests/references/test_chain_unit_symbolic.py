@@ -82,7 +82,7 @@ def study_rates():
         return dict(zip(("coupler", "rocker"), printed.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
 
 
-def test_directions_are_unit_vectors_that_close_the_loop(placed):
+def test_directions_are_unit_vectors_closing_the_loop(placed):
     joint, found, _ = placed
     q, p = found.coupler.direction, found.rocker.direction
     assert vanishes(q[0] ** 2 + q[1] ** 2 - FIELD.one)
@@ -93,21 +93,21 @@ def test_directions_are_unit_vectors_that_close_the_loop(placed):
 
 
 @pytest.mark.parametrize("link", ["coupler", "rocker"])
-def test_rates_of_the_library_are_slopes_of_its_directions(placed, link):
+def test_rates_are_slopes_of_directions(placed, link):
     found = getattr(placed[1], link)
     x, y = found.direction
     assert vanishes(x * slope(y) - y * slope(x) + found.ratio)
     assert vanishes(slope(found.ratio) + found.ratio_slope)
 
 
-def test_velocity_and_acceleration_of_the_pin_are_slopes_of_its_position(placed):
+def test_pin_motion_is_the_slope_of_its_position(placed):
     pin = placed[1].pin
     for number in (0, 1):
         assert vanishes(slope(pin.position[number]) + pin.first[number])
         assert vanishes(slope(pin.first[number]) + pin.second[number])
 
 
-def test_sine_and_cosine_are_those_of_the_transmission_angle(placed):
+def test_sine_and_cosine_are_of_transmission_angle(placed):
     _, found, _ = placed
     q, p = found.coupler.direction, found.rocker.direction
     assert vanishes(found.sine**2 + found.cosine**2 - FIELD.one)
@@ -117,14 +117,14 @@ def test_sine_and_cosine_are_those_of_the_transmission_angle(placed):
 
 
 @pytest.mark.parametrize("link", ["coupler", "rocker"])
-def test_study_rates_equal_the_librarys_in_the_assembly_to_the_left_only(placed, study_rates, link):
+def test_study_rates_hold_in_the_left_assembly(placed, study_rates, link):
     """Two components, one for the turning of A-O2 and one for the opening of the triangle on it."""
     _, found, assembly = placed
     assert vanishes(study_rates[link] - getattr(found, link).ratio) == (assembly == 1)
 
 
 @pytest.mark.parametrize("link", ["coupler", "rocker"])
-def test_study_accelerations_equal_the_librarys_in_the_assembly_to_the_left_only(placed, study_rates, link):
+def test_study_accelerations_hold_in_left_assembly(placed, study_rates, link):
     """The study differentiates its rates once more by the crank angle."""
     _, found, assembly = placed
     assert vanishes(slope(study_rates[link]) + getattr(found, link).ratio_slope) == (assembly == 1)

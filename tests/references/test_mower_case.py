@@ -11,9 +11,8 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.views.figures import draw_case
 from kinetostatics.views.peaks import with_peaks
-from support.case_files import case_file, problems
+from support.case_files import case_file, problems, shipped
 from support.every import every
-from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
 
@@ -77,7 +76,7 @@ def polar():
 # Variants
 
 
-def test_case_has_the_unbalanced_mower_the_cases_of_the_study_and_an_optimum():
+def test_mower_case_has_the_study_and_an_optimum():
     assert list(case().variants) == ["unbalanced", "full", "partial-1", "partial-2", "partial-3", "optimal"]
     assert case().reference == "unbalanced"
     assert case().variants["unbalanced"].balanced is None
@@ -108,7 +107,7 @@ def test_each_variant_reaches_its_aim():
     assert largest_force("optimal") < largest_force("partial-3") < largest_force("partial-2")
 
 
-def test_balancing_costs_mass_but_no_torque_when_it_is_on_the_crank():
+def test_crank_balancing_costs_mass_but_no_torque():
     """The price of full balancing: eight times the shaking moment, five times the force at the crank pin."""
     bare, partial, full = (solutions()[name] for name in ("unbalanced", "partial-3", "full"))
     np.testing.assert_allclose(partial.balancing_torque, bare.balancing_torque, rtol=0, atol=1e-13)
@@ -122,7 +121,7 @@ def test_balancing_costs_mass_but_no_torque_when_it_is_on_the_crank():
 # Command line
 
 
-def test_compare_prints_every_published_figure_in_brackets_behind_ours(capsys, monkeypatch):
+def test_compare_brackets_every_published_figure(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "400")
     assert main(["compare", "mower_drive"]) == 0
     printed = capsys.readouterr().out.splitlines()
@@ -153,7 +152,7 @@ def test_figures_of_the_study_are_drawn_for_the_mower(name, tmp_path):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
-def test_figures_of_balancing_are_not_offered_for_a_case_without_it(tmp_path):
+def test_balancing_figures_need_balancing(tmp_path):
     for name in FIGURES:
         with pytest.raises(ks.ParameterError, match=f"figure is '{name}', allowed: 'overview'"):
             draw_case(ks.load_case("sawframe_2r63"), tmp_path, only=name)
@@ -165,7 +164,7 @@ def curves(ax):
     return {name: np.array(line.get_data()) for name, line in named if name in case().variants}
 
 
-def test_mass_centre_paths_are_closed_to_scale_and_those_of_the_principal_points(axes):
+def test_mass_centre_paths_are_closed_and_to_scale(axes):
     assert ks.plots.mass_centres(solutions(), ax=axes) is axes
     assert axes.get_aspect() == 1
     found = curves(axes)
@@ -178,7 +177,7 @@ def test_mass_centre_paths_are_closed_to_scale_and_those_of_the_principal_points
 
 
 @pytest.mark.parametrize("by", ["direction", "crank angle"])
-def test_hodographs_show_the_size_of_the_shaking_force_by_its_direction_or_by_crank_angle(polar, by):
+def test_hodographs_show_size_by_direction_or_angle(polar, by):
     assert ks.plots.shaking_force(solutions(), by=by, ax=polar) is polar
     assert "N" in polar.get_title()
     drawn = with_peaks(solutions(), "shaking_force")
@@ -191,7 +190,7 @@ def test_hodographs_show_the_size_of_the_shaking_force_by_its_direction_or_by_cr
     assert set(curves(polar)) == set(case().variants)
 
 
-def test_hodographs_of_a_centred_mower_are_symmetric_about_the_guide(polar):
+def test_centred_mower_hodographs_are_symmetric(polar):
     """With e = 0, by direction: turning the crank the other way mirrors the force."""
     links = {"crank": ks.Link(1.0, 0.019), "coupler": ks.Link(2.0, 0.1), "slider": ks.Link(5.0)}
     angle = np.linspace(-np.pi, np.pi, 91)
@@ -215,7 +214,7 @@ def test_hodograph_by_something_else_is_refused(polar):
 # Case files with balancing
 
 
-def test_four_bar_in_a_case_file_is_fully_balanced_by_crank_and_rocker(tmp_path):
+def test_four_bar_case_is_fully_balanced(tmp_path):
     made = ks.load_case(case_file(tmp_path, FOUR_BAR))
     forces = {name: np.max(np.hypot(*made.solve(name).shaking_force)) for name in made.variants}
     assert forces["full"] < 1e-13 * forces["bare"]
@@ -252,11 +251,11 @@ def test_four_bar_in_a_case_file_is_fully_balanced_by_crank_and_rocker(tmp_path)
         ('method = "optimal"\nrocker = { mass = "5 kg" }', "variants.x: .*'rocker', allowed: 'crank'"),
     ],
 )
-def test_a_wrong_balancing_table_is_one_problem_with_its_key(tmp_path, table, words):
+def test_wrong_balancing_table_is_one_problem(tmp_path, table, words):
     (found,) = problems(tmp_path, X + table + "\n")
     assert re.match(words, found)
 
 
-def test_all_problems_of_balancing_tables_are_reported_at_once(tmp_path):
+def test_all_balancing_problems_are_reported_at_once(tmp_path):
     text = X + 'method = "ful"\ncrank = { arm = "1" }\n[variants.y.balancing]\nmethod = "partial"\n'
     assert len(problems(tmp_path, text)) == 3

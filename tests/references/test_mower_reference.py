@@ -13,7 +13,7 @@ import pytest
 
 import kinetostatics as ks
 from support import DATA
-from support.shipped import shipped
+from support.case_files import shipped
 
 VARIANTS = {
     "unbalanced": "unbalanced",
@@ -86,7 +86,7 @@ def scale(variant, name):
 
 @every_variant
 @pytest.mark.parametrize("made", [built, balanced])
-def test_mass_centre_its_acceleration_and_shaking_force_equal_the_50_digit_table(variant, made):
+def test_mass_centre_equals_the_50_digit_table(variant, made):
     mechanism = made(variant)
     s = solve(mechanism, np.radians(table(variant)["angle_deg"]))
     points = ks.principal_points(mechanism)
@@ -101,7 +101,7 @@ def test_mass_centre_its_acceleration_and_shaking_force_equal_the_50_digit_table
 
 
 @every_variant
-def test_velocity_of_the_mass_centre_is_the_slope_of_the_tabled_path(variant):
+def test_mass_centre_velocity_is_the_tabled_slope(variant):
     """By the Fourier series of the 72 positions, whose harmonics fall below rounding long before the 36th."""
     path = table(variant)["S"]
     slope = np.fft.irfft(1j * np.arange(37) * np.fft.rfft(path), path.shape[1])
@@ -120,7 +120,7 @@ def test_moduli_equal_the_tabled_ones(variant, made):
 
 
 @pytest.mark.parametrize("variant", [name for name in VARIANTS if name != "unbalanced"])
-def test_counterweights_give_links_the_tabled_masses_and_unbalances(variant):
+def test_counterweights_give_the_tabled_masses(variant):
     links, given = balanced(variant).links, parameters(variant)
     for link, mass, unbalance in (("crank", "m1", "crank_unbalance"), ("coupler", "m2", "coupler_unbalance")):
         assert links[link].mass == pytest.approx(given[mass], rel=1e-14)
@@ -135,7 +135,7 @@ COMPONENTS = {"Fx": lambda s: s.shaking_force[0], "Fy": lambda s: s.shaking_forc
 
 @every_variant
 @pytest.mark.parametrize("component", COMPONENTS)
-def test_true_extremes_and_their_angles_equal_the_summary(variant, component):
+def test_true_extremes_equal_the_summary(variant, component):
     """Of extremes alike by symmetry any one may be meant."""
     found = ks.extremes(solve(balanced(variant), 0.0), COMPONENTS[component])
     expected, size = parameters(variant).get(f"max_abs_{component}", 0.0), abs(found.largest)
@@ -150,7 +150,7 @@ def test_true_extremes_and_their_angles_equal_the_summary(variant, component):
 
 @every_variant
 @pytest.mark.parametrize("component", COMPONENTS)
-def test_maxima_on_the_grid_of_the_study_equal_the_summary(variant, component):
+def test_grid_maxima_equal_the_summary(variant, component):
     x, y = solve(balanced(variant), np.radians(np.arange(0, 360, 30))).shaking_force
     found = largest({"Fx": x, "Fy": y, "F": np.hypot(x, y)}[component])
     expected = parameters(variant)[f"grid30_max_abs_{component}"]
@@ -177,7 +177,7 @@ def cut_off(value, printed):
     return Decimal(repr(float(value))).quantize(Decimal(printed), rounding=ROUND_DOWN)
 
 
-def test_every_entry_of_table_1_is_ours_cut_off_to_the_printed_digits():
+def test_table_1_is_ours_cut_to_printed_digits():
     wrong = [
         (row, column, printed, float(ours().loc[row, column]))
         for row, column, printed in printed_entries()
@@ -207,7 +207,7 @@ def test_true_reduction_of_the_largest_force(variant, true):
     assert round(ours().loc["reduction of |F| [%]", f"{variant} crank"], 2) == true
 
 
-def test_coarse_grid_hides_up_to_half_a_per_cent_of_the_largest_force():
+def test_coarse_grid_hides_half_a_per_cent():
     unbalanced = parameters("unbalanced")
     on_grid = solve(balanced("unbalanced"), np.radians(np.arange(0, 360, 30))).shaking_force
     true = ks.extremes(solve(balanced("unbalanced"), 0.0), "shaking_force").largest

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
-from support.newton_euler import solve
 from support.strategies import cases, columns, errors, planar, reproducible
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")]
@@ -46,7 +45,7 @@ def force_errors(scene, solution, reference):
 
 def exact(scene, solution):
     """The reference at the crank angles of a solution."""
-    return [solve(scene, angle) for angle in solution.crank_angle]
+    return [scene.solve(angle) for angle in solution.crank_angle]
 
 
 def wrong(errors):
@@ -56,7 +55,7 @@ def wrong(errors):
 @pytest.mark.parametrize("kind", KINDS)
 @reproducible
 @given(data=st.data())
-def test_motion_equals_differences_of_angle_formulas_forces_newton_euler_and_powers_balance(kind, data):
+def test_motion_and_forces_equal_newton_euler(kind, data):
     """Positions, velocities, accelerations and angular rates, of which the reference differences positions with 80
     digits; joint, guide, cam and slot forces, guide moment, both torques, shaking force and moment. The two torques
     share no force: one follows equilibrium link by link, one the powers of all loads.

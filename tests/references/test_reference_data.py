@@ -32,7 +32,7 @@ def check():
     return module("check")
 
 
-def test_every_case_without_friction_and_20_machines_of_every_kind_are_there(check):
+def test_reference_data_cover_cases_and_kinds(check):
     found = {folder.relative_to(DATA).as_posix() for folder in check.folders()}
     for stem in ("sawframe_2r63-plain", "sawframe_2r63-cam-cosine", "chain_unit-free-start", "toggle_press-coining"):
         assert f"cases/{stem}" in found
@@ -44,7 +44,7 @@ def test_every_case_without_friction_and_20_machines_of_every_kind_are_there(che
     assert sum(path.stat().st_size for path in DATA.rglob("*.*") if path.is_file()) < LARGEST
 
 
-def test_data_has_17_digits_proven_bounds_units_and_owners(check):
+def test_data_have_17_digits_bounds_and_units(check):
     assert [text for folder in check.folders() for text in check.faults(folder)] == []
 
 
@@ -74,7 +74,7 @@ def test_bad_data_is_found_in_the_data_itself(check, tmp_path):
     assert "is not across the guide" in told(place, rows[3][place].replace("1", "2"))[-1]
 
 
-def test_the_library_agrees_with_all_of_it_in_double_precision(check):
+def test_library_agrees_with_all_reference_data(check):
     """The scenes are made from case.json alone, for slider, lever and yoke: what it tells is enough."""
     for name in ("slider-1", "slider-2", "slider-3", "lever-1", "lever-2", "yoke-1", "yoke-2"):
         folder = DATA / "machines" / name

@@ -15,7 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import kinetostatics as ks
 from support import DATA
-from support.newton_euler import Body, Scene, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank, solve
+from support.multibody import Body, CrankSlider, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank
 
 TABLES = {"plain": "sawframe_plain", "circle": "sawframe_cam_circle", "cosine": "sawframe_cam_cosine"}
 CLOSE = {"plain": 1e-14, "circle": 2e-13, "cosine": 2e-13}
@@ -44,7 +44,7 @@ def scene(variant):
         "circle": (pin_on_circle(CRANK, (-0.0219, 0.0)), 2.0219),
         "cosine": (pin_by_cosine_law(CRANK, MEAN), critical_length(CRANK, MEAN)),
     }[variant]
-    return Scene(
+    return CrankSlider(
         pin=pin,
         has_cam=variant != "plain",
         coupler_length=length,
@@ -114,7 +114,7 @@ def test_error_does_not_grow_with_the_number_of_angles(variant, count):
 
 @pytest.mark.parametrize("variant", TABLES)
 @pytest.mark.parametrize("step", [10, 100])
-def test_value_at_an_angle_does_not_depend_on_its_neighbours(variant, step):
+def test_value_does_not_depend_on_neighbours(variant, step):
     """To the last bit, or nearly: long and short array loops may round sin and cos differently."""
     fine = 2 * np.pi * np.arange(36000) / 36000
     full, part = columns(variant, fine), columns(variant, fine[::step])
@@ -124,7 +124,7 @@ def test_value_at_an_angle_does_not_depend_on_its_neighbours(variant, step):
 
 @cache
 def reference(variant, angle):
-    return solve(scene(variant), angle)
+    return scene(variant).solve(angle)
 
 
 def extreme(variant, function, row):
@@ -199,7 +199,7 @@ def test_mean_torque_ratio(variant, documented):
 @pytest.mark.parametrize(
     ("variant", "documented"), [("cosine", [7.27, 6.11, 6.45, 7.62]), ("circle", [6.37, 5.50, 5.73, 6.60])]
 )
-def test_torque_extremum_ratios_in_order_of_crank_angle(variant, documented):
+def test_torque_extremum_ratios_by_crank_angle(variant, documented):
     """Published: 6.2, 7.55, 8.13, 6.42, from a wrong sign (`test_sawframe_as_printed`)."""
     found = comparison(variant).torque_extremum_ratios
     np.testing.assert_allclose(found, torque_extremes("plain") / torque_extremes(variant), rtol=CLOSE[variant])

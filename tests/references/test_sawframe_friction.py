@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 CASE = shipped("sawframe_2r63_friction")
 LOST = {"plain": 43, "cam-circle": 12, "cam-cosine": 12, "plain-rolling": 10.5, "cam-cosine-rolling": 7.3}
@@ -28,7 +28,7 @@ def test_k_d_hardly_moves(saws):
     assert round(ks.compare(saws["plain"], saws["cam-cosine"]).mean_torque_ratio, 2) == 6.76
 
 
-def test_a_radius_of_half_the_60_mm_does_not_give_the_figures(saws):
+def test_half_of_60_mm_does_not_give_the_figures(saws):
     """So 60 mm are radii: with diameters of 60 mm 25.7 and 9.0 kW are lost."""
     halved = {f"friction.{name}.radius": 0.03 for name in "OAB"}
     plain = CASE.variant("plain").scene.varied(halved).solve(8).losses.total
@@ -42,7 +42,7 @@ def test_an_idling_machine_loses_all_that_it_is_given(saws):
         assert saw.losses.drive == pytest.approx(saw.losses.total, rel=1e-11), name
 
 
-def test_without_its_friction_it_is_the_machine_of_the_study():
+def test_without_friction_it_is_the_studys_machine():
     study = shipped("sawframe_2r63")
     for name in study.variants:
         own, other = CASE.variant(name).scene, study.variant(name).scene

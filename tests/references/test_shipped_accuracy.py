@@ -8,9 +8,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import scale
+from support.case_files import shipped
 from support.enclosed import ordinary_angles, worst
 from support.every import every
-from support.shipped import shipped
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -29,7 +29,7 @@ VARIANTS = [(case, variant) for case in ks.shipped_cases() for variant in shippe
 
 @pytest.mark.slow
 @every("case, variant", VARIANTS)
-def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant):
+def test_shipped_results_are_near_exact_and_bounded(case, variant):
     scene = shipped(case).variants[variant].scene
     s = scene.solve(ordinary_angles(scene, EVEN, BETWEEN))
     for name, found in worst(s).items():
@@ -42,7 +42,7 @@ def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant)
 
 @pytest.mark.slow
 @every("case, variant", VARIANTS)
-def test_worst_bounds_are_not_much_more_than_worst_errors(case, variant):
+def test_worst_bounds_are_near_worst_errors(case, variant):
     """`ratios_of_bounds.py` prints all."""
     scene = shipped(case).variants[variant].scene
     for name, found in worst(scene.solve(ordinary_angles(scene, 3600, 40), on_gap="nan")).items():

@@ -26,7 +26,7 @@ def test_the_mean_torque_is_that_of_a_sine():
 
 
 @pytest.mark.slow
-def test_an_extremum_of_the_torque_that_is_rounding_stands_as_zero():
+def test_extremum_of_rounding_is_shown_as_zero():
     """A press at its lower dead centre: there the torque has a kink, and is 0."""
     press = ks.crank_slider(0.1, 0.45, guide_angle=-np.pi / 2, coupler=ks.Link(38, 0.16, 0.9), slider=ks.Link(120))
     work = ks.ProcessForce(ks.Table([0.35, 0.53, 0.55], [0, 0, -200e3], over="travel", back=[0, 0, 0]))
@@ -43,7 +43,7 @@ def test_an_extremum_of_the_torque_that_is_rounding_stands_as_zero():
     assert np.array_equal(table.loc[others, "ratio"], np.delete(found.torque_extremum_ratios, row), equal_nan=True)
 
 
-def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
+def test_table_has_a_row_a_coefficient_with_unit():
     table = ks.compare(yoke(6.0), yoke(3.0)).frame()
     row = table.loc["mean |balancing torque|"]
     assert (row["unit"], row["ratio"]) == ("N m", pytest.approx(2.0))
@@ -51,7 +51,7 @@ def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
 
 
 @pytest.mark.slow
-def test_a_peak_that_no_extremum_of_the_reference_matches_has_a_row():
+def test_unmatched_peak_has_a_row():
     """A press strikes where it idles without an extremum; the ratio of its peaks would be in no row."""
     press = ks.crank_slider(0.08, 0.4, slider=ks.Link(90.0))
     work = ks.ProcessForce(ks.Table([0.32, 0.47, 0.4701, 0.48], [0, 0, -30e3, -30e3], over="travel", back=[0] * 4))
@@ -62,7 +62,7 @@ def test_a_peak_that_no_extremum_of_the_reference_matches_has_a_row():
     assert "largest |balancing torque|" not in ks.compare(idle, idle).frame().index
 
 
-def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
+def test_two_sides_of_a_jump_match_no_extremum():
     """Friction makes the torque jump at dead centres, where it falls or rises on."""
     case = ks.load_case("sawframe_2r63_friction")
     plain, cam = (case.variants[name].solve(360) for name in ("plain", "cam-cosine"))
@@ -75,7 +75,7 @@ def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
 
 
 @pytest.mark.slow
-def test_an_extremum_that_only_the_reference_has_is_compared_with_none():
+def test_extremum_of_the_reference_alone_is_unmatched():
     """The toggle press turns 1640 N m into force where it idles with no extremum; both its minima are none of one."""
     case = ks.load_case("toggle_press")
     found = case.compare("coining", "idle")
@@ -95,7 +95,7 @@ def test_no_extremum_is_compared_with_two():
         assert known.size == np.unique(known).size == 2
 
 
-def test_the_only_extrema_of_a_kind_are_strangers_half_a_turn_apart():
+def test_extrema_half_a_turn_apart_are_not_matched():
     """A torque of sin phi, and the same reversed: its maximum stands where the other has its minimum."""
     level = ks.scotch_yoke(0.1, slider=ks.Link(1.0))
     pushed, pulled = (ks.solve(level, 0.0, crank_speed=1e-3, loads=ks.ProcessForce(f)) for f in (100.0, -100.0))
@@ -117,7 +117,7 @@ def test_a_load_of_two_turns_is_compared_turn_by_turn():
 
 
 @pytest.mark.slow
-def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
+def test_bounds_stand_in_the_same_rows_and_columns():
     case = ks.load_case("toggle_press")
     found = case.compare("coining", "idle")
     values, bounds = found.frame(), found.error_bounds()
@@ -135,7 +135,7 @@ def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
     assert np.isnan(bounds.loc["mean |balancing torque|", "coining"])
 
 
-def test_of_very_many_torque_extrema_a_table_for_people_keeps_the_ends():
+def test_table_of_many_extrema_keeps_the_ends():
     import pandas as pd
 
     rows = [f"torque extremum {number}" for number in range(1, 41)]

@@ -1,5 +1,6 @@
-"""Extremes: where they must lie, that all are found, and what is refused."""
+"""Extremes: where they must lie, that all are found, their table, and what is refused."""
 
+import itertools
 import re
 
 import numpy as np
@@ -9,6 +10,9 @@ from scipy.optimize import brentq
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
+from kinetostatics.results.tables import extremes_by_name, extremes_frame, frames
+from kinetostatics.results.turn import Turn
+from support import sweeping as spikes
 from support.every import every
 from support.machines import ANGLES, KINDS, Machine, largest
 
@@ -21,7 +25,7 @@ def turn_distance(found, expected):
 @every("guide_angle", [0.0, 0.3, np.pi, -2.2])
 @every("offset", [0.0, 0.13, -0.4])
 @every("assembly", [1, -1])
-def test_slider_turns_back_where_crank_and_coupler_lie_in_line(guide_angle, offset, assembly):
+def test_slider_turns_back_at_dead_centres(guide_angle, offset, assembly):
     """At sine = offset / (l + r), stretched, and offset / (l - r), folded, of the angle of the line to the guide.
 
     Centred: at 0 and 180 degrees exactly. The place of an extremum is fixed by its slope, to 1e-12.
@@ -41,7 +45,7 @@ def test_slider_turns_back_where_crank_and_coupler_lie_in_line(guide_angle, offs
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_extremes_of_speed_lie_where_the_acceleration_vanishes(kind):
+def test_speed_is_extreme_at_zero_acceleration(kind):
     machine = Machine(kind)
     s = machine.solve(0.0, loads=(), crank_acceleration=0.0)
     found = ks.extremes(s, "slider_velocity")
@@ -53,7 +57,7 @@ def test_extremes_of_speed_lie_where_the_acceleration_vanishes(kind):
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 12])
-def test_extremes_of_a_harmonic_are_found_all_and_at_their_places(order):
+def test_all_extremes_of_a_harmonic_are_found(order):
     s = Machine("plain").solve()
     found = ks.extremes(s, lambda s: 3.0 + 0.5 * np.cos(order * s.crank_angle - 0.4))
     places = (0.4 + np.pi * np.arange(2 * order)) / order
@@ -61,7 +65,7 @@ def test_extremes_of_a_harmonic_are_found_all_and_at_their_places(order):
     assert_allclose(found.value, 3.0 + 0.5 * np.cos(np.pi * np.arange(2 * order)), rtol=1e-15)
 
 
-def test_extremes_of_a_mixed_harmonic_equal_the_roots_of_its_slope():
+def test_mixed_harmonic_extremes_equal_slope_roots():
     """Slope of cos + 0.8 sin 2 + 1.5 cos 3 as a polynomial in exp(i angle)."""
     s = Machine("plain").solve()
     found = ks.extremes(
@@ -81,7 +85,7 @@ def test_extremes_are_in_order_of_angle_and_alternate():
     assert np.all(np.diff(found.value)[:-1] * np.diff(found.value)[1:] < 0)
 
 
-def test_extremes_do_not_depend_on_the_crank_angles_solved_for():
+def test_extremes_ignore_the_solved_angles():
     few, many = (ks.extremes(Machine("plain").solve(angle), "balancing_torque") for angle in (0.0, ANGLES))
     assert_array_equal(few.angle, many.angle)
     assert_array_equal(few.value, many.value)
@@ -95,7 +99,7 @@ def test_a_constant_has_no_extremes(quantity):
     assert len(ks.extremes(s, quantity)) == 0
 
 
-def test_extremes_of_a_position_are_dead_centres_and_ends_of_the_closed_intervals():
+def test_position_extremes_are_limits_and_dead_centres():
     """Crank 1 m, coupler 0.8 m: it closes where the sine is at most 0.8, with the slider under A at the ends."""
     s = ks.solve(ks.crank_slider(1.0, 0.8), 0.0, crank_speed=1.0)
     found = ks.extremes(s, "slider_position")
@@ -152,7 +156,7 @@ def loaded(force):
     return ks.solve(SAW, [0.0], crank_speed=33.5, loads=[ks.ProcessForce(force)])
 
 
-def test_torque_extrema_are_matched_by_kind_where_their_numbers_differ():
+def test_torque_extrema_are_matched_by_kind():
     """A cut on the way back adds extrema to the second; each ratio is still of two maxima or two minima."""
     compared = ks.compare(loaded(0.0), loaded(lambda m: 6e4 * np.sin(5 * m.crank_angle)))
     reference, matched = compared.torque_extremes
@@ -186,7 +190,7 @@ def test_extremes_have_proven_bounds_at_their_angles():
         ks.extremes(s, lambda s: s.guide_force).error_bound  # noqa: B018
 
 
-def test_a_quantity_that_does_not_change_has_no_extremes_and_no_bounds_of_them():
+def test_constant_quantity_has_no_extremes():
     s = ks.solve(ks.crank_slider(0.3, 2.0, crank=ks.Link(5.0)), 8, crank_speed=33.5, loads=[ks.Gravity()])
     for quantity in ("shaking_force", "balancing_torque"):
         assert ks.extremes(s, quantity).error_bound.shape == (0,)
@@ -195,7 +199,7 @@ def test_a_quantity_that_does_not_change_has_no_extremes_and_no_bounds_of_them()
 # In print
 
 
-def test_extremes_are_printed_with_the_digits_that_are_known_and_rounding_as_0():
+def test_extremes_are_printed_with_known_digits():
     found = ks.extremes(ks.load_case("sawframe_2r63").solve("cam-circle"), "O")
     lines = repr(found).splitlines()
     assert lines[0] == "8 extremes of O"
@@ -204,20 +208,20 @@ def test_extremes_are_printed_with_the_digits_that_are_known_and_rounding_as_0()
     assert 0.0 < found.value[1] < 1e-10
 
 
-def test_what_has_no_extremes_is_printed_with_its_value_and_unit():
+def test_missing_extremes_print_the_value():
     s = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
     assert repr(ks.extremes(s, "guide_moment")) == "no extremes of guide_moment: 0 N m all over the period"
     assert repr(ks.extremes(s, "crank_rate")) == "no extremes of crank_rate: 1 rad/s all over the period"
 
 
-def test_extremes_of_a_function_are_printed_to_six_digits():
+def test_function_extremes_have_six_digits():
     pump = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
     first, line, _ = repr(ks.extremes(pump, lambda s: s.slider_position)).splitlines()
     assert first == "2 extremes of a function of the solution"
     assert line.split()[-1] in ("2.3", "1.7")
 
 
-def test_extremes_tell_where_the_mechanism_does_not_close():
+def test_extremes_say_where_nothing_closes():
     open_press = ks.Mechanism(
         "press",
         ks.Crank(0.1),
@@ -237,7 +241,7 @@ def test_extremes_tell_where_the_mechanism_does_not_close():
 
 
 @pytest.mark.parametrize("speed", [0.5, 1.5])
-def test_an_extreme_just_before_a_jump_at_crank_angle_0_is_not_looked_up_on_its_other_side(speed):
+def test_extreme_before_a_jump_at_0_keeps_its_side(speed):
     """The slider turns back there, and its friction with it: the torque is least as the turn ends."""
     pump = ks.crank_slider(0.05, 0.2, guide_angle=np.pi, slider=ks.Link(2.0))
     friction = {"guide": ks.GuideFriction(0.2), "B": ks.PinFriction(0.3, 0.02), "A": ks.PinFriction(0.2, 0.03)}
@@ -248,3 +252,99 @@ def test_an_extreme_just_before_a_jump_at_crank_angle_0_is_not_looked_up_on_its_
     assert before < s.balancing_torque.min() - 1e-4
     assert found.range[0] == pytest.approx(before, rel=1e-7)
     assert found.angle[np.argmin(found.value)] == pytest.approx(2 * np.pi, abs=1e-9)
+
+
+# The turn that results are reduced over
+
+
+PUMP = ks.crank_slider(0.1, 0.4)
+
+
+def solved(mechanism=PUMP, *loads):
+    return ks.solve(mechanism, np.zeros(1), crank_speed=1.0, loads=loads, on_gap="nan")
+
+
+def test_table_kinks_are_samples():
+    table = ks.Table([0.2, 0.4, 0.4000001, 0.4000003, 0.6], [0.0, 0.0, 1.0, 0.0, 0.0], over="travel")
+    turn = Turn.of(solved(PUMP, ks.ProcessForce(table)))
+    assert turn.kinks.size == 8
+    assert np.isin(turn.kinks, turn.angle).all()
+    for kink, following in itertools.pairwise(turn.kinks):
+        assert np.sum((turn.angle > kink) & (turn.angle < following)) >= 3
+
+
+@pytest.mark.slow
+@every("seed", [2, 6, 16])
+def test_no_extremum_hides_between_close_kinks(seed):
+    scene = spikes.spiky(seed)
+    for name in ("balancing_torque", "O"):
+        low, high = spikes.ends(scene, name)
+        found, size = ks.extremes(scene.solve(13), name).range, max(abs(low), abs(high))
+        assert high - 1e-9 * size <= found[1] < high + 1e-7 * size
+        assert low - 2e-3 * size < found[0] <= low + 1e-9 * size  # few angles stand where a reaction is least
+
+
+# Where sampled values turn
+
+
+def test_extremes_at_jumps_are_those_of_samples():
+    ramp = ks.extremes(loaded(lambda motion: -3e4 * np.mod(motion.crank_angle / (2 * np.pi), 1.0)), "B")
+    assert np.all(np.isfinite(ramp.value))
+    assert ramp.range[1] == pytest.approx(600 * 33.5**2 * 0.3 * 1.15, rel=1e-12)
+    step = ks.extremes(loaded(lambda motion: np.where(np.mod(motion.crank_angle, 2 * np.pi) < np.pi, -3e4, 0.0)), "B")
+    assert np.all(np.isfinite(step.angle))
+    assert np.all(np.isfinite(step.value))
+
+
+def test_rounding_of_terms_that_cancel_is_no_extremum():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    balanced = ks.solve(
+        ks.cam_crank_slider(law, law.coupler_length, slider=ks.Link(600)),
+        [0.0],
+        crank_speed=33.5,
+        loads=[ks.Spring.balancing(600, 33.5, 2.0)],
+    )
+    assert len(ks.extremes(balanced, "balancing_torque")) == 0
+    assert np.all(np.isnan(ks.compare(loaded(0.0), balanced).torque_extremum_ratios))
+
+
+@pytest.mark.parametrize(
+    "wave", [lambda s: 1 + 1e-12 * np.cos(s.crank_angle), lambda s: np.round(10 * np.cos(s.crank_angle))]
+)
+def test_ripples_and_treads_are_no_extrema(wave):
+    assert list(ks.extremes(loaded(0.0), wave).maximum) in ([True, False], [False, True])
+
+
+# The table of true extremes
+
+
+YOKE = ks.scotch_yoke(0.1, slider=ks.Link(3.0))
+
+
+def test_extremes_stand_beside_their_crank_angles():
+    table = extremes_frame(ks.solve(YOKE, np.zeros(1), crank_speed=10.0))
+    row = table.loc["slider acceleration"]
+    assert row["unit"] == "m/s2"
+    assert row[["smallest", "smallest at [deg]", "largest", "largest at [deg]"]].tolist() == pytest.approx(
+        [-10.0, 0.0, 10.0, 180.0], abs=1e-6
+    )
+
+
+def test_what_is_rounding_stands_as_zero():
+    table = extremes_frame(ks.solve(YOKE, np.zeros(1), crank_speed=10.0))
+    assert (table.loc["guide force", ["smallest", "largest"]] == 0.0).all()
+
+
+@pytest.mark.slow
+def test_value_and_bound_tables_have_equal_shape():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    solution = ks.solve(saw, 0.0, crank_speed=33.5)
+    values, bounds = frames(extremes_by_name(solution))
+    assert values.equals(extremes_frame(solution))
+    assert (values.index.equals(bounds.index), list(values)) == (True, list(bounds))
+    assert bounds["largest at [deg]"].isna().all()
+    largest = ks.extremes(solution, "balancing_torque").error_bound.max()
+    assert bounds.loc["balancing torque", "largest"] == pytest.approx(largest, rel=1e-12, abs=0.0)
+    proven = bounds["largest"].notna()
+    assert proven.sum() > 10
+    assert (bounds["largest"][proven] < 1e-11 * values["largest"][proven].abs() + 1e-9).all()

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.losses import losses
-from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn
+from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn
 
 R, MASS, MU, G, SPEED = 0.1, 3.0, 0.2, 9.81, 6.0
 YOKE = ks.scotch_yoke(R, slider=ks.Link(MASS))
@@ -32,7 +32,7 @@ CAM_ALL = JOINTS | {"slot": ks.SlotFriction(0.1), "cam": ks.RollerFriction(0.01,
 
 
 @pytest.mark.parametrize("speed", [SPEED, -SPEED])
-def test_mean_and_peak_of_a_guide_under_constant_load_are_their_closed_forms(speed):
+def test_guide_losses_are_closed_form(speed):
     found = yoke(speed=speed).losses
     assert found.friction["guide"] == pytest.approx(LOST * SPEED / (2.0 * np.pi), rel=1e-13)
     assert found.turn_time == pytest.approx(2.0 * np.pi / SPEED, rel=1e-14)
@@ -57,14 +57,14 @@ def test_mean_and_peak_of_a_guide_under_constant_load_are_their_closed_forms(spe
     ],
     ids=["idle", "pump", "engine", "load-too-weak", "spring", "constant-force", "two-take", "two-give", "damper"],
 )
-def test_efficiency_is_what_is_taken_over_what_is_given(load, efficiency):
+def test_efficiency_is_taken_over_given(load, efficiency):
     s = yoke(*load)
     assert s.efficiency == pytest.approx(efficiency, rel=1e-12, abs=1e-15)
     found = s.losses
     assert found.given == pytest.approx(found.taken + found.total, rel=1e-12)
 
 
-def test_without_friction_all_is_taken_or_nothing_flows():
+def test_without_friction_nothing_is_lost():
     assert yoke(resisting(50.0), friction=None).efficiency == 1.0
     idle = yoke(friction=None).losses
     assert np.isnan(idle.efficiency)
@@ -143,7 +143,7 @@ def test_the_table_has_a_row_for_each_joint_and_all():
 
 
 @pytest.mark.slow
-def test_comparison_tells_what_is_lost_where_and_how_much_less():
+def test_comparison_shows_losses_by_joint():
     loads = (ks.Gravity(), ks.ProcessForce(200.0))
     one, other = (
         ks.solve(m, 0.0, crank_speed=30.0, loads=loads, friction=f) for m, f in ((RUBBED, JOINTS), (CAM, CAM_ALL))
@@ -156,7 +156,7 @@ def test_comparison_tells_what_is_lost_where_and_how_much_less():
     assert table.loc["efficiency", "balanced"] == other.efficiency
 
 
-def test_comparison_of_machines_without_friction_says_nothing_of_losses():
+def test_comparison_without_friction_omits_losses():
     with_, without = (ks.solve(RUBBED, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=f) for f in (JOINTS, None))
     assert list(ks.compare(without, without)._lost()) == []
     assert next(iter(ks.compare(without, with_)._lost()))[:2] == ("mean power lost, O", "W")
@@ -214,7 +214,7 @@ class Brake:
     ],
     ids=["own class", "function that jumps", "smooth function", "couple"],
 )
-def test_what_functions_and_loads_of_ones_own_take_is_counted(load, taken):
+def test_own_loads_are_counted(load, taken):
     assert yoke(load()).efficiency == pytest.approx(taken / (taken + LOST), rel=1e-9)
 
 
@@ -226,7 +226,7 @@ def test_losses_go_through_pickle_with_their_solution():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_powers_balance_over_the_period_whatever_the_groups(kind):
+def test_powers_balance_over_the_period(kind):
     scene = Drawn(kind, 5).scene
     found = ks.Scene(scene.mechanism, scene.crank_speed, loads=scene.loads, friction=scene.friction).solve(0.3).losses
     assert found.total > 0.0
@@ -234,7 +234,7 @@ def test_powers_balance_over_the_period_whatever_the_groups(kind):
 
 
 @pytest.mark.parametrize("weight", [0.0, 1e-9, 1e-3, 9.81])
-def test_a_mean_is_right_where_a_reaction_nearly_vanishes(weight):
+def test_mean_is_right_near_a_vanishing_reaction(weight):
     """Of a slider without load its pin's does twice a turn: friction there has a corner, rounded by a light weight."""
     friction = {"B": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.1)}
     pump = ks.crank_slider(R, 4 * R, slider=ks.Link(MASS))

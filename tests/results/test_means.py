@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.results.means import (
     NODES,
-    WEIGHTS,
     _mean_of_absolute_torque,
     closed_turn,
     energy_per_turn,
@@ -40,29 +38,8 @@ def test_the_mean_is_that_of_calculus(name):
     assert error[0] < 1e-10
 
 
-def test_several_functions_together_are_as_right_as_each_alone():
-    functions, expected = zip(*FUNCTIONS.values(), strict=True)
-    found, _ = means(lambda x: np.array([function(x) for function in functions]), TURN, 1e-14)
-    assert found == pytest.approx(expected, rel=1e-11, abs=1e-14)
-
-
-def test_a_known_jump_given_as_an_edge_costs_no_more_panels():
-    asked = []
-
-    def jumping(x):
-        asked.append(x.size)
-        return np.where(x > 1.2345, 2.0, -1.0)[None]
-
-    found, _ = means(jumping, TURN, 1e-14, edges=[1.2345])
-    knowing = sum(asked)
-    asked.clear()
-    means(jumping, TURN, 1e-14)
-    assert found[0] == pytest.approx(FUNCTIONS["jump"][1], rel=1e-14)
-    assert knowing < sum(asked)
-
-
 @pytest.mark.parametrize("of", [mean_absolute_torque, energy_per_turn])
-def test_where_friction_jams_in_the_turn_there_is_no_mean(of):
+def test_jamming_leaves_no_mean(of):
     solution = ks.solve(
         ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0)), 0.3, crank_speed=3.0, friction={"guide": ks.GuideFriction(0.9)}
     )
@@ -94,13 +71,7 @@ def _exact_rule():
         ]
 
 
-def test_nodes_and_weights_are_those_of_gauss_to_the_last_digit():
-    nodes, weights = _exact_rule()
-    assert all(abs(own - node) <= UNIT for own, node in zip(NODES, nodes, strict=True))
-    assert all(abs(own - weight) <= UNIT * weight for own, weight in zip(WEIGHTS, weights, strict=True))
-
-
-def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():
+def test_rounding_bound_of_a_mean_is_near():
     """The torque of a Scotch yoke is m r^2 omega^2 sin 2 phi / 2; the sum of its nodes is taken in 40 digits."""
     mp = pytest.importorskip("mpmath")
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
@@ -119,7 +90,7 @@ def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():
     assert 0 < error <= rounding < 5e-15 * mean
 
 
-def test_where_the_torque_grows_without_bound_the_mean_and_its_errors_are_infinite(monkeypatch):
+def test_unbounded_torque_has_infinite_mean(monkeypatch):
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
     found = ks.extremes(s, "balancing_torque")
     growing = replace(found, value=np.where(found.maximum, np.inf, found.value))

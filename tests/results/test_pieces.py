@@ -1,10 +1,13 @@
-"""Reductions by polynomials between bends: as exact integrals and peaks have them."""
+"""Reductions by polynomials between kinks: as exact integrals and peaks have them."""
 
 import numpy as np
 import pytest
 
+import kinetostatics as ks
+from kinetostatics.results.bends import bends, bent
 from kinetostatics.results.pieces import Pieces
 from kinetostatics.results.reductions import parsed
+from kinetostatics.results.refining import GOAL, MOST, refined
 
 TURN = 2 * np.pi
 BENDS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
@@ -73,12 +76,12 @@ def test_two_turns_are_reduced_over_both():
     assert 7.0 <= found("largest_at O", second, bends, 384, 2 * TURN)[0] <= 9.0
 
 
-def test_the_magnitude_of_a_vector_that_passes_zero_is_known_there():
+def test_vector_magnitude_near_zero_is_right():
     near = lambda angle: np.hypot(np.sin(angle - 2.3456), 1e-4)  # noqa: E731
     assert found("smallest O", near, np.array([[1.0]]), vector=True) == pytest.approx(1e-4, rel=1e-3)
 
 
-def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
+def test_discontinuous_pieces_are_reported():
     """A kink between the last node of a piece and its end is seen by none of them."""
     pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
     for beside, doubted in ((-0.002, True), (0.002, True), (0.0, False)):
@@ -89,7 +92,7 @@ def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
         assert (kinked.max() > 1e-4) == doubted, (beside, kinked)
 
 
-def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
+def test_kink_just_before_a_bend_is_found():
     """No node lies between a kink and a bend that is near; what jumps there is no sign of it."""
     kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
     for jump in (False, True):
@@ -100,16 +103,7 @@ def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
         assert (doubts[at - 1] > 1e-4) != jump
 
 
-def test_nothing_is_joined_at_bends_nor_at_edges_that_rounding_sets_apart_from_them():
-    place = np.linspace(0.0, TURN, 25)[3]
-    pieces = Pieces.of(np.array([[place + 1e-14, 0.0], [4.0, np.nan]]), TURN, 192)
-    real = pieces.width > 0.0
-    apart = [start[~joined & real] for start, joined, real in zip(pieces.start, pieces.joined, real, strict=True)]
-    np.testing.assert_allclose(apart[0], [0.0, place], rtol=0, atol=1e-12)
-    assert apart[1].tolist() == [4.0]
-
-
-def test_values_that_are_no_polynomial_between_bends_are_told():
+def test_non_polynomial_pieces_are_reported():
     pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
     middle = np.pi / 24  # of the first piece
     for place in (middle, middle + 0.02, 3.0):
@@ -118,7 +112,7 @@ def test_values_that_are_no_polynomial_between_bends_are_told():
             assert pieces.estimated(parsed(text), values)[1].all(), (place, text)
 
 
-def test_a_design_with_what_is_no_number_spoils_no_other():
+def test_nan_in_one_design_spoils_no_other():
     pieces = Pieces.of(BENDS, TURN, 192)
     values = np.cos(pieces.angle)
     values[0, 5] = np.nan
@@ -128,7 +122,7 @@ def test_a_design_with_what_is_no_number_spoils_no_other():
         assert np.isfinite(numbers[1])
 
 
-def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_peak():
+def test_jump_between_bend_and_edge_is_no_peak():
     place = np.linspace(0.0, TURN, 25)[3]
     step = lambda angle: np.where(angle > place, 3.0, 1.0)  # noqa: E731
     for beside in (np.nextafter(place, 9.0), place + 1e-14):
@@ -138,7 +132,110 @@ def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_p
             assert found(text, step, bends, vector=True) == pytest.approx(expected, rel=1e-14), text
 
 
-def test_no_value_is_taken_at_a_bend_nor_where_a_design_has_fewer():
-    pieces = Pieces.of(np.array([[1.0, 1.0, 4.0], [2.0, np.nan, np.nan]]), TURN, 192)
-    assert not np.isin(pieces.angle, [0.0, 1.0, 2.0, 4.0, *np.linspace(0.0, TURN, 25)]).any()
-    np.testing.assert_allclose(pieces.width.sum(axis=1), TURN, rtol=1e-15)
+# Pieces halved until they tell an output
+
+
+PLACE = np.array([[1.2345], [3.2109], [5.0]])
+
+
+def run(text, function, count=3, vector=False, goal=GOAL, angles=192):
+    """Numbers of designs, whether they are rough, and how many pieces each has."""
+    output = parsed(text)
+    pieces = Pieces.of(np.full((count, 1), np.nan), TURN, angles, output.order or 0)
+    values = {output.quantity: function(pieces.angle, np.arange(count))}
+    evaluate = lambda designs, angle: {output.quantity: function(angle, designs)}  # noqa: E731
+    numbers, rough, pieces_of = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, int)
+    for designs, own, told in refined(pieces, values, [(output, vector)], evaluate, goal):
+        numbers[designs], rough[designs] = own.estimated(output, told[output.quantity], vector)
+        pieces_of[designs] = (own.width > 0).sum(axis=1)
+    return numbers, rough, pieces_of
+
+
+def hyperbola(width):
+    """What friction does where a reaction passes near zero: a size that turns about within so wide an angle."""
+    return lambda angle, designs: 1.0 + np.hypot(2.0 * np.sin(0.5 * (angle - PLACE[designs])), width)
+
+
+@pytest.mark.parametrize("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
+def test_size_passing_near_zero_is_found(text, width):
+    numbers, rough, pieces = run(text, hyperbola(width))
+    high, angle = np.hypot(2.0, width), np.linspace(0.0, TURN, 7)
+    fine = np.sort(np.concatenate([[0.0], np.ravel([TURN * 2.0**-k for k in range(45)]), angle[1:-1]]))
+    share, weights = np.polynomial.legendre.leggauss(40)
+    nodes = fine[:-1, None] + 0.5 * np.diff(fine)[:, None] * (1.0 + share)
+    values = 1.0 + np.hypot(2.0 * np.sin(0.5 * nodes), width)
+    mean, square = (0.5 * np.sum(np.diff(fine) * (part @ weights)) / TURN for part in (values, values**2))
+    truth = {
+        "smallest O": 1.0 + width,
+        "largest O": 1.0 + high,
+        "mean O": mean,
+        "rms O": np.sqrt(square),
+        "range O": high - width,
+        "smallest_at O": PLACE[:, 0],
+    }[text]
+    assert not rough.any()
+    np.testing.assert_allclose(numbers, truth, rtol=0, atol=(1e-6 if text.endswith("_at") else 1e-7))
+    assert pieces.max() < 150
+
+
+def test_undeclared_jump_is_seen_from_both_sides():
+    step = lambda angle, designs: np.where((angle > 1.0) & (angle < PLACE[designs]), 2.0, 0.5)  # noqa: E731
+    for text, truth in {"largest O": 2.0, "smallest O": 0.5, "range O": 1.5}.items():
+        numbers, rough, _ = run(text, step)
+        assert not rough.any()
+        np.testing.assert_allclose(numbers, truth, rtol=1e-14)
+    numbers, rough, _ = run("mean O", step)
+    assert not rough.any()
+    np.testing.assert_allclose(numbers, 0.5 + 1.5 * (PLACE[:, 0] - 1.0) / TURN, rtol=0, atol=1e-8)
+
+
+def test_where_everything_bends_it_is_said():
+    rough_one = lambda angle, designs: np.sin(3e5 * angle) + 0.0 * PLACE[designs]  # noqa: E731
+    _, rough, pieces = run("mean_absolute O", rough_one)
+    _, peak, _ = run("largest O", rough_one)
+    assert rough.all()
+    assert peak.all()
+    assert pieces.max() <= 24 + MOST
+
+
+# Where loads and friction of designs bend
+
+
+def solved(loads=(), friction=None, crank=0.05, offset=0.01):
+    pump = ks.crank_slider(crank, 0.19, guide_offset=offset, slider=ks.Link(1.0))
+    return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
+
+
+def test_smooth_rows_bend_only_at_fine_tolerance():
+    x = np.linspace(0.1, 0.3, 1100)
+    one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
+    assert not bent(solved([one]), "O")
+    assert bent(solved([one]), "O", 1e-9)
+    assert bends(solved([one]), 1e-9).angle.shape[1] > 500
+    assert bends(solved([one, other])).angle.shape[1] == 2  # where strokes that differ may jump
+
+
+def test_angle_table_bends_in_every_turn():
+    x = np.arange(0.0, 6.1, 0.5)
+    twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
+    four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
+    at = np.unique(bends(solved([twice, four])).angle)
+    assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
+
+
+def test_no_bend_lies_beyond_thirteen_turns():
+    once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
+    long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
+    s = solved([once, long])
+    at = bends(s).angle
+    assert np.nanmax(at) < s.period
+    assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
+
+
+def test_friction_of_designs_bends_as_alone():
+    friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
+    both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
+    for row, length in zip(both, crank[:, 0], strict=True):
+        alone = np.sort(bends(solved((), friction, float(length))).angle[0])
+        np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)

@@ -25,14 +25,14 @@ def test_bounds_are_shaped_as_the_quantity_and_locked():
         s.error_bound("O")[0] = 0.0
 
 
-def test_the_condition_of_a_magnitude_is_that_of_its_vector():
+def test_magnitude_condition_is_the_vectors():
     s = solved()
     np.testing.assert_array_equal(s.condition_of("|O|"), s.condition_of("O"))
     with pytest.raises(ks.QuantityError, match="only of a vector there is a magnitude"):
         s.condition_of("|balancing_torque|")
 
 
-def test_the_bound_of_a_magnitude_covers_those_of_its_components():
+def test_magnitude_bound_covers_its_components():
     s = solved()
     x, y = s.error_bound("O")
     assert np.all(s.error_bound("|O|") >= np.hypot(x, y))
@@ -45,7 +45,7 @@ def test_tight_bounds_are_no_larger_than_plain_ones():
         assert np.all(s.error_bound(quantity, tight=True) <= s.error_bound(quantity) * (1 + 1e-8))
 
 
-def test_a_batch_of_designs_has_the_bounds_of_each_alone():
+def test_batch_bounds_equal_those_of_each_design():
     masses = np.array([[300.0], [600.0]])
     batch = solved(machine=ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(masses)))
     np.testing.assert_array_equal(batch.error_bound("O")[:, 1], solved().error_bound("O"))
@@ -62,14 +62,14 @@ def test_what_is_no_quantity_is_refused(quantity):
         solved().error_bound(quantity)
 
 
-def test_code_of_the_users_that_cannot_be_recorded_has_no_bound():
+def test_unrecordable_code_has_no_bound():
     pressed = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, [0, 7], [0, 7]))
     s = ks.solve(SAW, TURN, crank_speed=1.0, loads=[pressed])
     with pytest.raises(NotGivenError, match="its own rounding is not known"):
         s.error_bound("balancing_torque")
 
 
-def test_uncertainty_is_what_a_monte_carlo_spread_shows():
+def test_uncertainty_equals_a_monte_carlo_spread():
     s, spreads = solved(), {"crank_length": 1e-4, "slider.mass": 2.0, "guide_offset": 2e-4}
     found = s.uncertainty("balancing_torque", spreads)
     random = np.random.default_rng(0)
@@ -82,7 +82,7 @@ def test_uncertainty_is_what_a_monte_carlo_spread_shows():
     np.testing.assert_allclose(values.std(axis=0), found.tolerance, rtol=0.06, atol=0.06 * found.tolerance.max())
 
 
-def test_uncertainty_adds_rounding_to_the_root_sum_of_squares():
+def test_uncertainty_adds_rounding_to_root_sum():
     s = solved()
     found = s.uncertainty("|O|", {"crank_length": 1e-5, "slider.mass": 1.0})
     parts = np.array(list(found.inputs.values()))
@@ -113,7 +113,7 @@ def test_what_names_no_inputs_is_refused(inputs):
         ks.solve(ks.crank_slider(0.1, 0.4), 0.5, crank_speed=5.0).uncertainty("O", inputs)
 
 
-def test_the_magnitude_of_a_vector_that_vanishes_is_as_uncertain_as_the_vector():
+def test_vanishing_magnitude_is_as_uncertain_as_vector():
     s = ks.solve(ks.crank_slider(0.3, 2.0), [0.0, 1.0], crank_speed=5.0, loads=[ks.Gravity()])
     found = s.uncertainty("|O|", {"slider.mass": 2.0})
     parts = s.uncertainty("O", {"slider.mass": 2.0}).tolerance
@@ -121,7 +121,7 @@ def test_the_magnitude_of_a_vector_that_vanishes_is_as_uncertain_as_the_vector()
     assert np.all(found.tolerance > 1.0)
 
 
-def test_a_number_that_is_zero_may_be_uncertain_and_a_length_that_makes_change_points_not():
+def test_zero_may_be_uncertain_passing_lengths_not():
     s = solved()
     found = s.uncertainty("balancing_torque", {"guide_offset": 1e-3, "coupler.mass": 1.0})
     assert np.all(found.inputs["coupler.mass"] >= 0.0)

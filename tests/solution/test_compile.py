@@ -56,7 +56,7 @@ def test_arrays_of_numbers_make_a_batch():
 
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 @pytest.mark.parametrize("angle", [np.linspace(0.0, 6.0, 25), 3.0])
-def test_derivatives_are_nan_where_the_values_are_by_every_parameter(interpreted, angle, engine):
+def test_derivatives_are_nan_where_values_are(interpreted, angle, engine):
     coupler, rocker = ks.Link(2.0, 0.2, 0.03), ks.Link(2.0, 0.1, 0.02)
     crank = {"crank": ks.Link(1.0, 0.1, 0.01), "coupler": coupler, "rocker": rocker}
     scene = ks.Scene(ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.55, 0.1), **crank), 20.0, 0.0, ks.Gravity())
@@ -68,7 +68,7 @@ def test_derivatives_are_nan_where_the_values_are_by_every_parameter(interpreted
             assert np.array_equal(np.isnan(slope), np.isnan(values[quantity])), (quantity, path)
 
 
-def test_parameters_are_those_present_and_those_asked_for():
+def test_parameters_are_the_present_and_the_asked_for():
     program = ks.compile(saw(), "balancing_torque", parameters=("crank.mass", "slider.centre.across"), engine="numpy")
     assert program.parameters["crank.mass"] == 0.0
     assert "crank.inertia" not in program.parameters
@@ -107,7 +107,7 @@ def test_numbers_no_machine_can_have_are_refused(name):
         ks.compile(saw(), "O", engine="numpy")(ANGLES, values)
 
 
-def test_numbers_that_only_together_make_no_machine_are_refused():
+def test_inconsistent_numbers_are_refused():
     mechanism = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.0, slider=ks.Link(1.0))
     program = ks.compile(ks.Scene(mechanism, 3.0), "cam_force", engine="numpy")
     with pytest.raises(ks.ParameterError, match="O must lie inside the pitch circle"):
@@ -158,7 +158,7 @@ def test_derivatives_have_the_shape_of_the_quantity():
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 @pytest.mark.parametrize("angle", [0.5, [0.5]])
 @pytest.mark.parametrize("count", [5, 5000])
-def test_one_angle_at_a_table_of_crank_speeds_has_a_result_for_each(count, angle, engine):
+def test_one_angle_at_many_speeds_gives_many_results(count, angle, engine):
     if engine == "compiled":
         pytest.importorskip("numba")
     scene = ks.Scene(saw().mechanism, np.linspace(20.0, 30.0, count))
@@ -186,7 +186,7 @@ class Brake:
         return np.where(motion.slider_velocity > 0, -self.damping * motion.slider_velocity, 0.0)
 
 
-def test_no_derivatives_where_a_load_was_not_recorded_and_so_would_count_as_constant():
+def test_unrecorded_load_allows_no_derivatives():
     scene = ks.Scene(saw().mechanism, 30.0, loads=Brake())
     program = ks.compile(scene, "balancing_torque", engine="numpy")
     varied = scene.varied({"damping": 5.0}).solve(ANGLES).balancing_torque
@@ -195,7 +195,7 @@ def test_no_derivatives_where_a_load_was_not_recorded_and_so_would_count_as_cons
         program.derivatives(ANGLES, "damping")
 
 
-def test_derivatives_of_what_a_load_that_was_not_recorded_does_not_reach_are_given():
+def test_derivatives_off_an_unrecorded_load_are_given():
     program = ks.compile(ks.Scene(saw().mechanism, 30.0, loads=Brake()), "slider_velocity", engine="numpy")
     found = program.derivatives(ANGLES, "crank_speed")["slider_velocity"]["crank_speed"]
     assert np.allclose(found, program(ANGLES)["slider_velocity"] / 30.0)
@@ -216,6 +216,26 @@ def test_one_kept_parameter_may_be_a_text():
         (lambda program: program(["a"]), "program: crank_angle must be a number"),
     ],
 )
-def test_calls_of_a_program_that_make_no_sense_are_refused(call, words):
+def test_senseless_program_calls_are_refused(call, words):
     with pytest.raises(ks.ParameterError, match=words):
         call(ks.compile(saw(), "O", engine="numpy"))
+
+
+# What the numbers of a scene are to a program
+
+
+def test_a_wanted_axis_number_has_a_derivative():
+    """Along an axis a guide's direction belongs to the structure."""
+    upright, inclined = (
+        ks.Scene(ks.crank_slider(0.1, 3.0, guide=ks.Guide.through((0.0, 0.0), end), slider=ks.Link(1.0)), 3.0)
+        for end in ((0.0, 2.0), (1e-9, 2.0))
+    )
+    for path in ("exact.x", "exact.y"):
+        assert path in ks.compile(upright, ("O",), (path,), engine="numpy").parameters
+        one, other = (
+            scene.solve([0.3, 1.0]).uncertainty("balancing_torque", {path: 1e-6}) for scene in (upright, inclined)
+        )
+        assert np.all(one.inputs[path] > 0.0)
+        np.testing.assert_allclose(one.inputs[path], other.inputs[path], rtol=1e-7)
+    with pytest.raises(ks.ParameterError, match=r"exact.y is of an axis and so left out; keep it by compile"):
+        ks.compile(upright, ("O",), engine="numpy")(0.3, {"exact.y": 0.9})

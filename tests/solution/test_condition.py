@@ -10,8 +10,7 @@ from kinetostatics.mechanics.assembly import HALF
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.solution import condition
 from kinetostatics.solution.condition import ill_conditioned, is_surely_well_conditioned
-from support.four_bars import turning
-from support.machines import ANGLES, planar
+from support.machines import ANGLES, planar, turning
 
 TURN = np.linspace(0.0, 2 * np.pi, 1441)
 BODY = ks.Link(3.0, 0.5, 2.0)
@@ -175,6 +174,7 @@ def test_all_results_at_exact_limit_positions_are_finite_and_warned_of():
         assert s.condition[0] > 1e14
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_loops_close_at_and_around_limit_positions_on_the_chosen_side():
     """Coupler and rocker keep their lengths to rounding, the slider stays on its guide, and B on its side."""

@@ -52,7 +52,7 @@ def test_every_method_is_listed_with_its_arguments():
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_every_reaction_is_listed_with_the_body_that_it_acts_on(name):
+def test_reactions_are_listed_with_their_body(name):
     section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("For groups and loads")].split())
     for joint, output in MACHINES[name].outputs.items():
         if not output.vector:
@@ -70,7 +70,7 @@ def test_every_scalar_is_listed(name):
 
 
 @pytest.mark.parametrize("speed", [33.5, -33.5])
-def test_power_of_the_drive_is_torque_times_speed_in_both_directions_of_rotation(speed):
+def test_drive_power_is_torque_times_speed(speed):
     """A force that resists the slider: the drive gives its power, however the crank turns."""
     saw = ks.crank_slider(0.3, 2.0)
     resisting = ks.ProcessForce(lambda motion: -1e3 * np.sign(motion.slider_velocity))

@@ -11,15 +11,15 @@ import kinetostatics as ks
 from kinetostatics.casefile.reading import shipped_cases
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.solution.drive_and_loads import over_the_angles
-from tests.support.chains import chain
-from tests.support.every import every
-from tests.support.followers import KINDS as FOLLOWERS
-from tests.support.followers import scene as with_follower
-from tests.support.retold import largest_error
-from tests.support.rubbing_machines import KINDS as RUBBING
-from tests.support.rubbing_machines import Drawn
-from tests.support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
-from tests.support.scenes import solve as solved
+from support.chains import chain
+from support.every import every
+from support.followers import KINDS as FOLLOWERS
+from support.followers import scene as with_follower
+from support.friction_machines import KINDS as RUBBING
+from support.friction_machines import Drawn
+from support.retold import largest_error
+from support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
+from support.scenes import solve as solved
 
 STEP, CHAIN, VALUE = 1e-15, 1e-14, 1e-13
 LOADED = ks.Scene(
@@ -66,6 +66,7 @@ def test_shipped_cases(name):
             ask(solution, quantity, 2.3)
 
 
+@pytest.mark.slow
 @every("seed", range(3))
 def test_random_chains_of_every_group(seed):
     scene, angles = chain(seed)
@@ -112,8 +113,9 @@ def test_magnitudes_of_what_is_no_vector_are_refused(quantity, words):
         solved(SCENES["plain, everything"], 1.1).explain(quantity, 1.1)
 
 
+@pytest.mark.slow
 @every("name", ["plain, everything", "circle cam, everything", "six-bar"])
-def test_crank_acceleration_inclined_guides_and_every_mass(name):
+def test_inclined_guides_and_all_masses(name):
     for quantity in ("balancing_torque", "shaking_moment", "kinetic_energy"):
         ask(solved(SCENES[name], 1.1), quantity, 1.1)
 
@@ -133,6 +135,7 @@ LOADS = {
 }
 
 
+@pytest.mark.slow
 @every("name", LOADS)
 def test_every_load(name):
     scene = ks.Scene(LOADED.mechanism, 40.0, 30.0, (ks.Gravity(), LOADS[name]))
@@ -141,7 +144,7 @@ def test_every_load(name):
 
 
 @every("name", OWN)
-def test_groups_and_cams_of_the_users_own_need_no_more_than_the_protocol(name):
+def test_own_groups_and_cams_are_explained(name):
     told = ask(solved(OWN[name][0], 0.7), "balancing_torque", 0.7)
     assert told.steps
 
@@ -152,7 +155,7 @@ def test_functions_of_the_users_own(name):
     ask(solution, "balancing_torque", 0.7)
 
 
-def test_an_array_over_the_crank_angles_is_read_at_one_of_them_and_unknown_between():
+def test_array_load_is_read_at_its_own_angle():
     solution = ks.solve(LOADED.mechanism, ANGLES, crank_speed=SPEED, loads=ks.ProcessForce(1e3 * np.sin(ANGLES)))
     told = ask(solution, "balancing_torque", float(ANGLES[40]))
     assert told.value == pytest.approx(solution.balancing_torque[40], rel=VALUE)
@@ -193,7 +196,7 @@ def test_one_of_several_designs():
         (("O", "0.7"), "crank_angle"),
     ],
 )
-def test_what_cannot_be_told_is_one_error_of_the_library(asked, words):
+def test_unexplainable_is_one_library_error(asked, words):
     with pytest.raises(ks.KinetostaticsError) as error:
         LOADED.solve(0.0).explain(*asked)
     assert words in str(error.value)
@@ -217,7 +220,7 @@ def test_hints_are_not_told_again():
     assert len(told) == count
 
 
-def test_a_profiler_that_runs_goes_on_and_kernels_lines_have_no_names_then():
+def test_a_running_profiler_goes_on():
     solution, calls = LOADED.solve(0.0), []
 
     def profiler(frame, event, value):
@@ -236,7 +239,7 @@ def test_a_profiler_that_runs_goes_on_and_kernels_lines_have_no_names_then():
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning", "ignore::kinetostatics.HintWarning")
 @every("angle", [math.asin(0.5) - 1e-17, math.nextafter(math.asin(0.5), 1.0)])
-def test_at_a_limit_position_the_limit_of_the_divisor_is_told(angle):
+def test_limit_of_the_divisor_is_explained(angle):
     solution = ks.solve(ks.crank_slider(0.2, 0.1, slider=ks.Link(1.0)), angle, crank_speed=9.0)
     told = ask(solution, "balancing_torque", angle)
     assert any("/max(w, " in step.formula for step in told.steps)

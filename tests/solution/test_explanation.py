@@ -1,10 +1,15 @@
 """What a user sees of a hand calculation: beside one done by hand, as text, steps, LaTeX and HTML."""
 
+import re
 from math import asin, cos, degrees, hypot, pi, sin
+from xml.etree import ElementTree as ET
 
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.solution.explanation_pages import STYLE
+from support.chains import chain
+from support.friction_machines import Drawn
 
 R, L, MASS, SPEED, ANGLE = 0.05, 0.2, 1.5, 100.0, 0.7
 PUMP = ks.solve(ks.crank_slider(R, L, slider=ks.Link(MASS)), 0.0, crank_speed=SPEED)
@@ -15,7 +20,7 @@ def value(symbol, told=TOLD):
     return next(step.value for step in told.steps if step.symbol == symbol)
 
 
-def test_it_is_the_calculation_of_a_textbook_done_by_angles():
+def test_explanation_is_the_textbook_calculation():
     """Crank-slider by the angle beta of the rod: sin(beta) = r/l sin(phi), forces from the slider inwards."""
     beta = -asin(R / L * sin(ANGLE))
     ratio = -R * cos(ANGLE) / (L * cos(beta))
@@ -40,7 +45,7 @@ def test_it_is_the_calculation_of_a_textbook_done_by_angles():
     assert f"unit vector of the crank, at {degrees(ANGLE):.6g} deg" in TOLD.text
 
 
-def test_text_gives_formula_numbers_and_result_with_its_unit():
+def test_text_gives_formula_numbers_and_unit():
     lines = TOLD.text.splitlines()
     assert lines[0] == "crank-slider: balancing torque at crank angle 0.7 rad = 40.107 deg"
     assert "  l_crank   = 0.05 m                crank_length" in lines
@@ -62,7 +67,7 @@ def test_steps_are_data():
     assert (given.title, given.words, given.formula, given.numbers) == ("Given", "crank_length", "", "")
 
 
-def test_a_vector_ends_with_both_components_and_its_magnitude():
+def test_vector_ends_with_components_and_magnitude():
     told = PUMP.explain("O", ANGLE)
     x, y = told.value
     assert [step.value for step in told.results] == [x, y]
@@ -76,7 +81,7 @@ def test_an_angle_is_told_in_degrees_beside_rad():
     assert told.conclusion.endswith(f"rad = {degrees(told.value):.6g} deg")
 
 
-def test_what_nothing_makes_is_zero_without_a_step_of_reasoning():
+def test_absent_terms_are_zero_without_a_step():
     told = PUMP.explain("crank_angular_acceleration", ANGLE)
     assert told.value == 0.0
     assert told.conclusion == "crank_angular_acceleration = 0 rad/s2"
@@ -94,7 +99,8 @@ def test_rounding_stands_as_zero():
     )
 
 
-def test_what_tables_take_for_rounding_stands_as_zero_too():
+@pytest.mark.slow
+def test_table_rounding_is_zero_too():
     """Horizontally the counterweights of the mower balance the pin: 3e-10 N are left of kilonewtons."""
     solution = ks.load_case("mower_drive").solve("full", 8)
     told = solution.explain("A", 1.5 * pi)
@@ -107,3 +113,53 @@ def test_notebooks_and_prompts_show_it():
     assert TOLD._repr_html_() == TOLD.html
     assert TOLD._repr_latex_() == TOLD.latex
     assert repr(TOLD) == f"<Explanation: {TOLD.title}, {len(TOLD.steps)} steps; print it>"
+
+
+# Pages of a hand calculation
+
+
+@pytest.fixture(scope="module", params=["friction of a cam", "chain", "balanced cam"])
+def told(request):
+    if request.param == "balanced cam":
+        return ks.load_case("sawframe_2r63_optimal").variants["cam-robust"].scene.solve(0.7).explain("O", 0.7)
+    if request.param == "chain":
+        scene, angles = chain(1)
+        return scene.solve(angles).explain("O", float(angles[0]))
+    return Drawn("cam", 1).scene.solve(0.3).explain("balancing_torque", 0.3)
+
+
+def test_text_fits_80_columns_and_has_every_step(told):
+    assert max(map(len, told.text.splitlines())) <= 80
+    for step in told.steps:
+        assert f"  {step.symbol} " in told.text
+
+
+def test_broken_formula_is_the_same_formula(told):
+    together = re.sub(r"\s+", "", told.text)
+    for step in told.steps:
+        if step.formula:
+            assert re.sub(r"\s+", "", f"{step.symbol}={step.formula}=") in together
+
+
+def test_html_is_well_formed_and_asks_for_nothing(told):
+    tree = ET.fromstring(told.html.replace(STYLE, ""))
+    assert len(tree.findall(".//math")) > 2 * len(told.steps)
+    assert not re.search(r"https?:|src=|href=|@import|url\(", told.page)
+    assert told.page.startswith("<!DOCTYPE html>")
+    headings = [heading.text for heading in tree.findall("h4")]
+    assert headings == list(dict.fromkeys(headings))
+
+
+def test_latex_has_matching_braces_a_line_a_step(told):
+    assert told.latex.count("{") == told.latex.count("}")
+    assert told.latex.count(" &= ") == len(told.steps)
+    assert told.latex.count(r"\begin{align*}") == told.latex.count(r"\end{align*}")
+    assert r"\left(" in told.latex
+
+
+def test_latex_and_html_signs_are_escaped():
+    pump = ks.Mechanism("50% & <b>", ks.Crank(0.05), (ks.SliderGroup(0.2, slider=ks.Link(1.0)),))
+    told = ks.solve(pump, 0.7, crank_speed=9.0).explain("balancing_torque", 0.7)
+    assert r"50\% \& <b>" in told.latex
+    assert "50% &amp; &lt;b&gt;" in told.html
+    ET.fromstring(told.html.replace(STYLE, ""))

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.reductions import parsed
-from kinetostatics.solution.parted import Parted, quantities
+from kinetostatics.solution.parted import Parted
 
 OUTPUTS = tuple(map(parsed, ("smallest O", "mean B", "largest balancing_torque", "rms O", "range guide_force")))
 
@@ -34,35 +34,8 @@ def test_designs_have_the_numbers_that_they_have_alone():
         np.testing.assert_array_equal(together[:, row], alone[:, 0])
 
 
-def test_some_designs_are_taken_out_of_many():
-    crank = np.array([[0.03], [0.05], [0.06]])
-    parted, angle = Parted.of(pump(crank), OUTPUTS, 192), np.linspace(0.1, 6.0, 40)
-    found = parted.values(["O"], np.array([2, 0]), np.broadcast_to(angle, (2, 40)))["O"]
-    for row, length in zip(found, (0.06, 0.03), strict=True):
-        own = pump(length).solve(angle).reaction("O")
-        np.testing.assert_allclose(row, np.hypot(*own), rtol=1e-9)
-
-
-def test_functions_may_hold_numbers_of_all_designs():
-    """They cannot be taken apart, so some designs are computed among all."""
-
-    def rubbed(crank, size):
-        push = ks.ProcessForce(lambda motion: size * np.cos(3.0 * motion.crank_angle))
-        return ks.Scene(pump(crank).mechanism, 30.0, loads=push, friction={"O": ks.PinFriction(0.1, 0.02)})
-
-    crank = np.array([[0.03], [0.05], [0.06]])
-    size, angle = np.array([[10.0], [1e3], [-40.0]]), np.array([[0.3, 2.0], [1.0, 5.0]])
-    found = Parted.of(rubbed(crank, size), OUTPUTS, 192).values(["B"], np.array([1, 2]), angle)["B"]
-    for row, length, push, own in zip(found, (0.05, 0.06), (1e3, -40.0), angle, strict=True):
-        np.testing.assert_allclose(row, np.hypot(*rubbed(length, push).solve(own).reaction("B")), rtol=1e-9)
-
-
 def test_the_compiled_loop_gives_the_same(numba):
     plain, compiled = (
         Parted.of(pump(), OUTPUTS, 192, engine=engine).estimated(OUTPUTS)[0] for engine in ("numpy", "compiled")
     )
     np.testing.assert_allclose(plain, compiled, rtol=1e-9)
-
-
-def test_each_quantity_is_computed_once():
-    assert quantities(OUTPUTS) == ["O", "B", "balancing_torque", "guide_force"]

@@ -77,9 +77,10 @@ def held(name):
     return made[name]()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", CASES)
-def test_cases_come_back_with_their_variants_and_results(name, way):
+def test_cases_are_pickled_with_results(name, way):
     case = ks.load_case(name)
     found = WAYS[way](case)
     assert (found.title, found.path, list(found.variants)) == (case.title, case.path, list(case.variants))
@@ -93,7 +94,7 @@ def test_cases_come_back_with_their_variants_and_results(name, way):
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_solutions_come_back_with_what_they_have_found_and_may_find(way):
+def test_solutions_are_pickled_with_results(way):
     solution = ks.load_case("chain_unit").solve("rho-0.5", 36)
     torque = solution.balancing_torque
     found = WAYS[way](solution)

@@ -22,7 +22,7 @@ def made(scene=SAW, quantities=("balancing_torque", "O"), **options):
 
 @every("angle", [0.3, ANGLES, ANGLES[None], ANGLES[:3]], ids=np.shape)
 @every("values", [{}, {"slider.mass": 620.0}, {"slider.mass": np.array([[500.0], [620.0]])}], ids=len)
-def test_single_precision_gives_single_numbers_of_the_same_shape_within_the_bound(angle, values):
+def test_single_precision_is_within_its_bound(angle, values):
     program, exact = made(**SINGLE), made(engine="numpy")(angle, values)
     found, bounds = program(angle, values), program.error_bound(angle, values)
     for name, value in exact.items():
@@ -41,13 +41,13 @@ def test_derivatives_are_in_single_precision_too():
             assert np.max(np.abs(slope - wanted)) <= 1e-5 * np.max(np.abs(wanted)), path
 
 
-def test_bounds_in_double_precision_are_those_of_a_solution():
+def test_double_bounds_equal_the_solutions():
     solution = SAW.solve(ANGLES)
     for name, bound in made(engine="numpy").error_bound(ANGLES).items():
         assert np.array_equal(bound, solution.error_bound(name))
 
 
-def test_tight_bounds_are_those_of_a_solution_in_double_precision():
+def test_tight_bounds_equal_the_solutions():
     solution, values = SAW.solve(ANGLES), {"slider.mass": 600.0}
     for name, bound in made(engine="numpy").error_bound(ANGLES, values, tight=True).items():
         assert np.array_equal(bound, solution.error_bound(name, tight=True))
@@ -56,7 +56,7 @@ def test_tight_bounds_are_those_of_a_solution_in_double_precision():
         made(**SINGLE).error_bound(ANGLES, tight=True)
 
 
-def test_derivatives_take_other_numbers_before_or_behind_the_names():
+def test_derivatives_take_values_in_any_position():
     program, values, name = made(quantities="balancing_torque", engine="numpy"), {"crank_length": 0.25}, "slider.mass"
     wanted = program.derivatives(ANGLES, by=name, values=values)["balancing_torque"]
     for given in [(name, values), (values, name), (values, [name]), ((name,), values)]:
@@ -69,7 +69,7 @@ def test_derivatives_take_other_numbers_before_or_behind_the_names():
         program.derivatives(ANGLES, {name: 1.0}, values)
 
 
-def test_a_program_tells_what_runs_it_and_so_does_its_copy():
+def test_program_and_copy_name_their_engine():
     program = pickle.loads(pickle.dumps(made(**SINGLE)))
     assert (program.engine, program.precision, program.device) == ("numpy", "single", "cpu")
     assert "numpy, single; parameters" in repr(program)
@@ -104,7 +104,7 @@ def test_what_is_no_arithmetic_is_computed_beforehand(name):
         assert np.max(np.abs(found[quantity] - value)) <= 3e-6 * np.max(np.abs(value)), quantity
 
 
-def test_of_what_rounds_in_unknown_ways_no_bound_is_given():
+def test_unknown_rounding_has_no_bound():
     scene = ks.Scene(WHAT_IS_TABLED["a function"], 30.0, loads=ks.ProcessForce(pull))
     with pytest.raises(ks.NotGivenError, match="no bound can be given"):
         made(scene, **SINGLE).error_bound(ANGLES)
@@ -126,19 +126,19 @@ REFUSED = [
 
 
 @every("options, words", REFUSED)
-def test_unknown_precisions_engines_and_devices_are_refused(options, words):
+def test_unknown_precision_or_engine_is_refused(options, words):
     with pytest.raises(ks.ParameterError, match=f"(?s){words}"):
         made(**options)
 
 
 @every("precision", ["single", "double"])
-def test_an_unknown_quantity_is_refused_in_every_precision(precision):
+def test_unknown_quantity_is_refused_in_any_precision(precision):
     with pytest.raises(ks.QuantityError, match="torqe"):
         made(quantities="torqe", engine="numpy", precision=precision)
 
 
 @pytest.mark.slow_start
-def test_jax_gives_arrays_of_numpy_in_the_precision_asked_for_and_names_its_device(jax):
+def test_jax_gives_numpy_arrays_and_names_its_device(jax):
     exact = made(engine="numpy")(ANGLES)
     for precision, dtype in (("single", np.float32), ("double", float)):
         program = made(engine="jax", precision=precision, device="cpu")
@@ -159,7 +159,7 @@ def test_a_device_that_jax_does_not_have_is_refused(jax):
 @every("crank", [ks.Link(), ks.Link(3.0, 0.1, 0.1)], ids=["massless", "heavy"])
 @every("bodies", [{}, {"coupler": ks.Link(150.0, 0.1, 20.5), "slider": ks.Link(600.0)}], ids=["massless", "heavy"])
 @every("loads", [[], [ks.Gravity()]], ids=len)
-def test_every_quantity_has_the_gaps_of_the_mechanism_even_what_never_changes(crank, bodies, loads):
+def test_all_quantities_have_the_mechanisms_gaps(crank, bodies, loads):
     """The crank turns evenly, and weighs the same, where no coupler reaches the guide."""
     scene = ks.Scene(ks.crank_slider(0.3, 0.25, crank=crank, **bodies), 7.0, 3.0, loads)
     solution = scene.solve([0.1, 1.5], on_gap="nan")
@@ -180,7 +180,7 @@ def test_every_quantity_has_the_gaps_of_the_mechanism_even_what_never_changes(cr
 
 @pytest.mark.parametrize("options", [{"engine": "numpy"}, {"engine": "compiled"}, SINGLE], ids=str)
 @pytest.mark.parametrize("speeds", [[1.0, 2.0], [[1.0, 2.0], [3.0, 4.0]]], ids=np.shape)
-def test_a_speed_that_was_recorded_as_one_number_cannot_become_a_table_over_the_angles(options, speeds):
+def test_speed_as_one_number_cannot_become_a_table(options, speeds):
     if options["engine"] == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     with pytest.raises(ks.ParameterError, match=r"crank_speed must be a number or an array of shape \(designs, 1\)"):

@@ -12,7 +12,7 @@ from support.every import every
 YOKE = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=10.0)
 
 
-def test_the_uncertainty_of_an_extremum_is_that_of_its_formula():
+def test_extremum_uncertainty_is_its_formula():
     """The torque is m r^2 omega^2 sin 2 phi / 2 at most: 1.5 N m, so 1 % of r makes 2 %, 1 % of m makes 1 %."""
     table = largest_with_uncertainty(YOKE, {"crank_length": 0.001, "slider.mass": 0.03})
     row = table.loc["balancing torque"]
@@ -22,7 +22,8 @@ def test_the_uncertainty_of_an_extremum_is_that_of_its_formula():
     assert 0.0 < row["rounding"] < 1e-14
 
 
-def test_a_peak_that_a_row_of_a_table_makes_moves_with_the_inputs():
+@pytest.mark.slow
+def test_peak_at_a_table_row_moves_with_inputs():
     """The torque on a yoke without mass is F sqrt(r^2 - x^2) where the row stands, however steep it is beside."""
     work = ks.Table([-0.2, 0.0599, 0.06, 0.0601, 0.2], [0.0, 0.0, 1000.0, 0.0, 0.0], over="travel")
     s = ks.solve(ks.scotch_yoke(0.1), 0.0, crank_speed=10.0, loads=ks.ProcessForce(work))
@@ -40,7 +41,8 @@ RUBBING = ks.solve(
 )
 
 
-def test_at_a_jump_motion_is_as_uncertain_as_its_formula_and_what_an_input_does_not_change_is_not():
+@pytest.mark.slow
+def test_motion_at_a_jump_keeps_its_uncertainty():
     """The slider is r + l from O at the outer dead centre, where friction and the load jump."""
     table = largest_with_uncertainty(RUBBING, {"crank_length": 1e-4, "coupler_length": 1e-4})
     row = table.loc["slider position"]
@@ -59,7 +61,7 @@ def test_without_uncertain_numbers_rounding_is_all():
     assert (table["rounding"] > 0.0).all()
 
 
-def test_what_does_not_vary_and_what_says_the_torque_again_is_left_out():
+def test_constant_and_repeated_rows_are_left_out():
     table = largest_with_uncertainty(YOKE, {"slider.mass": 0.1})
     assert "guide force" not in table.index
     assert "balancing torque by power" not in table.index
@@ -71,7 +73,7 @@ def test_what_does_not_vary_and_what_says_the_torque_again_is_left_out():
     (-10.16, 0.074, "-10.16 +- 0.074"), (2.3, 0.25, "2.3 +- 0.25"), (1.0, 20.0, "0 +- 20"), (0.0, 2.0, "0 +- 2"),
     (7.0, 20.0, "7 +- 20"), (0.36, 1e-4 + 3e-16, "0.36 +- 0.0001"), (0.36, 1.01e-4, "0.36 +- 0.00011"),
 ])  # fmt: skip
-def test_a_number_is_told_to_the_second_digit_of_its_uncertainty(value, uncertainty, text):
+def test_value_is_printed_to_two_uncertain_digits(value, uncertainty, text):
     assert with_uncertainty(value, uncertainty) == text
 
 

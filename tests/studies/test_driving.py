@@ -1,13 +1,16 @@
 """Studies of running and of motions over time: tables with units, charts, and what cannot be studied."""
 
+import platform
+import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies import driving
+from kinetostatics.studies import driving, timing
 from kinetostatics.views import charts
-from support.driven_saws import BY_NAME, IDLE, MOTOR, SAW
+from support.drives import BY_NAME, IDLE, MOTOR, SAW
 
 pytestmark = pytest.mark.slow
 
@@ -43,3 +46,19 @@ def test_a_study_of_running_is_a_chart_with_units(tmp_path):
 def test_what_cannot_be_studied_says_why(call, kind, words):
     with pytest.raises(kind, match=words):
         call()
+
+
+# How long a function takes, and where that was measured
+
+
+def test_times_are_those_of_one_call_and_in_order():
+    short, long = timing.seconds(lambda: time.sleep(0.001), lambda: time.sleep(0.004), repeats=1)
+    assert 0.001 <= short < long
+    assert 0.004 <= long < 0.4
+
+
+def test_machine_and_versions_are_told():
+    found = timing.circumstances()
+    assert f"numpy {np.__version__}" in found["versions"]
+    assert platform.python_version() in found["versions"]
+    assert "cores" in found["machine"]

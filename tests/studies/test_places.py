@@ -22,7 +22,7 @@ BOUND, MEETING = 200, 20_000
 
 
 @pytest.mark.parametrize("place", PLACES, ids=lambda place: place.name)
-def test_every_number_of_a_place_has_a_scene_of_one_design_with_its_quantity(place):
+def test_every_place_has_a_scene_of_one_design(place):
     for number in (place.numbers[0], place.numbers[-1]):
         solution = place.scene(number)
         assert solution.shape == solution.crank_angle.shape
@@ -43,10 +43,11 @@ FOLDING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("place", FOLDING, ids=lambda place: place.name)
 @every("tight", [False, True])
-def test_bounds_follow_linkages_however_near_to_where_their_links_lie_in_line(place, tight):
+def test_bounds_hold_near_aligned_links(place, tight):
     for number in place.numbers[:-2:3]:
         solution = place.scene(number)
         bound, size = solution.error_bound(place.quantity, tight), np.abs(components(solution, place.quantity)).max()
@@ -55,7 +56,7 @@ def test_bounds_follow_linkages_however_near_to_where_their_links_lie_in_line(pl
 
 @pytest.mark.slow
 @every("place", INCLINED, ids=lambda place: place.name)
-def test_inclined_twins_of_places_are_as_near_as_the_crank_angle_allows(flint, place):
+def test_inclined_twins_are_as_near_as_rounding(flint, place):
     rows = stability.study([replace(place, numbers=place.numbers[::3])], METHODS[:1])
     counted = rows[rows["angle rounding"] < DIGITS]
     assert len(counted) >= 3
@@ -66,8 +67,9 @@ def test_inclined_twins_of_places_are_as_near_as_the_crank_angle_allows(flint, p
     assert set(rows["raised"]) == {""}
 
 
+@pytest.mark.slow
 @every("place", INCLINED, ids=lambda place: place.name)
-def test_no_value_of_an_inclined_twin_is_off_by_more_than_its_bound(flint, place):
+def test_inclined_twin_values_stay_in_bounds(flint, place):
     for number in place.numbers[::5]:
         found = errors(place.scene(number), (place.quantity, "balancing_torque_by_power"))
         assert found.values > 20

@@ -6,7 +6,7 @@ import kinetostatics as ks
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
 from kinetostatics.studies.simplifications import two_mass_coupler
-from support.needed import MECHANISMS, alone, change, cranked, solved
+from support.studied import MECHANISMS, alone, change, cranked, solved
 
 
 @pytest.fixture
@@ -15,7 +15,8 @@ def few_models(monkeypatch):
     monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
 
 
-def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_models):
+@pytest.mark.slow
+def test_every_present_ingredient_is_offered(few_models):
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
     loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
@@ -35,7 +36,7 @@ def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_mode
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_two_masses_are_a_coupler_with_the_inertia_mass_times_both_distances(name):
+def test_two_masses_have_the_product_inertia(name):
     """Mass m and centre at s along the length l are kept; the moment of inertia becomes m s (l - s)."""
     mechanism = MECHANISMS[name]
     bar = ks.Link(4.0, (0.5, 0.0), 4.0 * 0.5 * (1.3 - 0.5))
@@ -49,12 +50,12 @@ def test_two_masses_are_a_coupler_with_the_inertia_mass_times_both_distances(nam
     assert change(masses, solved(mechanism, crank_acceleration=-40.0), "balancing_torque") > 1e-3
 
 
-def test_mechanism_without_coupler_mass_has_no_two_masses():
+def test_massless_coupler_has_no_two_masses():
     assert two_mass_coupler(ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))) is None
 
 
 @pytest.mark.parametrize(("name", "output"), [("crank-slider", "slider"), ("cam", "slider"), ("four-bar", "rocker")])
-def test_link_without_mass_of_its_own_still_carries_its_share_of_the_coupler(name, output):
+def test_massless_link_carries_its_coupler_share(name, output):
     made = solved(MECHANISMS[name])
     for choices in simplifications.ingredients(made.mechanism).values():
         for choice in choices:
@@ -68,8 +69,9 @@ def test_link_without_mass_of_its_own_still_carries_its_share_of_the_coupler(nam
 BEYOND = {"before A": -0.2, "behind B": 1.5}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", BEYOND)
-def test_a_coupler_with_its_mass_beyond_its_joints_is_no_two_masses_and_the_result_says_so(place):
+def test_outer_coupler_mass_is_no_two_masses(place):
     """One of them would be negative; all else is tried."""
     found = ks.needs(solved(cranked(coupler=ks.Link(4.0, (BEYOND[place], 0.06), 0.3))), "O")
     why = found.left_out["two-mass coupler"]
@@ -82,8 +84,9 @@ def test_a_coupler_with_its_mass_beyond_its_joints_is_no_two_masses_and_the_resu
     assert "two-mass coupler" not in alone(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0.0, 1.3])
-def test_a_coupler_with_its_mass_at_a_joint_is_still_two_masses(place):
+def test_coupler_mass_at_a_joint_is_two_masses(place):
     found = ks.needs(solved(cranked(coupler=ks.Link(4.0, place, 0.3))), "O")
     assert "two-mass coupler" in alone(found)
     assert found.left_out == {}

@@ -108,7 +108,7 @@ def scene(distance):
 # Ours
 
 
-def test_ours_never_lose_digits_flip_turn_nan_or_raise_at_any_place(table):
+def test_our_methods_keep_digits_at_every_place(table):
     ours = table[table["ours"]]
     assert set(ours["method"]) == {"ours, NumPy", "ours, compiled", "ours, torque by powers"}
     assert set(ours["place"]) == {place.name for place in stability.PLACES}
@@ -120,7 +120,7 @@ def test_ours_never_lose_digits_flip_turn_nan_or_raise_at_any_place(table):
 
 
 @every("place", [place for place in FAILURES if place not in ELSEWHERE])
-def test_given_floats_are_taken_as_exact_and_the_crank_angle_as_rounded_once(table, place):
+def test_floats_are_exact_and_the_angle_rounded_once(table, place):
     rows = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
     rows = rows[rows["angle rounding"] < DIGITS]
     assert len(rows) >= 4
@@ -141,14 +141,14 @@ def test_given_floats_are_taken_as_exact_and_the_crank_angle_as_rounded_once(tab
         "parallelogram, folded",
     ],
 )
-def test_at_change_points_no_digit_is_lost_and_the_proven_bound_says_so(table, place):
+def test_no_digit_is_lost_at_change_points(table, place):
     rows = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
     assert np.all(rows["error"] < 5e-15)
     assert np.all(rows.loc[rows["number"] > 1e-16, "bound"] < 3e-13)
     assert rows["condition"].max() > 1e20
 
 
-def test_the_rounding_of_the_crank_angle_is_what_the_next_number_makes_of_a_result():
+def test_angle_rounding_moves_the_result_by_a_step():
     place = next(place for place in stability.PLACES if place.name == "four-bar toggle")
     (row,) = stability.study([replace(place, numbers=(1e-3,))], METHODS[:1]).to_dict("records")
     solution = place.scene(1e-3)
@@ -161,21 +161,21 @@ def test_the_rounding_of_the_crank_angle_is_what_the_next_number_makes_of_a_resu
     assert beyond["angle rounding"].between(0.01, np.inf).all()
 
 
-def test_ours_is_given_everywhere_but_for_reactions_by_powers(table):
+def test_our_methods_answer_everywhere(table):
     refused = table[table["ours"] & (table["not given"] != "")]
     assert set(refused["method"]) <= {"ours, torque by powers"}
     assert not set(refused["quantity"]) & {"balancing_torque"}
 
 
 @pytest.mark.parametrize("place", HARMLESS)
-def test_ours_are_exact_where_the_problem_is_harmless_and_the_condition_says_that_it_is(table, place):
+def test_our_methods_are_exact_where_harmless(table, place):
     ours = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
     assert np.all(ours["condition"] < 2e3)
     assert np.all(ours["error"] < 2e-15)
 
 
 @pytest.mark.parametrize("place", [place for place in FAILURES if place not in HARMLESS])
-def test_condition_grows_toward_a_place_where_the_problem_itself_is_hard(table, place):
+def test_condition_grows_toward_hard_places(table, place):
     rows = table[(table["place"] == place) & (table["method"] == "ours, NumPy")].sort_values("number")
     conditions = rows["condition"].to_numpy()
     assert np.all(conditions[:-1] >= conditions[1:])
@@ -187,7 +187,7 @@ def test_condition_grows_toward_a_place_where_the_problem_itself_is_hard(table, 
 
 
 @every(("place", "method", "how"), EXPECTED)
-def test_failure_of_another_method_is_reproduced_and_counted(summary, place, method, how):
+def test_failures_of_other_methods_are_reproduced(summary, place, method, how):
     row = summary.loc[(place, method)]
     assert 0 < row[how] <= row["of angles"]
     assert WORDS[how] in row["does"]
@@ -198,7 +198,7 @@ def test_no_other_failure_is_in_the_table(summary):
     assert found - CHANCY == set(EXPECTED)
 
 
-def test_verdict_of_methods_without_failures_is_exact_or_as_near_as_the_condition_allows(summary):
+def test_verdict_is_exact_or_as_near_as_condition(summary):
     fine = summary[(summary[list(WORDS)] == 0).all(axis=1)]
     assert set(fine["does"]) == {"exact", "as near as the condition allows", "does not give it"}
     exact = fine[fine["does"] == "exact"]
@@ -208,7 +208,7 @@ def test_verdict_of_methods_without_failures_is_exact_or_as_near_as_the_conditio
     assert fine.loc[fine["does"] == "does not give it", "worst error"].isna().all()
 
 
-def test_formulas_of_the_papers_land_on_the_wrong_side_two_lengths_away(table):
+def test_papers_formulas_land_on_the_wrong_side(table):
     """Rounding decides on which angles within 1e-13 rad of the dead centres, never beyond."""
     rows = table[(table["place"] == "dead centres, inclined guide") & (table["method"] == PAPERS)]
     wrong = rows[rows["flipped"] > 0]
@@ -217,7 +217,7 @@ def test_formulas_of_the_papers_land_on_the_wrong_side_two_lengths_away(table):
     assert np.all(rows.loc[rows["number"] > 1e-12, "error"] < 1e-15)
 
 
-def test_single_precision_has_no_digit_left_after_a_million_radians(table):
+def test_single_precision_fails_at_a_million_radians(table):
     rows = table[(table["place"] == "many turns") & (table["method"] == SINGLE)].set_index("number")
     assert rows.loc[1.0, "error"] < 1e-6
     assert rows.loc[1e6, "error"] > 1e-2
@@ -276,7 +276,7 @@ def test_planted_failure_is_counted_as_what_it_is(name):
     assert ("not in the mood" in set(table["not given"])) == (name == "refuses")
 
 
-def test_method_that_gives_up_at_some_numbers_is_said_to_and_not_called_exact():
+def test_method_that_gives_up_is_not_called_exact():
     def sometimes(solution, quantity):
         return refuses(solution, quantity) if np.ptp(solution.crank_angle) > 3.5 else components(solution, quantity)
 
@@ -299,7 +299,7 @@ def two_places(monkeypatch):
     return places
 
 
-def test_command_writes_all_rows_the_summary_and_the_chart(two_places, tmp_path, capsys):
+def test_command_writes_rows_summary_and_chart(two_places, tmp_path, capsys):
     folder = tmp_path / "new"
     assert cli.main(["stability", "--out", str(folder)]) == 0
     names = ["stability.csv", "stability_summary.csv", "stability.png", "stability.svg"]
@@ -325,7 +325,7 @@ def test_command_writes_all_rows_the_summary_and_the_chart(two_places, tmp_path,
         assert f"<!-- {name} -->" in text, name
 
 
-def test_command_that_cannot_write_ends_with_status_2_and_leaves_nothing(two_places, tmp_path, monkeypatch, capsys):
+def test_failed_writing_ends_with_status_2(two_places, tmp_path, monkeypatch, capsys):
     def disk_full(self, path, **_):
         raise OSError("disk full")
 
@@ -336,7 +336,7 @@ def test_command_that_cannot_write_ends_with_status_2_and_leaves_nothing(two_pla
 
 
 @pytest.mark.parametrize("place", stability.PLACES, ids=lambda place: place.name)
-def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(table, place):
+def test_place_chart_has_units_and_the_condition(table, place):
     rows = table[table["place"] == place.name]
     figure, ax = plt.subplots()
     assert charts.error_by_distance(rows, ax=ax) is ax
@@ -359,7 +359,7 @@ def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(tab
     plt.close(figure)
 
 
-def test_ours_are_the_lower_envelope_wherever_a_digit_is_left(table):
+def test_ours_are_the_lower_envelope(table):
     """No other method is nearer than ours by more than thirty roundings of the problem itself."""
     left = table[(table["condition"] * UNIT < 1) & table["error"].notna()]
     others = left[~left["ours"]].groupby(["place", "number"])["error"].min()

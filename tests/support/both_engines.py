@@ -5,12 +5,12 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.mechanics.quantities import components
+from support.case_files import shipped
 from support.scenes import (
     SCENES,
     everything,
     solve,
 )
-from support.shipped import shipped
 
 ULP = 2.0**-52
 ROUNDED = 1e-14

@@ -14,9 +14,9 @@ from kinetostatics.numbers.leaves import mapped
 from kinetostatics.studies.methods.enclosures import on_arb
 from kinetostatics.studies.places import PLACES
 
-from . import chains, loads
+from . import chains
+from .case_files import shipped
 from .inclined import INCLINED
-from .shipped import shipped
 
 BITS = 200
 FAMILIES = (
@@ -106,7 +106,7 @@ def _made(family, rng, count):
         )
     size, mass = (10.0 ** rng.uniform(-6, 6), 10.0 ** rng.uniform(-12, 12)) if family == "scaled" else (1.0, 1.0)
     mechanism = _mechanism("plain" if family in ("scaled", "rubbing") else family, rng, size, mass)
-    made = [loads.load(rng, kind, mechanism, size) for kind in rng.choice(loads.KINDS, 3)]
+    made = [chains.load(rng, kind, mechanism, size) for kind in rng.choice(chains.LOAD_KINDS, 3)]
     friction = {"O": ks.PinFriction(rng.uniform(0, 0.1), 0.01 * size)} if family == "rubbing" else {}
     return ks.solve(
         mechanism,

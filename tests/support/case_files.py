@@ -1,4 +1,4 @@
-"""Case files written for a test, and tables of reference values."""
+"""Case files written for a test, shipped cases read once, and tables of reference values."""
 
 import json
 import tomllib
@@ -61,3 +61,75 @@ def four_bar_data(name):
 def four_bar_table(rho):
     rows = four_bar_data(f"rho{rho}")["rows"]
     return {name: np.array([row[name] for row in rows], dtype=float).T for name in rows[0]}
+
+
+PLAIN = """
+title = "test"
+reference = "plain"
+[common]
+crank_speed = "320 rpm"
+[common.coupler]
+mass = "150 kg"
+centre = "mid-length"
+inertia = "20.5 kg m^2"
+[common.slider]
+mass = "600 kg"
+[variants.plain]
+mechanism = "crank-slider"
+crank_length = "300 mm"
+coupler_length = "2 m"
+"""
+
+
+BADLY_WRITTEN = {  # with what to write in its place
+    "2,1": ("2.1",),
+    "0,1": ("0.1",),
+    "-0,5": ("-0.5",),
+    "1.500,1": ("1500.1",),
+    "1,500.1": ("1500.1",),
+    "1,500": ("1.500", "1500"),
+    "1.500.000": ("1500000",),
+    "1 500": ("1.500", "1500"),
+    "2 1": ("2.1",),
+    "1 500,5": ("1500.5",),
+    "1\u2009500": ("1500",),
+    "1\u00a0500,5": ("1500.5",),
+    "1'500": ("1500",),
+    "1’500": ("1500",),
+    "1_500": ("1500",),
+    "\u22122.1": ("-2.1",),
+    "\u22122,1": ("-2.1",),
+    "\uff15": ("5",),
+    "\u0663": ("3",),
+    "2,1e3": ("2.1e3",),
+}
+
+
+STIFFER = """
+[design.stiffer]
+kind = "optimum"
+variant = "cam-circle"
+maximise = "ratio mean_absolute balancing_torque"
+vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"] }
+angles = 72
+"""
+FRONT = """
+[design.trade]
+kind = "front"
+variant = "cam-circle"
+minimise = ["largest_absolute cam_force", "-ratio mean_absolute balancing_torque"]
+vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"], "cam.centre.x" = ["-30 mm", "-10 mm"] }
+points = 2
+angles = 72
+"""
+SAW = shipped_cases()["sawframe_2r63"].read_text(encoding="utf-8").partition("[tolerances]")[0]
+
+
+def saw_with(text, folder):
+    """Path of the saw's case file with more at its end."""
+    path = folder / "saw.toml"
+    path.write_text(f"{SAW}\n{text}", encoding="utf-8")
+    return path
+
+
+shipped = cache(ks.load_case)

@@ -8,6 +8,9 @@ import pytest
 
 import kinetostatics as ks
 
+from . import multibody
+from .machines import FourBar
+
 DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "coupler": (1.5, 0.7, -0.2, 0.1), "rocker": (3.0, 0.4, 0.25, 0.5)}
 LINKS = {name: ks.Link(mass, (along, across), inertia) for name, (mass, along, across, inertia) in DATA.items()}
 LINKAGES = {
@@ -24,8 +27,6 @@ SINGLE = {"deltoid": "near", "4/1/3/2": "far", "near": "near"}
 SIDES = {"open": 1, "crossed": -1}
 each = pytest.mark.parametrize(("name", "assembly"), list(product(LINKAGES, SIDES)))
 SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
-DIGITS = 240
-"""Carried; differences over a step of 1e-80 leave more than 60, also 1e-17 rad from a change point."""
 
 
 def four_bar(name, assembly, pivot=None, **links):
@@ -41,7 +42,7 @@ def solve(made, angles, **options):
 NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
 
 
-# Reference: intersection of circles on the side of the branch, differences of positions, moments of coupler and rocker
+# Reference: the side of the branch in the equations of all bodies
 
 
 def side(name, assembly, psi):
@@ -50,57 +51,23 @@ def side(name, assembly, psi):
     return SIDES[assembly] * mp.sign(turning)
 
 
-def places(name, assembly, start, angle):
-    """A, O2, B, directions and mass centres of the links, as complex numbers."""
-    a, b, h, d = LINKAGES[name]
-    ray, O2 = mp.expj(angle), d * mp.expj(start)
-    A = a * ray
-    square = abs(O2 - A) ** 2
-    height = mp.sqrt(abs((b + h) ** 2 - square)) * mp.sqrt(abs(square - (b - h) ** 2))
-    ratio = (square + b * b - h * h + 1j * side(name, assembly, angle - start) * height) / (2 * square)
-    B = A + ratio * (O2 - A)
-    ways = (ray, (B - A) / b, (B - O2) / h)
-    centres = [
-        joint + way * mp.mpc(along, across)
-        for joint, way, (_, along, across, _) in zip((0, A, O2), ways, DATA.values(), strict=True)
-    ]
-    return [A, O2, B, *ways, *centres]
-
-
 @cache
 def reference(name, assembly, behind, angle):
     """By quantity; O2 stands on the negative x-axis if `behind`."""
-    with mp.workdps(DIGITS):
-        phi, step, start = mp.mpf(angle), mp.mpf(10) ** -80, mp.pi if behind else mp.mpf(0)
-        times = (-step, mp.mpf(0), step)
-        before, here, after = (places(name, assembly, start, phi + SPEED * t + ACCELERATION * t * t / 2) for t in times)
-        first = [(y - x) / (2 * step) for x, y in zip(before, after, strict=True)]
-        second = [(x - 2 * m + y) / step**2 for x, m, y in zip(before, here, after, strict=True)]
-        rates = [(v / way).imag for v, way in zip(first[3:6], here[3:6], strict=True)]
-        slopes = [(v / way).imag for v, way in zip(second[3:6], here[3:6], strict=True)]
-        data = list(DATA.values())
-        forces = [mass * (-1j * mp.mpf(WEIGHT) - a) for (mass, *_), a in zip(data, second[6:], strict=True)]
-        moments = [-inertia * slope for (*_, inertia), slope in zip(data, slopes, strict=True)]
-        parts = zip(forces, first[6:], moments, rates, strict=True)
-        torque = -sum((mp.conj(v) * f).real + m * rate for f, v, m, rate in parts) / SPEED
-        A, O2, B = here[:3]
-        of_coupler = (mp.conj(here[7] - A) * forces[1]).imag + moments[1]
-        of_rocker = (mp.conj(here[8] - O2) * forces[2]).imag + moments[2]
-        q, p = B - A, B - O2
-        pin = -(of_rocker * q + of_coupler * p) / (mp.conj(p) * q).imag
-        inner = pin - forces[1]
-        return {
-            "balancing_torque": torque,
-            "B": pin,
-            "A": inner,
-            "O2": -pin - forces[2],
-            "O": inner - forces[0],
-            "position": B,
-            "velocity": first[2],
-            "acceleration": second[2],
-            **{f"{link}_rate": rate for link, rate in zip(DATA, rates, strict=True)},
-            **{f"{link}_angular_acceleration": slope for link, slope in zip(DATA, slopes, strict=True)},
-        }
+    a, b, h, d = LINKAGES[name]
+    with mp.workdps(multibody.FINE_DIGITS):
+        start, down = mp.pi if behind else mp.mpf(0), (WEIGHT, -mp.pi / 2)
+    bodies = {name: multibody.Body(mass, (along, across), i) for name, (mass, along, across, i) in DATA.items()}
+    branch = lambda phi: side(name, assembly, phi - start)  # noqa: E731
+    bar = FourBar(a, b, h, -d if behind else d, branch, bodies, down, SPEED, ACCELERATION)
+    with mp.workdps(multibody.FINE_DIGITS):
+        found = multibody.four_bar(bar).solve(angle)
+    return {
+        **{name: found[name] for name in ("balancing_torque", "B", "A", "O2", "O")},
+        **{order: found[order]["B"] for order in ("position", "velocity", "acceleration")},
+        **{f"{link}_rate": found["velocity"][link, "angle"] for link in DATA},
+        **{f"{link}_angular_acceleration": found["acceleration"][link, "angle"] for link in DATA},
+    }
 
 
 def errors(solution, place, expected):

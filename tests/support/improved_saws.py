@@ -3,7 +3,7 @@
 from functools import cache
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 SAW = shipped("sawframe_2r63")
 CIRCLE = SAW.variant("cam-circle")

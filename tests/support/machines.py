@@ -1,11 +1,14 @@
 """A loaded mechanism in plain numbers, for tests of laws; what it gives, and comparisons to rounding."""
 
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
+
+from .multibody import Body
 
 CLOSE = 1e-13
 """Rounding of a well-conditioned chain of some hundred operations, relative to the largest value of a quantity."""
@@ -103,3 +106,68 @@ def largest(values):
 
 def assert_close(found, expected, tolerance=CLOSE):
     assert largest(np.subtract(found, expected)) < tolerance * largest(expected)
+
+
+def turning(arm, force):
+    """Moment of a complex force at a complex arm."""
+    return (np.conj(arm) * force).imag
+
+
+# Four-bars
+
+
+BARS = {
+    "crank": Body(3.0, (0.1, 0.04), 0.2),
+    "coupler": Body(7.0, (0.4, -0.06), 0.9),
+    "rocker": Body(5.0, (0.3, 0.08), 0.4),
+}
+BAR_FORCES = ("O", "A", "B", "O2")
+TURN = np.linspace(0.0, 2 * np.pi, 721) + 0.001
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """A loaded four-bar in plain numbers, so that a law can change any of them; a crank-rocker unless told."""
+
+    crank: float = 0.3
+    coupler: float = 0.8
+    rocker: float = 0.6
+    pivot: complex = 0.7 + 0.4j
+    assembly: int = 1
+    links: dict = field(default_factory=lambda: dict(BARS))
+    gravity: tuple = (9.81, -1.2)
+    speed: float = 12.0
+    acceleration: float = -30.0
+
+    def solve(self, angle=ANGLES, **motion):
+        """Solution of the package, at its own speed unless another is given."""
+        mechanism = ks.four_bar(
+            self.crank,
+            self.coupler,
+            self.rocker,
+            rocker_pivot=(self.pivot.real, self.pivot.imag),
+            assembly=self.assembly,
+            **{name: ks.Link(link.mass, link.centre, link.inertia) for name, link in self.links.items()},
+        )
+        motion = {"crank_speed": self.speed, "crank_acceleration": self.acceleration} | motion
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ks.HintWarning)  # random inertias may look like slips
+            return ks.solve(mechanism, angle, loads=ks.Gravity(*self.gravity), **motion)
+
+
+def bar_results(s):
+    """All forces and moments by name; a vector as a complex number."""
+    found = {name: planar(s.reaction(name)) for name in BAR_FORCES} | {"shaking_force": planar(s.shaking_force)}
+    return found | {name: getattr(s, name) for name in (*TORQUES, "shaking_moment")}
+
+
+def four_bar_of(lengths, frame_angle=0.0, assembly=1):
+    """Four-bar of the package with lengths of crank, coupler, rocker and frame."""
+    *links, frame = lengths
+    pivot = frame * np.exp(1j * frame_angle)
+    return ks.four_bar(*links, rocker_pivot=(pivot.real, pivot.imag), assembly=assembly)
+
+
+def swept(mechanism, angle=TURN):
+    """Its solution over the turn, NaN where it does not close."""
+    return ks.solve(mechanism, angle, crank_speed=1.0, on_gap="nan")

@@ -2,7 +2,7 @@
 
 import kinetostatics as ks
 from kinetostatics.studies.methods import papers
-from support.shipped import shipped
+from support.case_files import shipped
 
 CASE = shipped("sawframe_2r63")
 PLAIN, CIRCLE, COSINE = (CASE.solve(name) for name in ("plain", "cam-circle", "cam-cosine"))

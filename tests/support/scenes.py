@@ -10,7 +10,7 @@ import kinetostatics as ks
 from kinetostatics.machine.group import Group, Output, Resolved
 from kinetostatics.machine.links import LinkMotion, Wrench
 
-from .four_bars import FourBar
+from .machines import FourBar
 
 
 def six_bar():

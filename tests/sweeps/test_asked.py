@@ -1,17 +1,21 @@
 """What a sweep is asked for: all that is wrong is told at once, and which engines are tried."""
 
 import sys
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.sweeps import asked, sweeps
+from kinetostatics.sweeps import asked, job, sweeps
 from kinetostatics.sweeps.asked import _type_problems
+from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
+from support.case_files import shipped
+from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.sweeping import SAW, sweep
+from support.sweeping import SAW, assert_equal, sweep
 
 
 def test_all_that_is_wrong_is_told_at_once():
@@ -64,7 +68,7 @@ def test_what_cannot_be_done_is_refused(name):
 
 
 @pytest.mark.parametrize("name", ["rms O [N]", "failed"])
-def test_a_column_of_the_designs_named_like_an_output_is_refused(name):
+def test_column_named_like_an_output_is_refused(name):
     designs = DESIGNS[["mass"]].assign(**{name: 1.0})
     with pytest.raises(ks.ParameterError, match="of the designs has the name of an output") as caught:
         sweep(factories.pump, designs, ["rms O"])
@@ -90,6 +94,46 @@ def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
         sweep(factories.pump, DESIGNS, OUTPUTS, engine="compiled")
 
 
-def test_columns_of_quantities_are_refused_with_their_unit():
+def test_columns_of_quantities_name_their_unit():
     (problem,) = _type_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}))
     assert "with the unit kilogram in its heading" in problem
+
+
+# The trial of a sweep
+
+
+def test_unknown_sweep_quantities_are_refused(tmp_path):
+    for outputs, message in ((["rms cam_forc"], "cam_force"), (["ratio rms cam_force"], "crank-slider: quantity")):
+        with pytest.raises(ks.QuantityError, match=message):
+            sweep(
+                SAW, ks.designs.grid({"slider.mass": "6..7 kg:2"}), outputs, variant="cam-circle", folder=tmp_path / "a"
+            )
+    assert not (tmp_path / "a").exists()
+
+
+@dataclass(frozen=True)
+class OneSided(ks.SliderGroup):
+    """A group that looks at values."""
+
+    def resolve(self, placement, loads, along):
+        """The same on either side."""
+        found = super().resolve(placement, loads, along)
+        return found if placement.joints["A"].position[0].sum() > 0 else found._replace(scalars=dict(found.scalars))
+
+
+def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
+    mechanism = ks.Mechanism("one-sided", ks.Crank(0.1), (OneSided(0.4, slider=ks.Link(1.0)),))
+    made = lambda: ks.Scene(mechanism, 10.0)  # noqa: E731
+    designs = pd.DataFrame(index=range(2))
+    with pytest.raises(ks.errors.NotGivenError, match=r'must not branch on values.*use engine="numpy"'):
+        sweep(made, designs, ["rms O"], engine="compiled")
+    monkeypatch.setattr(asked, "WORTH_COMPILING", 1)
+    assert sweep(made, designs, ["rms O"])[FAILED].tolist() == ["", ""]
+
+
+@every("angles", [12, 13, 36, 48, 100])
+def test_few_angles_are_raised_to_enough(angles):
+    outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
+    options = {"variant": "idle"}
+    found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)
+    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=job.LEAST, **options))

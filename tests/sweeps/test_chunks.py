@@ -7,13 +7,13 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
+from support.case_files import shipped
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, sweep
 
 
-def test_failing_rows_keep_their_reasons_and_others_their_numbers():
+def test_failing_rows_keep_their_reasons():
     designs = pd.DataFrame(
         {
             "coupler_length [m]": [2.0, -1.0, 0.25, 2.0, 2.0, 2.0, 0.31],
@@ -86,9 +86,10 @@ def test_the_hundredth_design_impossible_among_many():
     assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()
 
 
+@pytest.mark.slow
 @every("case, variant", [("shaper", "idle"), ("mower_drive_optimal", "cam-robust"), ("sawframe_2r63", "cam-circle")])
 @every("angles", [13, 72, 180])
-def test_no_number_of_a_sweep_of_few_crank_angles_is_wrong(case, variant, angles):
+def test_few_angles_give_right_numbers(case, variant, angles):
     """Each output alone: what one needs in crank angles helps the others."""
     scene = shipped(case).variant(variant).scene
     designs = pd.DataFrame({"crank_speed": [scene.parameters["crank_speed"]]})
@@ -105,7 +106,8 @@ def rippled(crank):
     return ks.Scene(made, 30.0, loads=push, friction={"guide": ks.GuideFriction(0.2)})
 
 
-def test_what_pieces_do_not_tell_is_said_though_twice_as_many_crank_angles_agree():
+@pytest.mark.slow
+def test_unresolved_pieces_are_reported():
     """Both are halved to the same pieces, so that they agree tells nothing."""
     found = sweep(rippled, pd.DataFrame({"crank": [0.05, 0.06]}), ["largest B", "mean B"])
     assert found[FAILED].str.startswith("largest B is not resolved by").all()
@@ -136,7 +138,7 @@ def test_no_design_fails_by_rounding_of_what_is_zero(reduction):
     np.testing.assert_array_equal(found["largest A [N]"], size)
 
 
-def test_functions_may_change_the_arrays_they_are_called_with():
+def test_functions_may_change_their_arrays():
     def changing(crank, mass):
         crank *= 2.0
         return factories.pump(crank, mass)
@@ -147,7 +149,7 @@ def test_functions_may_change_the_arrays_they_are_called_with():
     pd.testing.assert_frame_equal(found.iloc[:, 2:], expected.iloc[:, 2:], rtol=1e-12)
 
 
-def test_a_sweep_over_nothing_is_of_one_design_each_time():
+def test_sweep_over_nothing_has_one_design():
     found = sweep(SAW, pd.DataFrame(index=range(3)), OUTPUTS, variant="plain", angles=180)
     alone = sweep(SAW, pd.DataFrame({"crank_length": [0.3]}), OUTPUTS, variant="plain", angles=180)
     assert_equal(found, pd.concat([alone.iloc[:, 1:]] * 3, ignore_index=True))

@@ -54,7 +54,7 @@ def test_rows_may_share_a_name(tmp_path, expected):
     assert_equal(sweep(factories.pump, twice, OUTPUTS, chunk=7, folder=tmp_path), found)
 
 
-def test_a_finished_folder_is_read_and_not_computed_again(tmp_path):
+def test_finished_folder_is_read_again(tmp_path):
     calls: list[int] = []
     first = sweep(counted(calls), DESIGNS, OUTPUTS, chunk=7, folder=tmp_path)
     calls.clear()
@@ -99,7 +99,7 @@ def test_a_killed_process_leaves_a_folder_that_goes_on(tmp_path, expected):
     assert_equal(sweep(function, DESIGNS, OUTPUTS, chunk=7, folder=folder), expected)
 
 
-def test_a_sweep_through_workers_that_is_stopped_goes_on(tmp_path, expected, monkeypatch):
+def test_stopped_worker_sweep_goes_on(tmp_path, expected, monkeypatch):
     """By an error while results come in."""
     put = dataset.Dataset._put
 
@@ -137,7 +137,7 @@ def test_another_sweep_in_the_folder_is_refused(tmp_path, name):
         sweep(**options | OTHERS[name])
 
 
-def test_cases_are_told_apart_by_their_variants_and_files(tmp_path):
+def test_cases_differ_by_variants_and_files(tmp_path):
     """Not by comments, other variants or how the same variant is named."""
     designs, options = pd.DataFrame({"crank_speed": [30, 33]}), {"chunk": 1, "folder": tmp_path / "sweep", "angles": 12}
     case = written(tmp_path, "sawframe_2r63", ["plain", "cam-circle"])

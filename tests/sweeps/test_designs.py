@@ -12,8 +12,8 @@ import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
 from kinetostatics.numbers.headings import si_columns
 from kinetostatics.sweeps import designs
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 SPREADS = {
     "spring.stiffness": "normal 700 kN/m +- 5000 N/m",
@@ -23,7 +23,7 @@ SPREADS = {
 COLUMNS = ["spring.stiffness [kN/m]", "cam.centre.x [mm]", "coupler.inertia [kg m^2]"]
 
 
-def test_grid_has_every_combination_the_last_parameter_running_fastest():
+def test_grid_runs_the_last_parameter_fastest():
     table = designs.grid({"cam.centre.x": "-30..-10 mm:3", "coupler.inertia": "1e1..+3.E1 kg m^2 : 2"})
     assert list(table.columns) == ["cam.centre.x [mm]", "coupler.inertia [kg m^2]"]
     assert table.to_numpy().tolist() == [[x, i] for x in (-30, -20, -10) for i in (10, 30)]
@@ -31,7 +31,7 @@ def test_grid_has_every_combination_the_last_parameter_running_fastest():
 
 
 @pytest.mark.parametrize("kind", [designs.latin_hypercube, designs.sobol, designs.random])
-def test_samples_are_reproducible_and_follow_their_distributions(kind):
+def test_samples_are_reproducible(kind):
     table = kind(SPREADS, 512)
     assert list(table.columns) == COLUMNS
     assert table.shape == (512, 3)
@@ -42,7 +42,7 @@ def test_samples_are_reproducible_and_follow_their_distributions(kind):
         assert stats.kstest(table[column], distribution.cdf).statistic < 0.08
 
 
-def test_latin_hypercube_has_a_value_in_every_interval_of_each_parameter():
+def test_latin_hypercube_fills_every_interval():
     table = designs.latin_hypercube({"a": "0..10 m", "b": "-10..0 m"}, 10)
     assert sorted(np.floor(table["a [m]"])) == sorted(np.floor(table["b [m]"] + 10)) == list(range(10))
 
@@ -55,7 +55,7 @@ def test_sample_takes_quantiles():
         designs.sample(SPREADS, np.zeros((2, 2)))
 
 
-def test_spaces_words_and_signs_are_read_as_they_may_be_written():
+def test_spaces_words_and_signs_are_read():
     texts = ["uniform -3 .. 1e1 1/s", " normal -3 mm ± 10 um ", "normal 3 kg m^2+-1 kg m^2", "triangular 1..1..2 rad"]
     read = designs.distributions({f"p{place}": text for place, text in enumerate(texts)})
     assert [unit for _, unit in read.values()] == ["1/s", "mm", "kg m^2", "rad"]
@@ -81,7 +81,7 @@ WRONG_SAMPLE = {
 }
 
 
-def test_all_texts_that_cannot_be_read_are_told_at_once():
+def test_all_unreadable_texts_are_listed():
     with pytest.raises(ks.ParameterError) as caught:
         designs.grid(WRONG_GRID | {"right": "1..2 m:3"})
     message = str(caught.value)
@@ -104,7 +104,7 @@ def test_no_parameters_are_no_designs(kind):
 
 
 @pytest.mark.parametrize("kind", ["grid", "sobol", "latin_hypercube", "random", "sample", "distributions"])
-def test_spreads_that_are_told_by_no_parameter_are_refused_in_words(kind):
+def test_spreads_must_be_a_dict(kind):
     more = () if kind in ("grid", "distributions") else (4,)
     for spreads in (None, 5, "slider.mass", [1, 2], np.array([1.0, 2.0]), KG):
         with pytest.raises(ks.ParameterError, match="spreads must be a dict"):
@@ -120,7 +120,7 @@ KG, M = (pint.UnitRegistry().Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
     ("spring.stiffness", "1..2 N:2", "N/m"), ("torsion_spring.stiffness", "1..2 N/m:2", "N*m/rad"),
     ("lever.inertia", KG, "kg*m**2"),
 ])  # fmt: skip
-def test_a_number_that_machines_have_is_refused_in_a_unit_of_another_dimension(name, given, unit):
+def test_known_parameter_needs_its_dimension(name, given, unit):
     with pytest.raises(ks.ParameterError, match=re.escape(f"parameter '{name} [")) as caught:
         designs.grid({name: given})
     assert f'does not measure the same as "{unit}"' in str(caught.value)
@@ -141,7 +141,7 @@ def known(case, variant):
     return ks.load_case(case).variant(variant).units
 
 
-def test_paths_are_the_numbers_of_a_variant_with_their_units():
+def test_paths_are_the_variants_numbers_with_units():
     paths = known("sawframe_2r63", "cam-circle")
     wanted = {"spring.stiffness": "N/m", "cam.centre.x": "m", "coupler.centre": "m", "gravity.direction": "rad"}
     assert wanted.items() <= paths.items()
@@ -161,7 +161,7 @@ def test_what_the_file_fixes_otherwise_is_no_path():
         assert ("process_force.force" in parameters.paths(table.model_copy(update={"process_force": force}))) is there
 
 
-def test_columns_are_read_with_their_units_and_all_that_is_wrong_with_them():
+def test_columns_are_read_with_units():
     paths = {"slider.mass": "kg", "cam.centre.x": "m"}
     columns, problems = si_columns(["cam.centre.x [mm]", "slider.mass"], paths)
     assert columns == (("cam.centre.x [mm]", "cam.centre.x", 0.001), ("slider.mass", "slider.mass", 1.0))

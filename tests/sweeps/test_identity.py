@@ -178,7 +178,7 @@ def test_each_is_another():
 
 
 @pytest.mark.slow
-def test_the_same_function_is_the_same_in_every_session(tmp_path):
+def test_function_key_is_the_same_in_every_session(tmp_path):
     (tmp_path / "users_own.py").write_text(BASE, encoding="utf-8")
     code = (
         f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import users_own;"
@@ -198,7 +198,7 @@ def test_objects_that_hold_themselves_come_to_an_end():
     assert digest(one) == digest(functools.partial(max, held)) != digest(two)
 
 
-def test_variants_made_by_hand_are_told_apart_by_every_number():
+def test_hand_made_variants_differ_by_every_number():
     def made(mass, law=np.sin):
         loads = (ks.ProcessForce(lambda motion: law(motion.crank_angle)),)
         return ks.Scene(ks.crank_slider(np.full((2000, 1), 0.3), 2.0, slider=ks.Link(mass)), 10.0, 0.0, loads)

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import tracemalloc
 import warnings
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas as pd
@@ -16,12 +15,11 @@ import kinetostatics as ks
 from kinetostatics.engines import compiled
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
-from kinetostatics.sweeps import sweeps, together, workers
+from kinetostatics.sweeps import together
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
-from support.case_files import written
+from support.case_files import shipped, written
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, rising, sweep
 
 # Rows of a case
@@ -61,7 +59,7 @@ def test_rows_equal_case_files_with_these_values(tmp_path, case, reference, name
     assert table.iloc[:, 1:4].to_numpy() == pytest.approx(np.array(expected), rel=1e-12)
 
 
-def test_ratios_are_dynamic_coefficients_to_sampling_error():
+def test_ratios_are_dynamic_coefficients():
     """Of 360 angles the mean of an absolute value, which has corners, is right to some 1e-5."""
     found = sweep(SAW, pd.DataFrame(index=[0]), ["ratio mean_absolute balancing_torque"], variant="cam-cosine")
     exact = SAW.compare("plain", "cam-cosine").mean_torque_ratio
@@ -85,7 +83,7 @@ def test_the_table_keeps_the_designs_and_names_units():
     assert_equal(found[designs.columns], designs)
 
 
-def test_variants_are_the_first_beside_the_reference_and_the_reference_unless_told():
+def test_swept_variant_defaults_beside_the_reference():
     designs = ks.designs.grid({"slider.mass": "600..600 kg:1"})
     ratio = "ratio mean_absolute balancing_torque"
     assert_equal(sweep(SAW, designs, ratio), sweep(SAW, designs, ratio, variant="cam-circle", reference="plain"))
@@ -117,56 +115,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
-def test_tables_beforehand_are_cut_into_blocks_like_designs(interpreted, monkeypatch):
-    """What NumPy computes beforehand has its rows for each design too."""
-    monkeypatch.setattr(together, "VALUES", 50)
-    monkeypatch.setattr(together, "BLOCK", 50)
-
-    def made(crank, mass):
-        push = ks.ProcessForce(lambda motion: np.where(motion.slider_velocity > 0, -50.0, 20.0))
-        return ks.Scene(factories.pump(crank, mass).mechanism, 100.0, 0.0, (push,))
-
-    pd.testing.assert_frame_equal(
-        sweep(made, DESIGNS, OUTPUTS, angles=12, engine="compiled"),
-        sweep(made, DESIGNS, OUTPUTS, angles=12, engine="numpy"),
-        rtol=1e-13,
-    )
-
-
 # Memory and progress
-
-
-def test_more_designs_go_together_where_they_take_little_time_and_memory(interpreted, monkeypatch, tmp_path):
-    """Compiled, here, and without a table for each of them, unless told; what is written keeps its chunks."""
-    sizes, run = [], workers.run_chunk
-
-    def counted(job, frame):
-        sizes.append(len(frame))
-        return run(job, frame)
-
-    monkeypatch.setattr(workers, "run_chunk", counted)
-    monkeypatch.setattr(sweeps, "CHUNK", 3)
-    monkeypatch.setattr(sweeps, "WIDE", 4)
-    tabled = ks.ProcessForce(ks.Table((1.0, 3.0), (5.0, 9.0), over="travel"))
-
-    def loaded(crank):
-        mechanism = ks.crank_slider(crank, 2.0, slider=ks.Link(1.0))
-        return ks.Scene(mechanism, 10.0, loads=(tabled,))
-
-    designs = DESIGNS[["crank [mm]"]].head(6)
-    options = [
-        ({"engine": "compiled"}, [4, 2]),
-        ({"engine": "numpy"}, [3, 3]),
-        ({"engine": "compiled", "folder": tmp_path}, [3, 3]),
-        ({"engine": "compiled", "executor": ThreadPoolExecutor(1)}, [3, 3]),
-        ({"engine": "compiled", "chunk": 5}, [5, 1]),
-        ({"engine": "compiled", "source": loaded}, [3, 3]),
-    ]
-    for told, expected in options:
-        sizes.clear()
-        table = sweep(**{"source": factories.pump, "designs": designs, "outputs": OUTPUTS, "angles": 24} | told)
-        assert (table[FAILED] == "").all()
-        assert sizes == expected, told
 
 
 @pytest.mark.slow
@@ -187,7 +136,7 @@ def test_memory_is_that_of_a_chunk(monkeypatch):
     assert peak(12_000) - peak(3000) < 9000 * 100
 
 
-def test_the_bar_counts_every_design_also_those_on_disk(tmp_path, monkeypatch):
+def test_bar_counts_designs_on_disk(tmp_path, monkeypatch):
     shown = io.StringIO()
     monkeypatch.setattr(sys, "stderr", shown)
     sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=tmp_path)
@@ -216,7 +165,7 @@ print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
 
 
 @pytest.mark.slow
-def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path):
+def test_new_and_stored_machine_code_agree(tmp_path):
     pytest.importorskip("numba")
     environment = {**os.environ, "KINETOSTATICS_CACHE": str(tmp_path)}
     found = [
@@ -229,7 +178,7 @@ def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path
     assert len(found[0].stdout.strip()) == 64
 
 
-def test_what_looks_like_a_slip_is_told_once_where_the_sweep_is_called_and_loses_no_design():
+def test_slips_are_hinted_once_at_the_call():
     scene = ks.Scene(ks.crank_slider(50.0, 200.0, slider=ks.Link(1.0)), 1.0)
     designs = pd.DataFrame({"coupler_length": np.linspace(150.0, 200.0, 1000)})
     with pytest.warns(ks.HintWarning) as told:

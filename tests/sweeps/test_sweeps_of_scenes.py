@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
-from support.shipped import shipped
+from support.case_files import shipped
 
 sweep = partial(ks.sweep, progress=False, angles=36)
 SAW = shipped("sawframe_2r63")
@@ -80,7 +80,7 @@ def test_a_scene_is_swept_by_path_and_all_else_stays(scene, column, values, made
         assert found.iloc[row, 1:3].tolist() == pytest.approx(expected, rel=1e-12)
 
 
-def test_units_of_outputs_are_those_that_the_mechanism_declares():
+def test_output_units_are_the_declared_ones():
     outputs = ["largest guide_moment2", "largest guide_force2", "range slider2_velocity", "largest_at O", "ratio rms O"]
     found = sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0]}), outputs, reference=six_bar(6.0))
     assert found.columns[1:-1].tolist() == [
@@ -94,7 +94,7 @@ def test_units_of_outputs_are_those_that_the_mechanism_declares():
         sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0]}), ["rms guide_force"])
 
 
-def test_a_reference_takes_the_parameters_that_it_has_too():
+def test_reference_takes_shared_parameters():
     designs = pd.DataFrame({"slider2.mass": [1.0, 5.0], "crank_speed": [10.0, 30.0]})
     assert sweep(six_bar(), designs, "ratio rms O", reference=six_bar(7.0)).iloc[:, 2].tolist() == [1.0, 1.0]
     found = sweep(six_bar(), designs, "ratio rms O", reference=four_bar())
@@ -126,12 +126,12 @@ def test_what_cannot_be_varied_is_refused(source, designs, options, message):
         sweep(source, pd.DataFrame(designs), "ratio rms O", **options)
 
 
-def test_designs_of_a_scene_that_cannot_be_have_their_reasons():
+def test_impossible_scene_designs_have_reasons():
     found = sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0, -1.0], "coupler_length2": [0.5, 0.5]}), "rms O")
     assert found[FAILED].tolist() == ["", "Link: mass must be at least 0, got -1.0"]
 
 
-def test_a_sweep_of_a_scene_goes_on_from_its_folder_and_is_told_from_others(tmp_path):
+def test_scene_sweep_resumes_in_its_folder(tmp_path):
     designs = pd.DataFrame({"slider2.mass": [1.0, 5.0]})
     first = sweep(six_bar(), designs, "rms O", folder=tmp_path)
     pd.testing.assert_frame_equal(sweep(six_bar(), designs, "rms O", folder=tmp_path), first, check_exact=True)
@@ -139,7 +139,7 @@ def test_a_sweep_of_a_scene_goes_on_from_its_folder_and_is_told_from_others(tmp_
         sweep(six_bar(4.0), designs, "rms O", folder=tmp_path)
 
 
-def test_tolerances_of_a_scene_are_those_of_a_function_that_makes_it():
+def test_scene_tolerances_equal_a_function():
     spreads = {"slider2.mass": "normal 3 kg +- 0.1 kg"}
     options = {"count": 16, "progress": False, "angles": 36}
     found = ks.tolerances(six_bar(), "rms O", spreads, **options)
@@ -151,7 +151,7 @@ def test_tolerances_of_a_scene_are_those_of_a_function_that_makes_it():
         found.share("rms B")
 
 
-def test_what_a_file_derives_follows_in_its_variant_and_stays_in_its_scene():
+def test_derived_numbers_follow_in_variants_only():
     """The spring balances the slider, the coupler's centre is at mid-length."""
     variant = SAW.variant("cam-circle")
     assert variant.parameters["spring.stiffness"] == "balance the slider"
@@ -176,7 +176,7 @@ def test_a_variant_is_swept_like_its_case():
 
 
 @pytest.mark.parametrize(("rise", "resolved"), [(0.0, False), (1.0, True)])
-def test_what_a_jump_of_a_load_does_to_a_peak_is_told_with_its_remedy(rise, resolved):
+def test_peak_at_a_jump_is_reported_with_remedy(rise, resolved):
     def press(motion):
         angle = np.degrees(motion.crank_angle % (2 * np.pi))
         if rise:
@@ -199,7 +199,8 @@ def test_spreads_and_data_sets_of_new_groups_and_loads(tmp_path):
     assert first.iloc[:, 1].is_monotonic_increasing
 
 
-def test_losses_of_a_case_are_outputs_and_their_means_those_of_each_design():
+@pytest.mark.slow
+def test_case_losses_are_outputs():
     """Up to what even samples make of the jumps of friction between them."""
     case = ks.load_case("sawframe_2r63_friction")
     masses = pd.DataFrame({"slider.mass [kg]": [500.0, 600.0]})

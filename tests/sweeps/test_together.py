@@ -5,20 +5,18 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import sharing
-from kinetostatics.engines.sharing import shared
 from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
 from kinetostatics.sweeps.job import LEAST
 from kinetostatics.sweeps.sweeps import FAILED
-from support import factories, spikes
+from support import factories
+from support import sweeping as spikes
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
-from support.sweeping import SAW, assert_equal, rising, sweep
+from support.sweeping import assert_equal, sweep
 
 
-def test_a_function_of_plain_numbers_is_called_for_each_design():
+def test_plain_function_is_called_a_design():
     found = sweep(factories.by_plain_numbers, DESIGNS, OUTPUTS, angles=36)
     pd.testing.assert_frame_equal(found, sweep(factories.pump, DESIGNS, OUTPUTS, angles=36), rtol=1e-14)
 
@@ -29,7 +27,8 @@ def test_a_batch_of_another_shape_is_refused():
     assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
 
 
-def test_as_many_designs_as_crank_angles_are_told_from_values_at_these():
+@pytest.mark.slow
+def test_as_many_designs_as_angles_is_no_batch():
     pump = ks.crank_slider(0.1, 0.4, coupler=ks.Link(1.0, 0.2, 0.01), slider=ks.Link(2.0))
 
     def made(shape):
@@ -40,21 +39,12 @@ def test_as_many_designs_as_crank_angles_are_told_from_values_at_these():
     assert flat["largest O [N]"].to_numpy() == pytest.approx(column["largest O [N]"].to_numpy(), rel=1e-12)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
-def test_it_does_not_matter_which_designs_come_together(interpreted, engine):
-    outputs = ["harmonic_2 O", "mean O", "rms O", "largest_at O", "smallest balancing_torque"]
-    options = {"variant": "cam-circle", "angles": 12, "engine": engine}
-    found = [sweep(SAW, rising(60), outputs, chunk=chunk, **options) for chunk in (1, 7, 10_000)]
-    assert_equal(found[0], found[2])
-    assert_equal(found[1], found[2])
-
-
 OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
 
 
+@pytest.mark.slow
 @every("seed, angles", [(seed, (12, 13, 360)[seed % 3]) for seed in range(6)])
-def test_no_spike_of_a_table_is_missed_however_few_the_crank_angles(seed, angles):
+def test_no_spike_of_a_table_is_missed(seed, angles):
     scene, names = spikes.spiky(seed), ("balancing_torque", "O")
     length = scene.parameters["crank_length"]
     designs = pd.DataFrame({"crank_length": [0.97 * length, length]})
@@ -76,8 +66,9 @@ def test_no_spike_of_a_table_is_missed_however_few_the_crank_angles(seed, angles
             assert others == pytest.approx(means, rel=1e-5)
 
 
+@pytest.mark.slow
 @every("angles", [13, 360, 361])
-def test_a_pump_whose_force_rises_within_a_tenth_of_a_millimetre_has_its_largest_torque(angles):
+def test_steep_pump_force_has_its_largest_torque(angles):
     found = sweep(steep_pump, pd.DataFrame({"crank": [0.04, 0.05]}), ["largest balancing_torque"], angles=angles)
     scene = steep_pump(0.05)
     truth = ks.extremes(scene.solve(36), "balancing_torque").range[1]
@@ -104,9 +95,10 @@ def of_smooth_curve(count, around=True):
     return ks.Scene(pump, 30.0, loads=[ks.ProcessForce(table), ks.Gravity()])
 
 
+@pytest.mark.slow
 @every("around", [True, False])
 @every("angles", [12, 360])
-def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(monkeypatch, around, angles):
+def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
     monkeypatch.setattr(together, "Parted", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
     outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
@@ -122,7 +114,7 @@ def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(mo
 KINDS = ("largest", "mean_absolute", "rms")
 
 
-def test_rows_of_a_curve_that_keep_an_output_from_being_resolved_are_taken_one_by_one():
+def test_unresolved_rows_are_taken_one_by_one():
     designs = pd.DataFrame({"slider.mass": [2.021, 1.396], "guide_offset": [-0.003, -0.001]})
     designs = designs.assign(crank_length=[0.043, 0.038], crank_speed=[38.019, 38.316])
     found = sweep(of_smooth_curve(700), designs, ["smallest B"])
@@ -131,6 +123,7 @@ def test_rows_of_a_curve_that_keep_an_output_from_being_resolved_are_taken_one_b
     assert found.iloc[1, 4] == pytest.approx(ks.extremes(own.solve(36), "B").range[0], rel=1e-3)
 
 
+@pytest.mark.slow
 @every("angles", [13, 360])
 def test_jumps_of_friction_are_seen_from_both_sides(angles):
     friction = {"guide": ks.GuideFriction(0.15), "B": ks.PinFriction(0.1, 0.02)}
@@ -144,10 +137,11 @@ def test_jumps_of_friction_are_seen_from_both_sides(angles):
     np.testing.assert_allclose(found.to_numpy(dtype=float), truth, rtol=1e-6)
 
 
+@pytest.mark.slow
 @every(
     "angle, back, rubs", [(15, True, False), (120, True, True), (30, False, True), (-90, True, True), (45, True, False)]
 )
-def test_jumps_at_dead_centres_are_no_peaks_by_rounding(angle, back, rubs):
+def test_dead_centre_jumps_make_no_peaks(angle, back, rubs):
     """Guides stand at whole parts of the turn, so stops meet its even parts; strokes and friction jump at the same."""
     pump = ks.crank_slider(0.05, 0.2, guide_angle=np.radians(angle), coupler=ks.Link(1.0, 0.1), slider=ks.Link(2.0))
     table = ks.Table([0.1, 0.3], [300.0, -200.0], over="travel", back=[-100.0, 500.0] if back else None)
@@ -160,12 +154,6 @@ def test_jumps_at_dead_centres_are_no_peaks_by_rounding(angle, back, rubs):
     np.testing.assert_allclose(found.iloc[2, 1:-1].to_numpy(dtype=float), truth, rtol=1e-6)
 
 
-def test_motions_are_swept_as_without_the_loads_that_bend_forces():
-    designs, outputs = pd.DataFrame({"crank": [0.04, 0.05]}), ["largest slider_velocity", "rms slider_acceleration"]
-    bare = lambda crank: ks.Scene(steep_pump(crank).mechanism, 30.0)  # noqa: E731
-    assert_equal(sweep(steep_pump, designs, outputs), sweep(bare, designs, outputs))
-
-
 def test_a_slider_that_leaves_its_table_is_still_told():
     found = sweep(steep_pump, pd.DataFrame({"crank": [0.05, 0.12, 0.04]}), ["largest O", "rms O"])
     assert found[FAILED][[0, 2]].tolist() == ["", ""]
@@ -174,7 +162,7 @@ def test_a_slider_that_leaves_its_table_is_still_told():
 
 @pytest.mark.slow
 @every("engine", ["numpy", "compiled"])
-def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
+def test_grouping_of_designs_does_not_matter(engine, numba):
     scene = spikes.spiky(1)
     length = scene.parameters["crank_length"]
     designs = pd.DataFrame({"crank_length": np.linspace(0.9 * length, length, 9)})
@@ -182,34 +170,6 @@ def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
     alone, some, together = (sweep(scene, designs, outputs, chunk=chunk, engine=engine) for chunk in (1, 4, 9))
     assert_equal(alone, together)
     assert_equal(some, together)
-
-
-VARIED = {
-    ("sawframe_2r63", "plain"): {"slider.mass": "500..700 kg"},
-    ("sawframe_2r63", "cam-circle"): {"spring.stiffness": "600..900 kN/m", "crank_speed": "20..40 rad/s"},
-    ("sawframe_2r63", "cam-cosine"): {"spring.stiffness": "600..900 kN/m", "slider.mass": "500..700 kg"},
-    ("chain_unit", "rho-0.5"): {"crank_speed": "5..20 rad/s"},
-    ("mower_drive", "unbalanced"): {"crank_speed": "50..90 rad/s"},
-    ("shaper", "cutting"): {"crank_speed": "5..6 rad/s"},
-    ("toggle_press", "coining"): {"crank_speed": "3..4 rad/s"},
-}
-
-
-@pytest.mark.slow
-@every("case, variant", VARIED)
-def test_what_designs_have_in_common_is_computed_once_to_the_same_bits(numba, monkeypatch, case, variant):
-    scene = shipped(case).variants[variant].scene
-    designs = ks.designs.random(VARIED[case, variant], 50)
-    outputs = ["largest O", "mean_absolute balancing_torque", "smallest balancing_torque", "harmonic_2 O"]
-    asked = {"angles": 360, "engine": "compiled", "progress": False}
-    whole = ks.sweep(scene, designs, outputs, **asked)
-    monkeypatch.setattr(sharing, "VALUES", 1)
-    monkeypatch.setattr(sharing, "SHARE", 0.0)
-    made = []
-    monkeypatch.setattr(together.sharing, "shared", lambda *given: made.append(shared(*given)) or made[-1])
-    pd.testing.assert_frame_equal(ks.sweep(scene, designs, outputs, **asked), whole, check_exact=True)
-    assert made
-    assert all(len(tables) for _, tables in made)
 
 
 def followed(mass):
@@ -230,8 +190,9 @@ def test_laws_of_cams_are_parted_where_they_jump():
     assert found.iloc[1, 2] == pytest.approx(at.min(), rel=1e-9)
 
 
+@pytest.mark.slow
 @every("seed", range(6))
-def test_friction_bends_where_a_reaction_passes_near_zero_however_near(seed):
+def test_near_zero_reactions_are_resolved(seed):
     """Where |R| is sqrt(a^2 + b^2 t^2), friction bends within a / b; nobody tells where that is."""
     rng = np.random.default_rng([3, seed])
     saw = ks.crank_slider(

@@ -32,7 +32,7 @@ def fragile(mass, push):
     return ram(mass, push)
 
 
-def test_quantiles_of_a_linear_output_are_those_of_the_distribution():
+def test_linear_output_has_the_input_quantiles():
     found = tolerances(ram, [OUTPUT, "ratio largest B"], {"mass": SPREADS["mass"]}, count=4096, reference=ram(1.0))
     quantiles = found.quantiles()
     assert quantiles.index.name == "quantile"
@@ -49,7 +49,7 @@ def test_quantiles_of_a_linear_output_are_those_of_the_distribution():
     )
 
 
-def test_sobol_indices_of_a_sum_are_the_shares_of_variance():
+def test_sobol_indices_are_variance_shares():
     found = tolerances(ram, [OUTPUT, "mean B"], SPREADS, count=1024)
     assert len(found.table) == 1024
     assert found.sensitivity.index.names == ["output", "parameter"]
@@ -95,13 +95,13 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
         (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "are given, such as"),
     ],
 )
-def test_without_spreads_there_is_nothing_to_study_and_a_case_file_is_named_only_for_a_case(case, remedy):
+def test_tolerances_need_spreads(case, remedy):
     with pytest.raises(ks.ParameterError, match="no spreads") as error:
         tolerances(case, OUTPUT)
     assert remedy in str(error.value)
 
 
-def test_designs_that_fail_end_the_study_with_their_reason():
+def test_failed_designs_end_the_study():
     with pytest.raises(
         ks.ParameterError, match=r"of 16 designs within the spread cannot be computed.*too much: 29\d N"
     ):
@@ -110,7 +110,7 @@ def test_designs_that_fail_end_the_study_with_their_reason():
         tolerances(lambda mass, push: ram(0.0 * mass), ["ratio largest B"], SPREADS, count=16, reference=ram(1.0))
 
 
-def test_designs_of_one_parameter_that_fail_end_the_study_too():
+def test_failed_single_parameter_designs_end_it():
     """Quantiles of those that are left would be of other machines."""
     with pytest.raises(ks.ParameterError, match=r"1 of 16 designs within the spread cannot be computed.*too much"):
         tolerances(partial(fragile, mass=1.0), OUTPUT, {"push": "100..300 N"}, count=16)
@@ -125,7 +125,7 @@ def test_workers_give_the_same_study():
     pd.testing.assert_frame_equal(found.table, expected.table, check_exact=True)
 
 
-def test_texts_and_outputs_that_cannot_be_read_are_refused():
+def test_unreadable_tolerances_are_refused():
     with pytest.raises(ks.ParameterError, match=r"cannot read '1 kg' for mass: .*cannot read 'much' for push"):
         tolerances(ram, OUTPUT, {"mass": "1 kg", "push": "much"}, count=16)
     with pytest.raises(ks.ParameterError, match="did you mean 'largest B'"):
@@ -143,7 +143,7 @@ def with_spreads(folder, **spreads):
     return case.path
 
 
-def test_spreads_of_the_case_file_are_those_that_the_variant_has(tmp_path):
+def test_case_spreads_are_the_variants(tmp_path):
     spreads = {"slider.mass": "triangular 588..600..612 kg", "cam.radius": "normal 300 mm +- 0.2 mm"}
     case = ks.load_case(with_spreads(tmp_path, **spreads))
     assert case.tolerances == spreads
@@ -156,7 +156,7 @@ def test_spreads_of_the_case_file_are_those_that_the_variant_has(tmp_path):
     assert found.spreads == {"crank_speed": "316..324 rpm"}
 
 
-def test_what_is_wrong_with_spreads_is_told_with_the_other_problems_of_the_file(tmp_path):
+def test_wrong_spreads_are_reported_with_the_file(tmp_path):
     wrong = {"slider.mas": "1..2 kg", "cam.radius": "3..4 kg", "cam.centre.x": "much", "coupler_length": "1..2 m"}
     with pytest.raises(ks.CaseError) as caught:
         ks.load_case(with_spreads(tmp_path, **wrong))

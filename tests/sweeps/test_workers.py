@@ -122,7 +122,7 @@ def impatient(monkeypatch):
     monkeypatch.setattr(dispatch, "ATTEMPTS", 1)
 
 
-def test_only_designs_that_kill_their_worker_are_given_up(tidy, impatient, expected):
+def test_only_killing_designs_are_given_up(tidy, impatient, expected):
     """Also the first, on which the sweep is tried."""
     rows = [19, 21]
     function = factories.deadly(*DESIGNS["crank [mm]"][rows] * 0.001)
@@ -130,7 +130,7 @@ def test_only_designs_that_kill_their_worker_are_given_up(tidy, impatient, expec
     assert_only_lost(found, expected[19:23], rows)
 
 
-def test_only_a_design_that_kills_its_worker_is_given_up_by_dask(cluster, expected):
+def test_only_killing_designs_are_given_up_by_dask(cluster, expected):
     found = sweep(factories.deadly(0.3), DESIGNS[19:21], OUTPUTS, executor=cluster, chunk=2)
     assert_only_lost(found, expected[19:21], [20])
 
@@ -141,7 +141,7 @@ def test_workers_that_die_of_themselves_end_the_sweep(tidy, impatient):
 
 
 @pytest.mark.parametrize("death", ["when it starts", "when it computes"])
-def test_an_executor_that_breaks_ends_the_sweep_and_names_workers(tidy, death):
+def test_broken_executor_ends_the_sweep(tidy, death):
     """Whoever made it may make it anew; nobody else does."""
     broken = (
         ThreadPoolExecutor(1, initializer=factories.pump)
@@ -205,14 +205,14 @@ def test_workers_end_with_their_parent_however_it_ends(tmp_path, monkeypatch):
     assert waited(lambda: list(filter(alive, processes)), lambda found: not found) == []
 
 
-def test_workers_leave_signals_to_all_processes_to_their_parent(tidy):
+def test_workers_leave_group_signals_to_the_parent(tidy):
     """One that ended while it handed over a result would leave half of it, for whose rest the parent waits."""
     with dispatch.Workers(count=1) as workers:
         found = [workers.submit(signal.getsignal, number).result() for number in (signal.SIGINT, signal.SIGTERM)]
     assert found == [signal.SIG_IGN, signal.SIG_IGN]
 
 
-def test_calls_that_wait_when_a_sweep_is_stopped_are_dropped_without_a_word(tidy, monkeypatch, caplog, capfd):
+def test_stopped_sweep_drops_waiting_calls(tidy, monkeypatch, caplog, capfd):
     """The thread of a library that serves the processes must not fail, and tell of it, before we say our line."""
 
     def stopped():
@@ -271,7 +271,7 @@ class Mortal:
         return () if self.dying(names, self.tried.count(names)) else ((names,),)
 
 
-def test_a_harmless_design_whose_worker_dies_of_something_else_is_tried_again(monkeypatch):
+def test_harmless_design_is_tried_again(monkeypatch):
     """Design 2 kills its worker each time; that of design 3 dies once, of something else."""
     monkeypatch.setattr(dispatch, "rows", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
     monkeypatch.setattr(dispatch.pd, "concat", list)

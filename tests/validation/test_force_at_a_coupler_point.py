@@ -23,12 +23,12 @@ def test_the_pin_is_where_it_is_drawn(at_rest):
     assert at_rest.position("B") == pytest.approx((4.0, 3.0), rel=1e-14)
 
 
-def test_the_torque_is_that_of_virtual_work_by_the_instant_centre(at_rest):
+def test_torque_is_virtual_work_at_instant_centre(at_rest):
     assert float(at_rest.balancing_torque) == pytest.approx(75.0, rel=1e-13)
 
 
 @pytest.mark.parametrize(
     ("joint", "force"), {"A": (-25, 50), "B": (75, -150), "O2": (-75, 150), "O": (-25, 50)}.items()
 )
-def test_the_reactions_are_those_of_two_and_three_force_members(at_rest, joint, force):
+def test_reactions_are_two_and_three_force_members(at_rest, joint, force):
     assert at_rest.reaction(joint) == pytest.approx(force, rel=1e-12)

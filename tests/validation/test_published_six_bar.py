@@ -96,6 +96,6 @@ def test_the_input_torque_is_the_published_one(angle, speed, gravity):
 
 @pytest.mark.parametrize(("angle", "speed"), GROUND)
 @pytest.mark.parametrize("joint", ["O2", "O22"])
-def test_the_ground_reactions_with_gravity_are_the_published_ones(angle, speed, joint):
+def test_ground_reactions_are_the_published_ones(angle, speed, joint):
     s = solution(angle, speed, 9.81)
     assert s.reaction(joint) == pytest.approx(GROUND[angle, speed][joint], rel=1e-9)

@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.demands import demands
 from kinetostatics.design.optimisation import true_excess
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 
@@ -43,7 +43,7 @@ def test_its_search_finds_the_shipped_machine_again(name, variant):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_search_with_fewer_machines_finds_the_robust_one_nearly_again(name):
+def test_smaller_search_nearly_finds_the_robust_one(name):
     """With a quarter of the machines: spring within 2 %, lengths within 0.3 mm, the gain that 95 % keep within 1."""
     case = shipped(name)
     design = case.designs["cam-robust"]
@@ -73,7 +73,7 @@ def test_mowers_gain_what_their_file_says():
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_shipped_machines_keep_their_limits_and_the_ends_of_the_stroke(name):
+def test_shipped_designs_keep_limits_and_stroke(name):
     case = shipped(name)
     for design in case.designs.values():
         scene, source = case.variant(design.name).scene, case.variant(design.source).scene

@@ -19,7 +19,7 @@ def fine(name, variant):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_every_variant_of_a_shipped_machine_balances_its_powers(name):
+def test_shipped_variants_balance_their_powers(name):
     for variant in case(name).variants:
         s = case(name).solve(variant)
         assert s.power_residual < 1e-12
@@ -27,7 +27,7 @@ def test_every_variant_of_a_shipped_machine_balances_its_powers(name):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_a_shipped_machine_says_where_its_numbers_are_from(name):
+def test_shipped_machines_name_their_sources(name):
     assert "ssumed" in case(name).source
 
 
@@ -36,7 +36,7 @@ def test_a_shipped_machine_says_where_its_numbers_are_from(name):
 AREA = 78.54e-4
 
 
-def test_the_mean_torque_of_the_compressor_is_the_work_of_its_indicator_diagram():
+def test_compressor_torque_is_its_indicator_work():
     """Work n / (n - 1) p1 V ((p2 / p1)^((n - 1) / n) - 1) with V drawn in; chords lie above the lines."""
     n, ratio = 1.4, 6.0
     drawn_in = AREA * (0.105 - 0.005 * ratio ** (1 / n))
@@ -44,7 +44,7 @@ def test_the_mean_torque_of_the_compressor_is_the_work_of_its_indicator_diagram(
     assert 2 * pi * np.mean(fine("compressor", "loaded").balancing_torque) == pytest.approx(work, rel=2e-3)
 
 
-def test_the_gas_of_the_compressor_acts_on_the_crank_by_the_slope_of_its_travel():
+def test_compressor_gas_acts_by_travel_slope():
     """At 300 degrees, half way of compression: x = r cos + sqrt(l^2 - r^2 sin^2)."""
     loaded, idle = (case("compressor").solve(name, angles=12) for name in ("loaded", "unloaded"))
     r, rod, angle = 0.05, 0.2, radians(300)
@@ -59,7 +59,7 @@ def test_the_gas_of_the_compressor_acts_on_the_crank_by_the_slope_of_its_travel(
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 150.0, 290.0])
-def test_the_torque_factor_of_the_pumpjack_is_that_of_its_triangles(degrees):
+def test_pumpjack_torque_factor_is_of_triangles(degrees):
     """A R sin(alpha) / (C sin(beta)): alpha between crank and pitman, beta between pitman and beam (API 11E)."""
     mechanism = case("pumpjack").variants["weights"].mechanism
     s = ks.solve(mechanism, radians(degrees), crank_speed=0.0, loads=ks.Torque(2.8, on="rocker"))
@@ -75,14 +75,14 @@ def test_the_torque_factor_of_the_pumpjack_is_that_of_its_triangles(degrees):
     assert float(s.balancing_torque) == pytest.approx(-2.8 * 0.95 * sin_alpha / (2.45 * sin_beta), rel=1e-12)
 
 
-def test_the_weights_of_the_pumpjack_take_their_moment_off_the_torque():
+def test_pumpjack_weights_relieve_the_torque():
     plain, weights = (case("pumpjack").solve(name) for name in ("no-weights", "weights"))
     moment = (4800 * 1.225 - 1200 * 0.7) * 9.81 * np.cos(plain.crank_angle)
     np.testing.assert_allclose(weights.balancing_torque - plain.balancing_torque, moment, atol=1e-9 * 5e4)
     assert np.abs(weights.balancing_torque).max() < 0.4 * np.abs(plain.balancing_torque).max()
 
 
-def test_the_mean_torque_of_the_pumpjack_lifts_the_fluid():
+def test_pumpjack_mean_torque_lifts_the_fluid():
     """30 kN over the stroke, but for the corners that the load takes 20 degrees of crank angle to round."""
     s = fine("pumpjack", "weights")
     stroke = np.ptp(s.position("H")[1])
@@ -93,20 +93,20 @@ def test_the_mean_torque_of_the_pumpjack_lifts_the_fluid():
 # Shaper: centres 240 mm, crank 120 mm, lever 450 mm; 4 kN over 400 mm
 
 
-def test_the_shaper_cuts_and_returns_in_the_ratio_of_times_of_its_drawing():
+def test_shaper_time_ratio_is_of_its_drawing():
     swing = asin(120 / 240)
     forward = np.mean(fine("shaper", "cutting").slider_velocity > 0)
     assert (pi + 2 * swing) / (pi - 2 * swing) == pytest.approx(2.0, rel=1e-15)
     assert forward / (1 - forward) == pytest.approx(2.0, rel=2e-3)
 
 
-def test_the_shaper_turns_back_at_the_ends_of_its_stroke():
+def test_shaper_turns_back_at_its_stroke_ends():
     found = ks.extremes(case("shaper").solve("idle"), "slider_position")
     assert np.ptp(found.range) == pytest.approx(2 * 450e-3 * 120 / 240, rel=1e-13)
     assert np.degrees(found.angle) == pytest.approx([210, 330], abs=1e-6)
 
 
-def test_the_mean_torque_of_the_shaper_is_the_work_of_its_cut():
+def test_shaper_mean_torque_is_the_work_of_its_cut():
     """4 kN over 396 mm, and ramps of 2 mm at both ends."""
     assert 2 * pi * np.mean(fine("shaper", "cutting").balancing_torque) == pytest.approx(4e3 * 0.398, rel=1e-4)
     assert abs(np.mean(fine("shaper", "idle").balancing_torque)) < 1e-9
@@ -125,7 +125,7 @@ def harmonics(name, variant, order):
     return 2 * np.mean(force * np.cos(order * s.crank_angle)), 2 * np.mean(force * np.sin(order * s.crank_angle))
 
 
-def test_the_v_twin_shakes_by_one_kilogramme_on_its_pin_and_by_the_second_harmonic_across():
+def test_v_twin_shakes_by_its_pin_mass():
     cosine, sine = harmonics("v_twin", "plain", 1)
     assert cosine == pytest.approx(2 * TURNING + TO_AND_FRO, rel=1e-12)
     assert sine == pytest.approx(1j * (2 * TURNING + TO_AND_FRO), rel=1e-12)
@@ -134,14 +134,14 @@ def test_the_v_twin_shakes_by_one_kilogramme_on_its_pin_and_by_the_second_harmon
     assert sine == pytest.approx(sqrt(2) * TO_AND_FRO * second_harmonic(R / ROD), rel=1e-12)
 
 
-def test_the_counterweight_of_the_v_twin_takes_the_first_harmonic_away():
+def test_v_twin_counterweight_removes_first_harmonic():
     link = case("v_twin").variants["counterweight"].mechanism.links["crank"]
     assert link.mass * link.centre[0] == pytest.approx(-(2 * TURNING + TO_AND_FRO) * R, rel=1e-14)
     assert max(map(abs, harmonics("v_twin", "counterweight", 1))) < 1e-12
     assert harmonics("v_twin", "counterweight", 2) == pytest.approx(harmonics("v_twin", "plain", 2), rel=1e-12)
 
 
-def test_gas_shakes_no_engine_and_drives_it_over_two_turns():
+def test_gas_drives_over_two_turns_without_shaking():
     s, plain = (case("v_twin").solve(name, angles=1440) for name in ("firing", "counterweight"))
     assert s.period == pytest.approx(4 * pi)
     np.testing.assert_allclose(s.shaking_force, plain.at(s.crank_angle).shaking_force, rtol=1e-13)
@@ -157,7 +157,7 @@ def test_gas_shakes_no_engine_and_drives_it_over_two_turns():
     assert np.mean(gas) < 0
 
 
-def test_throws_together_add_up_and_throws_opposed_leave_the_second_harmonic():
+def test_opposed_throws_leave_the_second_harmonic():
     cosine, sine = harmonics("in_line_twin", "throws-together", 1)
     assert cosine == pytest.approx(2 * TURNING, rel=1e-12)
     assert sine == pytest.approx(2j * (TURNING + TO_AND_FRO), rel=1e-12)
@@ -172,7 +172,7 @@ def test_throws_together_add_up_and_throws_opposed_leave_the_second_harmonic():
 
 
 @pytest.mark.parametrize("degrees", [300.0, 335.0, 350.0])
-def test_the_ratio_of_forces_of_the_press_is_that_of_its_knuckle(degrees):
+def test_press_force_ratio_is_of_its_toggle(degrees):
     """Tilt t of both links: the rod pushes across by F (tan t + tan t) less what its own tilt does."""
     mechanism = case("toggle_press").variants["idle"].mechanism
     s = ks.solve(mechanism, radians(degrees), crank_speed=0.0, loads=ks.ProcessForce(-1.0, on="slider2"))
@@ -188,7 +188,7 @@ def test_the_ratio_of_forces_of_the_press_is_that_of_its_knuckle(degrees):
     assert float(s.balancing_torque) == pytest.approx(push * (rod / pin).imag * 0.085**2, rel=1e-11)
 
 
-def test_the_press_works_within_three_millimetres_of_its_dead_centre():
+def test_press_works_near_its_dead_centre():
     s = fine("toggle_press", "coining")
     work = 2 * pi * np.mean(s.balancing_torque)
     lowest = ks.extremes(s, "slider2_position").range[1]
@@ -212,7 +212,7 @@ def test_the_power_of_the_pump_is_flow_times_pressure():
     assert 4 * pi * np.mean(s.balancing_torque) == pytest.approx(60.3e5 * flow, rel=1e-5)
 
 
-def test_the_torque_of_the_pump_is_force_times_its_sine_arm():
+def test_pump_torque_is_force_times_sine_arm():
     pumping, idle = (case("yoke_pump").solve(name) for name in ("pumping", "idle"))
     sine = np.sin(pumping.crank_angle)
     pressure = np.where(sine < 0, 60e5, -0.3e5)

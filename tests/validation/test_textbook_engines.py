@@ -51,20 +51,20 @@ def test_the_series_is_that_of_the_books():
     assert second_harmonic(ratio) == pytest.approx(few, rel=1e-5)
 
 
-def test_the_first_harmonic_of_a_v_of_90_degrees_turns_with_the_crank():
+def test_first_harmonic_of_a_v_90_turns_with_crank():
     cosine, sine = harmonic(shaking(engine(V90)), 1)
     assert cosine == pytest.approx(UNIT, rel=1e-13)
     assert sine == pytest.approx(1j * UNIT, rel=1e-13)
 
 
-def test_its_second_harmonic_is_across_the_v_by_the_exact_series():
+def test_second_harmonic_of_a_v_90_is_across():
     cosine, sine = harmonic(shaking(engine(V90)), 2)
     size = np.sqrt(2) * UNIT * second_harmonic(R / ROD)
     assert abs(cosine) < 1e-13 * UNIT
     assert sine == pytest.approx(size, rel=1e-13)
 
 
-def test_a_counterweight_on_the_crank_leaves_only_even_harmonics():
+def test_crank_counterweight_leaves_even_harmonics():
     balanced = shaking(engine(V90, crank=ks.Link(MASS, -R)))
     for order in (1, 3, 5):
         assert max(map(abs, harmonic(balanced, order))) < 1e-13 * UNIT
@@ -73,19 +73,19 @@ def test_a_counterweight_on_the_crank_leaves_only_even_harmonics():
     assert np.max(np.abs(shaking(engine(V90)))) > UNIT
 
 
-def test_an_in_line_pair_with_cranks_opposed_has_twice_the_even_harmonics_and_no_odd_one():
+def test_opposed_in_line_pair_has_even_harmonics():
     force = shaking(engine((0.0, 0.0), ("A", "C")))
     for order in (1, 3, 5):
         assert max(map(abs, harmonic(force, order))) < 1e-13 * UNIT
     assert harmonic(force, 2)[0] == pytest.approx(2 * UNIT * second_harmonic(R / ROD), rel=1e-13)
 
 
-def test_a_boxer_with_cranks_opposed_has_no_shaking_force():
+def test_boxer_has_no_shaking_force():
     force = shaking(engine((0.0, np.pi), ("A", "C")))
     assert np.max(np.abs(force)) < 1e-13 * UNIT
 
 
-def test_rods_of_two_masses_balance_as_rotating_and_reciprocating_masses():
+def test_two_mass_rods_balance_by_their_masses():
     """A rod with its mass centre on the line and the inertia m a b is two point masses."""
     m, a = 0.8, 0.05
     rod = ks.Link(m, a, m * a * (ROD - a))
@@ -94,7 +94,7 @@ def test_rods_of_two_masses_balance_as_rotating_and_reciprocating_masses():
     assert cosine == pytest.approx((2 * on_pin + on_piston + MASS) * R * SPEED**2, rel=1e-13)
 
 
-def test_an_articulated_rod_on_the_crank_pin_is_a_plain_one_and_on_a_boss_leads_or_lags():
+def test_articulated_rod_on_the_pin_is_plain():
     """Its dead centres are where the crank is not on the bank's line: the boss leans with the master rod."""
     bank, boss = np.pi / 3, 0.03
 

@@ -58,7 +58,7 @@ def ratio(angles):
 @pytest.mark.parametrize(
     ("crank", "centres", "printed"), [(0.120, 0.240, 2.0), (0.075, 0.200, 1.647), (0.150, 0.370, 1.72397)]
 )
-def test_a_shaper_cuts_and_returns_in_the_printed_ratio_of_times(crank, centres, printed):
+def test_shaper_has_the_printed_time_ratio(crank, centres, printed):
     made = shaper(crank, centres, 0.45)
     swing = asin(crank / centres)
     found = ratio(zeros(made, lambda s: s.rate("lever")))
@@ -66,7 +66,7 @@ def test_a_shaper_cuts_and_returns_in_the_printed_ratio_of_times(crank, centres,
     assert found == pytest.approx(printed, abs=2e-3)
 
 
-def test_a_shaper_has_the_printed_stroke_and_inclination():
+def test_shaper_has_the_printed_stroke():
     """The lever leans by 30 degrees, its free end at 450 mm runs over 450 mm between the extremes."""
     made = shaper(0.120, 0.240, 0.45)
     first, second = (ks.solve(made, angle, crank_speed=1.0) for angle in zeros(made, lambda s: s.rate("lever")))
@@ -79,13 +79,13 @@ def test_a_shaper_has_the_printed_stroke_and_inclination():
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_the_stroke_of_any_shaper_is_by_the_sine_of_its_swing(share):
+def test_shaper_stroke_is_by_the_sine_of_its_swing(share):
     made = shaper(share * 0.3, 0.3, 0.5)
     ends = [ks.solve(made, angle, crank_speed=1.0).position("C")[0] for angle in zeros(made, lambda s: s.rate("lever"))]
     assert abs(ends[0] - ends[1]) == pytest.approx(2 * 0.5 * share, rel=1e-12)
 
 
-def test_a_whitworth_cuts_and_returns_in_the_printed_ratio_of_times():
+def test_whitworth_has_the_printed_time_ratio():
     """Centres 50 mm apart, crank 75 mm: 2.735; the ram turns back where the lever is level."""
     made = whitworth(0.075, 0.050, 0.100, 0.135)
     found = zeros(made, lambda s: s.travel_velocity("slider"))
@@ -95,7 +95,7 @@ def test_a_whitworth_cuts_and_returns_in_the_printed_ratio_of_times():
     assert abs(ends[0] - ends[1]) == pytest.approx(0.200, rel=1e-12)
 
 
-def test_a_whitworth_lever_turns_fully_between_the_speeds_of_its_extremes():
+def test_whitworth_turns_between_extreme_speeds():
     """At its nearest and farthest the block moves across the lever: rates r / (r + d) and r / (r - d)."""
     made = whitworth(0.075, 0.050, 0.100, 0.135)
     s = ks.solve(made, np.linspace(0.0, 2 * pi, 720, endpoint=False), crank_speed=1.0)
@@ -104,7 +104,7 @@ def test_a_whitworth_lever_turns_fully_between_the_speeds_of_its_extremes():
     assert np.mean(s.rate("lever")) == pytest.approx(1.0, abs=1e-14)
 
 
-def test_an_oscillating_cylinder_has_the_stroke_of_its_crank_and_the_swing_of_a_shaper():
+def test_oscillating_cylinder_has_a_shapers_swing():
     made = ks.Mechanism("oscillating engine", ks.Crank(0.1), (ks.CylinderGroup((0.0, -0.4)),))
     s = ks.solve(made, np.linspace(0.0, 2 * pi, 72, endpoint=False), crank_speed=1.0)
     assert ks.extremes(s, "cylinder_length").range == pytest.approx((0.3, 0.5), rel=1e-14)
@@ -113,7 +113,7 @@ def test_an_oscillating_cylinder_has_the_stroke_of_its_crank_and_the_swing_of_a_
     assert sorted(leans) == pytest.approx([-0.25, 0.25], abs=1e-13)
 
 
-def test_a_yoke_pump_needs_the_torque_of_its_pressure_and_of_its_mass():
+def test_yoke_pump_torque_is_pressure_and_mass():
     """Force P against the motion and mass m on a pure cosine: T = r sin(phi) P + m r^2 omega^2 sin(2 phi) / 2."""
     r, mass, speed, push = 0.05, 4.0, 20.0, 300.0
     angle = np.linspace(0.1, 6.2, 12)
@@ -126,7 +126,7 @@ def test_a_yoke_pump_needs_the_torque_of_its_pressure_and_of_its_mass():
     assert s.scalar("guide_moment") == pytest.approx(-slot * r * np.sin(angle), rel=1e-12)
 
 
-def test_a_slot_at_an_angle_lengthens_the_stroke_by_its_sine():
+def test_inclined_slot_lengthens_the_stroke():
     slot = 1.0
     made = ks.scotch_yoke(0.05, slot_angle=slot)
     s = ks.solve(made, np.linspace(0, 2 * pi, 72, endpoint=False), crank_speed=1.0)

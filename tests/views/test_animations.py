@@ -8,7 +8,7 @@ BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0
 FOUR_BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **BARS)
 
 
-def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(axes):
+def test_force_arrows_point_along_reactions(axes):
     pose = ks.load_case("sawframe_2r63").solve("plain", 360)
     film = ks.plots.animation(pose, joints=("A", "guide"), frames=4, ax=axes)
     film._draw_frame(90)  # drawing one pose is what saving does for each
@@ -18,7 +18,7 @@ def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(axes):
     film._draw_was_started = True
 
 
-def test_an_animation_shows_all_that_moves_within_its_axes(axes):
+def test_animation_shows_all_moving_parts(axes):
     solution = ks.solve(FOUR_BAR, np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=10.0)
     ks.plots.animation(solution, frames=2, ax=axes)._draw_was_started = True
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
@@ -27,7 +27,7 @@ def test_an_animation_shows_all_that_moves_within_its_axes(axes):
         assert bottom < y.min() <= y.max() < top
 
 
-def test_an_animation_covers_both_turns_of_a_branch_that_closes_after_two(axes):
+def test_animation_covers_both_turns(axes):
     deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", **BARS)
     solution = ks.solve(deltoid, np.linspace(0.1, 2 * np.pi + 0.1, 24, endpoint=False), crank_speed=10.0)
     film = ks.plots.animation(solution, joints=("O",), frames=8, ax=axes)

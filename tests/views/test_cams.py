@@ -36,7 +36,7 @@ def test_a_cam_is_drawn_by_its_curves_and_the_roller(side):
     assert ax.get_xlabel() == "x [m]"
 
 
-def test_curvature_and_pressure_angle_show_their_limits():
+def test_curvature_and_pressure_angle_show_limits():
     ax = ks.plots.cam_curvature({"lobes": CAM, "law": LAW}, roller_radius=0.05, side="ring")
     angle, bend = line(ax, "law")
     assert_allclose(bend, 1.0 / LAW.curvature_radius(np.radians(angle)), rtol=1e-9)
@@ -46,7 +46,7 @@ def test_curvature_and_pressure_angle_show_their_limits():
     assert ax.get_ylabel() == "pressure angle [deg]"
 
 
-def test_pressure_of_the_contact_shows_its_limit_and_where_the_roller_changes_sides():
+def test_contact_pressure_shows_limit_and_side():
     saw = ks.cam_crank_slider(LAW, LAW.coupler_length, slider=ks.Link(600.0))
     solution = ks.solve(saw, DEGREES, crank_speed=25.0, loads=ks.Spring.balancing(600.0, 33.5, 2.0))
     found = ks.design.contact(solution, 0.05, 0.06, 210e9, 0.3, limits={"pressure": 5e8})

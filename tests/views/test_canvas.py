@@ -1,4 +1,6 @@
-"""What every figure shares."""
+"""What every figure shares: units, axes, legends."""
+
+import inspect
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -32,7 +34,7 @@ def test_axes_given_are_those_drawn_on():
         canvas.axes(3)
 
 
-def test_a_solution_by_itself_is_labelled_by_the_quantity_and_lines_differ():
+def test_single_solution_is_labelled_by_quantity():
     (label,) = canvas.labelled(PUMP, "balancing_torque")
     assert "torque" in label
     named = canvas.labelled({"a": PUMP, "b": PUMP}, "balancing_torque")
@@ -51,7 +53,7 @@ def test_missing_columns_and_rows_are_named():
         canvas.require_columns("plots", pd.DataFrame({"a": []}), ["a"])
 
 
-def test_curves_that_cover_each_other_share_a_label_and_zero_says_so():
+def test_equal_curves_share_a_label():
     turn = np.linspace(0, 6, 50)
     curves = {
         "a": np.sin(turn),
@@ -63,14 +65,9 @@ def test_curves_that_cover_each_other_share_a_label_and_zero_says_so():
     assert canvas.distinct(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
 
 
-def test_small_curves_are_no_zero_beside_others_as_small():
+def test_small_curves_are_not_called_zero():
     assert canvas.distinct({"a": np.array([0.0, 1e-12]), "b": np.array([1e-12, 0.0])}) == {"a": "a", "b": "b"}
     assert canvas.distinct({"alone": np.zeros(3)}) == {"alone": "alone"}
-
-
-def test_gaps_of_curves_are_gaps_of_those_that_cover_them():
-    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, np.nan])})) == ["a, b"]
-    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, 2.0])})) == ["a", "b"]
 
 
 def test_crank_angles_are_counted_there_and_back():
@@ -94,13 +91,6 @@ def test_headings_of_tables_read_as_words_with_units(column, text):
     assert canvas.readable(column) == text
 
 
-def test_curves_drawn_apart_are_compared_by_their_own_extent():
-    turn = np.linspace(0, 6, 50)
-    curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
-    assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
-    assert list(canvas.distinct(curves, apart=True)) == ["large", "small", "smaller"]
-
-
 @pytest.mark.parametrize(
     ("values", "largest", "seen"),
     [
@@ -113,7 +103,7 @@ def test_curves_drawn_apart_are_compared_by_their_own_extent():
         ([], 0.0, np.inf),
     ],
 )
-def test_a_few_values_that_grow_without_bound_set_no_unit_and_flatten_no_curve(values, largest, seen):
+def test_few_unbounded_values_set_no_unit(values, largest, seen):
     arrays = [np.array(values, dtype=float)]
     assert canvas.ordinary(arrays) == pytest.approx(largest, rel=1e-3)
     assert canvas.in_sight(arrays) == pytest.approx(seen, rel=1e-3)
@@ -126,7 +116,7 @@ def test_a_unit_is_chosen_by_ordinary_values():
 
 
 @pytest.mark.parametrize(("width", "columns"), [(6.4, 3), (3.4, 2), (1.6, 1)])
-def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, columns):
+def test_legend_stands_above_the_curves(width, columns):
     figure, ax = plt.subplots(figsize=(width, 4.0))
     for name in ("plain", "cam-circle", "cam-cosine", "plain-rolling", "cam-rolling"):
         ax.plot([0.0, 180.0, 360.0], [-1.0, 1.0, -1.0], label=name)
@@ -139,3 +129,17 @@ def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, 
     assert box.x1 <= frame.x1
     assert ax.transData.transform((180.0, 1.0))[1] < box.y0 + 0.02 * frame.height
     plt.close(figure)
+
+
+# The door to all figures
+
+
+def test_every_figure_function_has_an_example():
+    figures = {name: getattr(ks.plots, name) for name in ks.plots.__all__}
+    assert all(">>>" in inspect.getdoc(figure) for figure in figures.values())
+    without_axes = {name for name, figure in figures.items() if "ax" not in inspect.signature(figure).parameters}
+    assert without_axes == {"before_and_after"}
+
+
+def test_only_figures_are_listed():
+    assert dir(ks.plots) == sorted(ks.plots.__all__)

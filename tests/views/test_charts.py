@@ -1,4 +1,4 @@
-"""Charts of the studies: axes, units, and a curve for each method."""
+"""Charts of studies, designs and fronts: axes, units, and a curve for each method."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -6,7 +6,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import charts
-from support.curves import FEW, torque_study
+from kinetostatics.views.peaks import with_peaks
+from support.improved_saws import front
+from support.studied import FEW, torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -18,7 +20,8 @@ def torque():
     return torque_study()
 
 
-def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_each_setting(torque):
+@pytest.mark.slow
+def test_work_precision_chart_is_logarithmic(torque):
     figure, ax = plt.subplots()
     assert charts.work_precision(torque, ax=ax) is ax
     assert ks.plots.work_precision is charts.work_precision
@@ -35,14 +38,14 @@ def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_ea
     plt.close(figure)
 
 
-def test_a_method_that_runs_on_an_accelerator_says_so_in_the_legend(torque):
+def test_accelerator_is_named_in_the_legend(torque):
     table = torque.assign(device=["gpu: X" if name == "ours, NumPy" else "cpu" for name in torque["method"]])
     labels = charts.work_precision(table).get_legend_handles_labels()[1]
     assert "ours, NumPy, on gpu: X" in labels
     assert sum("on gpu" in label for label in labels) == 1
 
 
-def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_is_not_drawn(torque):
+def test_zero_error_is_drawn_below_rounding(torque):
     table = torque.assign(error=torque["error"].where(torque["method"] != "two-mass coupler"))
     table.loc[table["method"] == "ours, NumPy", "error"] = 0.0
     figure, ax = plt.subplots()
@@ -52,3 +55,51 @@ def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_i
     assert ax.get_ylim()[0] < charts.EXACT
     assert "two-mass coupler" not in curves
     plt.close(figure)
+
+
+# A front as a figure
+
+
+def test_a_front_is_drawn_with_the_source_beside_it():
+    import matplotlib.pyplot as plt
+
+    ax = ks.plots.front(front())
+    line, mark = ax.get_lines()
+    np.testing.assert_allclose(line.get_xdata(), front().table.iloc[:, 1])
+    np.testing.assert_allclose(line.get_ydata(), front().table.iloc[:, 0] / 1e3)
+    assert mark.get_xdata()[0] == pytest.approx(6.08, abs=0.01)
+    assert (ax.get_ylabel(), ax.get_xlabel()) == (
+        "largest absolute cam force [kN]",
+        "ratio of mean absolute balancing torque, reference / design [1]",
+    )
+    plt.close(ax.figure)
+
+
+# Figures of the studies
+
+
+UNIT = ks.linkage.chain_unit(0.1, 1.0, 0.5)
+
+
+def test_chain_unit_motion_is_relative(axes):
+    for speed in (1.0, 7.0, -7.0):
+        for order in (1, 2):
+            ks.plots.chain_unit_motion(ks.Scene(UNIT, speed).solve(90), "rocker", order, ax=axes)
+    first, second, *others = (line.get_ydata() for line in axes.lines if len(line.get_ydata()) > 2)
+    for number, curve in enumerate(others):
+        sense = -1 if number == 3 else 1  # as fast either way round; the acceleration points the other way then
+        np.testing.assert_allclose(sense * curve, (first, second)[number % 2], atol=1e-12)
+
+
+def test_motion_relative_to_a_crank_at_rest_is_refused(axes):
+    with pytest.raises(ks.ParameterError, match="the crank speed of rocker rate is 0"):
+        ks.plots.chain_unit_motion(ks.Scene(UNIT, 0.0).solve(8), "rocker", ax=axes)
+
+
+def test_shaking_force_is_drawn_to_its_size():
+    s = ks.Scene(ks.crank_slider(0.04, 0.3, slider=ks.Link(5.0)), 60.0).solve(90)
+    ax = ks.plots.shaking_force(s)
+    s = with_peaks({"": s}, "shaking_force")[""]
+    angle, size = ax.lines[0].get_data()
+    x, y = s.shaking_force
+    np.testing.assert_allclose(size[:-1] * np.cos(angle[:-1]) * np.hypot(x, y).max() / size.max(), x, atol=1e-9)

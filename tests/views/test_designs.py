@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import designs
-from support.designs import FRONT, STIFFER, saw_with
+from support.case_files import FRONT, STIFFER, saw_with
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,8 @@ def test_every_design_has_its_page(case, found, tmp_path):
     assert sorted((tmp_path / "new").iterdir()) == paths
 
 
-def test_page_shows_cam_torque_and_reaction_before_and_after(found):
+@pytest.mark.slow
+def test_page_shows_curves_before_and_after(found):
     figure = designs.before_and_after(found["stiffer"])
     titles = [ax.get_title() for ax in figure.axes]
     assert {"pitch curve of the cam", "support reaction, before", "support reaction, after"} <= set(titles)
@@ -35,7 +36,7 @@ def test_page_shows_cam_torque_and_reaction_before_and_after(found):
     plt.close(figure)
 
 
-def test_page_of_a_machine_without_cam_shows_the_machine():
+def test_page_without_cam_shows_the_machine():
     vary = {"coupler_length": ("1.9 m", "2.1 m")}
     found = ks.design.optimise(ks.load_case("sawframe_2r63"), vary, "largest O", angles=36, variant="plain")
     figure = designs.before_and_after(found)

@@ -1,7 +1,5 @@
 """Gaps of solutions in figures: shaded and named, and no axis set by what grows without bound beside them."""
 
-import warnings
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -40,7 +38,7 @@ def test_gaps_are_shaded_from_value_to_value_and_named(quantity):
     plt.close(figure)
 
 
-def test_a_gap_that_only_some_have_is_said_to_be_theirs(axes):
+def test_gap_of_some_is_named_as_theirs(axes):
     ks.plots.torque({"long": solved(LONG), "short": solved(SHORT), "slow": solved(SHORT, 3.0)}, ax=axes)
     assert words(axes) == ["short, slow: cannot be assembled"] * 2
 
@@ -54,7 +52,7 @@ def test_what_jams_is_not_said_to_be_open(axes):
     assert set(words(axes)) == {"jams"}
 
 
-def test_without_gaps_nothing_is_shaded_and_no_axis_limited(axes):
+def test_without_gaps_nothing_is_shaded(axes):
     solution = solved(LONG)
     ks.plots.torque(solution, ax=axes)
     assert (shades(axes), list(axes.texts)) == ([], [])
@@ -62,7 +60,7 @@ def test_without_gaps_nothing_is_shaded_and_no_axis_limited(axes):
 
 
 @every("samples", [180, 720, 3600])
-def test_limits_are_those_of_what_is_ordinary_however_near_to_the_gap_the_solution_goes(samples):
+def test_limits_ignore_values_near_gaps(samples):
     solution = ks.Scene(SHORT, 7.0).solve(samples, on_gap="nan")
     torque, far = solution.balancing_torque, 3.0 * np.abs(ks.Scene(SHORT, 7.0).solve([0.75]).balancing_torque).item()
     figure, ax = plt.subplots()
@@ -75,20 +73,7 @@ def test_limits_are_those_of_what_is_ordinary_however_near_to_the_gap_the_soluti
     plt.close(figure)
 
 
-@every("first", [True, False])
-def test_what_has_no_value_at_all_limits_no_axis_and_hides_no_size(first):
-    never = solved(ks.crank_slider(0.3, 0.9, guide_offset=5.0, slider=ks.Link(60.0)))
-    named = {"short": solved(SHORT), "never": never}
-    named = dict(reversed(named.items())) if first else named
-    for draw in (ks.plots.torque, ks.plots.hodograph):
-        figure, ax = plt.subplots()
-        draw(named, ax=ax)
-        assert any("beyond the frame: up to" in text.get_text() for text in ax.texts)
-        assert np.all(np.isfinite(ax.get_ylim()))
-        plt.close(figure)
-
-
-def test_a_hodograph_beside_a_gap_shows_what_is_ordinary_and_its_marks_by_themselves(axes):
+def test_hodograph_beside_a_gap_is_readable(axes):
     four_bar = ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.51, 0.0), rocker=ks.Link(3, 0.1, 0.05))
     solution = solved(four_bar, loads=ks.Gravity())
     ks.plots.hodograph(solution, ax=axes, marks=30)
@@ -101,7 +86,7 @@ def test_a_hodograph_beside_a_gap_shows_what_is_ordinary_and_its_marks_by_themse
     assert {"0°", "30°", "300°", "330°"} <= {text.get_text() for text in axes.texts}
 
 
-def test_a_hodograph_ends_at_heads_of_arrows_where_it_goes_on_and_at_crosses_where_it_stops(axes):
+def test_hodograph_ends_in_arrows_or_crosses(axes):
     pump = ks.crank_slider(0.3, 0.6, slider=ks.Link(600.0))
     loads, friction = [ks.Gravity(), ks.ProcessForce(500.0)], {"guide": ks.GuideFriction(1.9)}
     solution = solved(pump, 30.0, loads=loads, friction=friction)
@@ -124,14 +109,6 @@ def test_a_hodograph_ends_at_heads_of_arrows_where_it_goes_on_and_at_crosses_whe
     }
 
 
-def test_a_hodograph_of_what_closes_nowhere_says_nothing_of_sizes(axes):
-    never = ks.solve(ks.crank_slider(0.3, 0.05, slider=ks.Link(1.0)), [1.0, 1.5, 2.0], crank_speed=1.0, on_gap="nan")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        ks.plots.hodograph(never, ax=axes)
-    assert words(axes) == []
-
-
 def test_the_head_of_an_arrow_points_along_the_curve():
     x = np.array([0.0, 1.0, 2.0, np.nan, np.nan, -1.0])
     curve = np.array([x, 0.5 * x])
@@ -140,10 +117,3 @@ def test_the_head_of_an_arrow_points_along_the_curve():
     assert (first.row, second.row) == (2, 5)
     assert first.angle == pytest.approx(np.degrees(np.arctan2(0.5, 1.0)))
     assert second.angle == pytest.approx(np.degrees(np.arctan2(-0.5, -1.0)))
-
-
-def test_deviations_of_the_acceleration_are_limited_and_shaded_as_other_curves(axes):
-    ks.plots.acceleration_error(solved(SHORT), ax=axes)
-    assert words(axes) == ["cannot be assembled"] * 2
-    assert any(text.get_text().startswith("beyond the frame: up to ") for text in axes.texts)
-    assert np.max(np.abs(axes.get_ylim())) < 1e4

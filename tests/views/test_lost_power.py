@@ -1,10 +1,12 @@
 """Figures of lost power: stacks that add up, labels with units, words where nothing rubs."""
 
+import math
+
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import figures
+from kinetostatics.views import drives, figures
 
 
 @pytest.fixture(scope="module")
@@ -13,7 +15,7 @@ def saw():
     return {name: case.solve(name, 180) for name in ("plain", "cam-cosine")}
 
 
-def test_the_stack_over_the_turn_reaches_to_the_whole_loss(saw, axes):
+def test_stack_reaches_the_whole_loss(saw, axes):
     solution = saw["plain"]
     assert ks.plots.lost_power(solution, ax=axes) is axes
     top = np.max([path.vertices[:, 1].max() for item in axes.collections for path in item.get_paths()])
@@ -35,7 +37,7 @@ def test_bars_stand_on_each_other_up_to_the_mean_loss(saw, axes):
     assert [text.get_text() for text in axes.get_xticklabels()] == list(saw)
 
 
-def test_one_solution_is_one_bar_and_watts_stay_watts_where_they_are_few(axes):
+def test_single_solution_is_one_bar_in_watts(axes):
     pump = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
     solution = ks.solve(
         pump, [0.0, 1.0], crank_speed=3.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.1)}
@@ -43,12 +45,6 @@ def test_one_solution_is_one_bar_and_watts_stay_watts_where_they_are_few(axes):
     ks.plots.losses(solution, ax=axes)
     assert len(axes.containers) == len(axes.containers[0]) == 1
     assert axes.get_ylabel() == "mean power lost [W]"
-
-
-@pytest.mark.parametrize("name", ["friction_loss", "guide_friction", "O_friction_loss"])
-def test_quantities_of_friction_are_drawn_over_the_turn(saw, axes, name):
-    ks.plots.over_turn(saw, name, ax=axes)
-    assert axes.get_ylabel().startswith("friction" if name != "guide_friction" else "friction guide")
 
 
 @pytest.mark.parametrize("draw", [ks.plots.losses, ks.plots.lost_power])
@@ -68,9 +64,39 @@ def test_what_has_no_losses_to_draw_says_why(saw, draw, given, words):
 
 
 @pytest.mark.slow
-def test_figures_of_a_case_with_friction_have_both_and_of_one_without_none(tmp_path):
+def test_only_cases_with_friction_have_figures(tmp_path):
     case = ks.load_case("sawframe_2r63_friction")
     (path,) = figures.draw_case(case, tmp_path, "svg", "losses")
     assert "mean power lost [kW]" in path.read_text(encoding="utf-8") or path.stat().st_size > 5000
     with pytest.raises(ks.ParameterError, match="lost_power"):
         figures.draw_case(ks.load_case("sawframe_2r63"), tmp_path, "svg", "lost_power")
+
+
+# Figures of machines in periodic running
+
+
+TURN = 2 * math.pi
+MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
+
+
+def driven_saw(*loads):
+    return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
+
+
+def test_speed_and_torque_figures_are_drawn():
+    run = ks.drive.steady(driven_saw(CUT), MOTOR, 1000.0)
+    speed, torques = run.plot()
+    assert speed.get_ylabel() == "crank speed [rad/s]"
+    drive, machine = (line.get_ydata() for line in torques.get_lines())
+    assert drive[:-1:2].shape == (360,)
+    assert machine[:-1] == pytest.approx(run.solution.balancing_torque, abs=1e-6)
+    assert drive[:-1] == pytest.approx(MOTOR.transmission * run.motor_torque)
+
+
+@pytest.mark.parametrize("given", [None, 3, {}, {"saw": None}, {"saw": ks.Scene(ks.crank_slider(0.1, 0.4), 10.0)}])
+def test_what_is_no_running_is_refused_in_words(given):
+    for figure in (drives.crank_speed, drives.energy_flow, drives.drive_torques):
+        with pytest.raises(ks.ParameterError, match=r"runs must be a dict of label to Running, as \{"):
+            figure(given)

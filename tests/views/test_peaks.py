@@ -31,7 +31,7 @@ def test_a_curve_reaches_as_far_as_the_table_says(name, quantity):
     assert [curve.min(), curve.max()] == pytest.approx([found.value.min(), found.value.max()], rel=1e-12)
 
 
-def test_straight_lines_between_the_angles_of_a_curve_are_its_table():
+def test_curve_points_are_its_table():
     s = with_peaks({"": solved(TABLES["narrow peak"])}, "balancing_torque")[""]
     load, dense = s.loads[1], np.linspace(0.0, 2 * np.pi, 20001)
     drawn = np.interp(dense, s.crank_angle, given(load, s), period=2 * np.pi)
@@ -65,7 +65,7 @@ def test_extremes_stand_wherever_the_curve_comes_by(angles, count):
     assert np.abs(np.mod(more, 2 * np.pi)[:, None] - places).min(axis=1).max() < 1e-9
 
 
-def test_what_is_not_known_between_its_angles_stays_as_it_is():
+def test_unknown_between_angles_is_kept():
     falling, one = solved(angles=TURN[::-1]), solved(angles=0.5)
     given = solved(1e3 * np.sin(TURN))
     odd = solved(lambda motion: 10.0 * motion.crank_angle)  # does not repeat after a turn

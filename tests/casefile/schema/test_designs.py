@@ -4,11 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from kinetostatics.casefile.schema.designs import (
-    FrontTable,
     OneDesign,
-    OptimumTable,
     RobustTable,
-    TorqueFreeCamTable,
 )
 
 VARY = {"spring.stiffness": ["600 kN/m", "900 kN/m"]}
@@ -17,12 +14,6 @@ SPREADS = {"slider.mass": "normal 0 % +- 1 %"}
 
 def read(**keys):
     return OneDesign.model_validate({"design": keys}).design
-
-
-def test_kind_tells_the_table():
-    assert isinstance(read(kind="optimum", vary=VARY, minimise="largest O"), OptimumTable)
-    assert isinstance(read(kind="torque-free-cam"), TorqueFreeCamTable)
-    assert isinstance(read(kind="front", vary=VARY, minimise=["largest O", "mean O"]), FrontTable)
 
 
 def test_texts_with_units_are_read_to_si():

@@ -18,7 +18,7 @@ def travel(solved, angle):
     return solved.mechanism.place(angle).travels["slider"]
 
 
-def test_each_level_is_passed_twice_a_turn_and_the_slider_stops_twice():
+def test_levels_are_passed_twice_a_turn():
     solved, levels = motion(), np.linspace(0.15, 0.22, 7)
     stops, passed = crossings(solved, "slider", levels)
     assert stops.shape == (1, 2)
@@ -27,7 +27,7 @@ def test_each_level_is_passed_twice_a_turn_and_the_slider_stops_twice():
     np.testing.assert_allclose(np.sort(travel(solved, passed).position[0]), np.repeat(levels, 2), rtol=0, atol=1e-15)
 
 
-def test_a_level_just_before_a_stop_is_passed_to_and_fro():
+def test_level_near_a_stop_is_passed_to_and_fro():
     solved = motion()
     stops, _ = crossings(solved, "slider", np.array([0.2]))
     farthest = travel(solved, stops).position.max()
@@ -37,7 +37,7 @@ def test_a_level_just_before_a_stop_is_passed_to_and_fro():
         np.testing.assert_allclose(travel(solved, passed).position, farthest - depth, rtol=0, atol=1e-16)
 
 
-def test_designs_pass_as_many_levels_as_their_strokes_reach():
+def test_designs_pass_the_levels_in_their_stroke():
     crank = np.array([[0.01], [0.03], [0.05]])
     levels = np.linspace(0.14, 0.24, 11)
     stops, passed = crossings(motion(crank), "slider", levels)
@@ -49,7 +49,7 @@ def test_designs_pass_as_many_levels_as_their_strokes_reach():
 
 
 @every("way", [1, -1])
-def test_a_stop_exactly_at_an_angle_looked_at_is_found_there(way):
+def test_stop_exactly_at_a_sample_is_found(way):
     stop = (ASIDE + np.linspace(0.0, TURN, SAMPLES + 1))[100]
 
     def place(angle):

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import bends_of, is_bent, kinked, period_on
+from kinetostatics.machine.loads import is_bent, kinked, period_on
 from support.sweeping import sweep
 
 PUMP = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
@@ -57,21 +57,6 @@ def test_what_declares_kinks_is_found_and_nothing_else():
     assert period_on(found[1], PUMP) == 2 * np.pi
 
 
-def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
-    angle, jumps, rest = bends_of(Pulse(), ks.solve(PUMP, 0.0, crank_speed=30.0), 1e-5)
-    assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
-    assert jumps.tolist() == [True, True]
-    assert rest == 0.0
-
-
-def test_rows_of_a_table_that_count_as_straight_are_told_by_how_much_they_bend():
-    x = np.linspace(0.0, 2 * np.pi, 500)
-    smooth, sharp = (ks.Table(x, y) for y in (np.sin(x), np.interp(x, x[[0, 250, 499]], [0.0, 1.0, 0.0])))
-    step = x[1]
-    assert 0.05 * step**2 < bends_of(smooth, None, 1e-3)[2] < step**2
-    assert bends_of(sharp, None, 1e-5)[2] < 1e-9
-
-
 @pytest.mark.parametrize("kind", LOADS)
 def test_a_pulse_that_is_declared_is_swept_whole(kind):
     scene = ks.Scene(PUMP, 30.0, loads=[LOADS[kind]])
@@ -108,7 +93,7 @@ OUTSIDE = ([8.0], [1.0 - 4 * np.pi, 1.0 + 2e-5 + 2 * np.pi, -1.0]), ([9.0, -20.0
 
 
 @pytest.mark.parametrize("declared", OUTSIDE)
-def test_kinks_declared_outside_the_period_are_those_within_it(declared):
+def test_kinks_outside_the_period_are_wrapped(declared):
     tables = [
         sweep(
             ks.Scene(PUMP, 30.0, loads=ks.ProcessForce(pulse)),
@@ -126,13 +111,13 @@ def test_kinks_declared_outside_the_period_are_those_within_it(declared):
 @pytest.mark.parametrize(
     "declared", [None, [1.0, 2.0, 3.0], ([np.nan], [1.0]), ([], [np.inf]), (["a"], []), ([1j], [])]
 )
-def test_what_are_no_crank_angles_of_kinks_is_refused_by_name(declared):
+def test_wrong_kink_angles_are_refused_by_name(declared):
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(Declaring(declared)))
     with pytest.raises(ks.ParameterError, match=r"Declaring\.kinks must return two arrays of finite crank angles"):
         ks.extremes(s, "O")
 
 
-def test_the_load_on_the_page_of_loads_is_seen_however_narrow():
+def test_documented_narrow_load_is_seen():
     page = Path(__file__).parents[3] / "docs" / "api" / "loads.md"
     names = {"ks": ks, "np": np}
     exec(re.search("```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)[1], names)

@@ -41,7 +41,7 @@ def written(folder, angles, forces, period=""):
     return folder / "case.toml"
 
 
-def test_a_table_is_linear_between_its_rows_and_repeats_after_its_period():
+def test_a_table_is_linear_and_periodic():
     table = Table(np.radians([0, 90, 180, 270]), np.array([0.0, 10.0, 4.0, -2.0]))
     angle = np.radians([0, 45, 90, 315, 360 + 45, -45])
     assert pushed(table, angle) == pytest.approx([0, 5, 10, -1, 5, -1], abs=1e-12)
@@ -53,7 +53,7 @@ def test_a_table_over_two_turns_is_not_folded_to_one():
     assert pushed(table, angle) == pytest.approx([-2500, 0, -2500, 0, -5000, 0], abs=1e-9)
 
 
-def test_the_end_of_the_period_may_be_given_or_left_out_and_angles_may_fall():
+def test_period_end_is_optional_and_angles_may_fall():
     closed, left_out = (
         Table(STROKES, GAS, period=2 * TURN),
         Table(np.append(STROKES[:-1], 3 * np.pi), GAS, period=2 * TURN),
@@ -70,7 +70,7 @@ def test_an_end_rounded_in_radians_counts_as_the_start():
     assert Table(angle, np.sin(angle) * (angle < 6.28)).x.size == 36
 
 
-def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
+def test_tables_are_frozen_comparable_and_pickled():
     table, same = (Table(STROKES, GAS, period=2 * TURN) for _ in range(2))
     assert table == same == pickle.loads(pickle.dumps(table))
     assert hash(table) == hash(same)
@@ -82,28 +82,14 @@ def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
         table.period = TURN
 
 
-def test_a_table_does_not_follow_the_array_it_was_made_from():
-    force = GAS.copy()
-    table = Table(STROKES, force, period=2 * TURN)
-    force[:] = 7.0
-    assert table.y.tolist() == GAS[:-1].tolist()
-
-
-def test_a_load_has_the_period_of_its_table_and_no_other():
-    table = Table(STROKES, GAS, period=2 * TURN)
-    assert ks.ProcessForce(table).period == ks.ProcessForce(table, period=4 * np.pi).period == 4 * np.pi
-    with pytest.raises(ks.ParameterError, match=r"the period is 6.28.*, but that of its force 12.56.*; leave it out"):
-        ks.ProcessForce(table, period=2 * np.pi)
-
-
 @pytest.mark.parametrize("turns", [1, 2, 3, 7])
-def test_a_period_of_whole_turns_is_taken_up_to_rounding(turns):
+def test_whole_turns_are_taken_up_to_rounding(turns):
     assert ks.ProcessForce(1.0).period == TURN
     assert ks.ProcessForce(1.0, period=turns * TURN * (1 + 1e-12)).period == turns * TURN
 
 
 @pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
-def test_a_four_stroke_engine_has_its_gas_force_in_every_other_turn(tmp_path, engine):
+def test_four_stroke_gas_force_acts_every_other_turn(tmp_path, engine):
     if engine == "compiled":
         pytest.importorskip("numba")
     variant = ks.load_case(written(tmp_path, STROKES, GAS, "720 deg")).variants["a"]
@@ -116,17 +102,6 @@ def test_a_four_stroke_engine_has_its_gas_force_in_every_other_turn(tmp_path, en
     )
     expected = np.interp(angle, STROKES, GAS) * with_gas.slider_velocity / variant.crank_speed
     np.testing.assert_allclose(with_gas.balancing_torque, without.balancing_torque - expected, rtol=0, atol=1e-9)
-
-
-def test_a_table_of_one_turn_gives_what_it_gave_before(tmp_path):
-    angle = np.radians(np.arange(0, 360, 10))
-    force = 1e3 * np.sin(angle)
-    solution = ks.load_case(written(tmp_path, angle, force)).solve("a", 100)
-    by_hand = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, angle, force, period=TURN))
-    expected = ks.solve(
-        solution.mechanism, solution.crank_angle, crank_speed=solution.crank_speed, loads=by_hand
-    ).balancing_torque
-    np.testing.assert_allclose(solution.balancing_torque, expected, rtol=1e-13, atol=1e-13 * np.max(np.abs(expected)))
 
 
 def test_a_table_changed_after_loading_changes_nothing(tmp_path):

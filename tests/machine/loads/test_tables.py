@@ -19,7 +19,7 @@ def solved(table, angles=ANGLES, speed=100.0, **options):
 
 
 @pytest.mark.parametrize("speed", [100.0, -100.0])
-def test_a_diagram_has_the_values_of_the_stroke_that_the_slider_is_on(speed):
+def test_diagram_follows_the_current_stroke(speed):
     s = solved(DIAGRAM, speed=speed)
     forward, back = (np.interp(s.slider_position, X, values) for values in (DIAGRAM.y, DIAGRAM.back))
     expected = np.where(s.slider_velocity < 0, back, forward)
@@ -27,7 +27,7 @@ def test_a_diagram_has_the_values_of_the_stroke_that_the_slider_is_on(speed):
     assert s.power_residual < 1e-14
 
 
-def test_extremes_find_the_peak_on_its_side_of_a_jump_at_the_dead_centre():
+def test_extreme_is_on_its_side_of_a_jump():
     """Mass and weight are absent, so the axial force of the rod is that of the diagram."""
 
     def axial(solution):
@@ -40,21 +40,10 @@ def test_extremes_find_the_peak_on_its_side_of_a_jump_at_the_dead_centre():
     assert found.value[np.abs(found.angle) < 1e-6] == pytest.approx([800.0], rel=1e-9)
 
 
-def test_the_mean_torque_is_the_work_of_both_strokes_by_hand():
+def test_mean_torque_is_the_work_of_both_strokes():
     by_hand = sum(np.trapezoid(np.abs(values), X) for values in (DIAGRAM.y, DIAGRAM.back)) / (2 * np.pi)
     s = solved(DIAGRAM)
     assert ks.compare(s, s).mean_torques[0] == pytest.approx(by_hand, rel=1e-13)
-
-
-def test_a_table_is_known_between_the_crank_angles_of_a_solution():
-    assert solved(DIAGRAM, [0.1, 0.2]).at(ANGLES).balancing_torque == pytest.approx(solved(DIAGRAM).balancing_torque)
-
-
-@pytest.mark.slow
-def test_the_compiled_loop_reads_tables_as_arrays_do():
-    pytest.importorskip("numba")
-    compiled = solved(DIAGRAM, engine="compiled").balancing_torque
-    assert largest(compiled - solved(DIAGRAM).balancing_torque) < 1e-13 * largest(compiled)
 
 
 def test_derivatives_go_through_the_travel_of_a_table():
@@ -65,6 +54,7 @@ def test_derivatives_go_through_the_travel_of_a_table():
     assert largest(exact - (above - below) / step) < 1e-4 * largest(exact)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", ["angle", "travel"])
 def test_any_load_takes_a_table(over):
     x, y = ([0.0, 2.0, 4.0], [1.0, 5.0, 2.0]) if over == "angle" else ([-2.0, 0.5, 2.0], [1.0, 5.0, 2.0])
@@ -86,7 +76,7 @@ def test_any_load_takes_a_table(over):
         assert len(ks.extremes(s, "balancing_torque"))
 
 
-def test_kinks_of_a_table_over_travel_are_found_in_both_turns_of_a_branch_through_a_change_point():
+def test_change_point_branch_has_kinks_in_both_turns():
     """The slider is ahead of O in one turn and behind it in the other, where the coupler stands across the guide."""
     made = ks.crank_slider(0.1, 0.15, guide_offset=0.05, assembly="open")
     table = ks.Table([-0.3, 0.01, 0.3], [0.0, 50.0, 0.0], over="travel")
@@ -106,13 +96,13 @@ def test_a_four_stroke_table_gives_a_force_its_period():
     assert not np.allclose(s.at(1.0).balancing_torque, s.at(1.0 + 2 * np.pi).balancing_torque)
 
 
-def test_a_travel_beyond_the_table_is_told_with_both_ranges_and_the_crank_angle():
+def test_travel_beyond_the_table_names_both_ranges():
     table = ks.Table([0.15, 0.24], [1.0, 2.0], over="travel")
     with pytest.raises(ks.ParameterError, match=r"slider goes from 0.15\d* to 0.249\d* m.* from 0.15 to 0.24 m.*deg"):
         _ = solved(table).balancing_torque
 
 
-def test_of_two_sliders_a_table_must_say_which_unless_its_load_does():
+def test_table_names_one_of_two_sliders():
     engine = ks.Mechanism("V", ks.Crank(0.05), (ks.SliderGroup(0.2), ks.SliderGroup(0.2, pin="C", label="2")))
     table = ks.Table(X, [1.0, 2.0, 3.0], over="travel")
     with pytest.raises(ks.ParameterError, match="sliders 'slider', 'slider2': say which"):
@@ -134,7 +124,7 @@ def written(folder, text):
     return path
 
 
-def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(tmp_path):
+def test_indicator_diagram_is_times_the_area(tmp_path):
     text = "travel [mm], pressure [bar], pressure_back [MPa]\n150, 9, 1.5\n210, 4, 0.7\n250, 1, 0.8\n"
     table = ks.Table.from_csv(written(tmp_path, text), area=-1e-3)
     assert table.x == pytest.approx(X)
@@ -154,8 +144,9 @@ def two_turns(back):
     return ks.Scene(mechanism, 1.0, 0.0, ks.ProcessForce(table, "slider2")), table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("back", [False, True])
-def test_a_table_over_travel_knows_the_second_turn_of_a_branch(back):
+def test_second_turn_of_a_branch_is_known(back):
     """Work and peaks of both turns, beside values at many crank angles by hand."""
     scene, table = two_turns(back)
     s = scene.solve(40_000)
@@ -170,7 +161,7 @@ def test_a_table_over_travel_knows_the_second_turn_of_a_branch(back):
     assert mean == pytest.approx(np.abs(torque).mean(), rel=1e-6)
 
 
-def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
+def test_kinks_lie_in_both_turns_of_a_branch():
     scene, table = two_turns(back=True)
     kinks, jumps = table.kinks(scene.solve(4))
     x = scene.mechanism.place(kinks).travels["slider2"].position
@@ -213,7 +204,7 @@ def test_jax_reads_tables_as_numpy_does(double, name, speed):
 @pytest.mark.slow
 @pytest.mark.slow_start
 @every("name", TABLES)
-def test_gradients_by_jax_through_a_table_are_those_of_the_record(double, name):
+def test_jax_gradients_equal_the_recorded_ones(double, name):
     pump = ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.5, 0.1, 0.001), slider=ks.Link(1.0))
     scene = ks.Scene(pump, 100.0, loads=[ks.ProcessForce(TABLES[name]), ks.Gravity()])
     program = ks.compile(scene, "balancing_torque", engine="numpy")
@@ -225,6 +216,7 @@ def test_gradients_by_jax_through_a_table_are_those_of_the_record(double, name):
             assert largest(found - expected[path]) <= 1e-13 * largest(expected[path]), path
 
 
+@pytest.mark.slow
 def test_beyond_a_table_over_travel_jax_gives_nan(double):
     traced = double.jit(torque, static_argnums=0)
     found = np.asarray(traced(DIAGRAM, MANY, 0.24, 100.0))
@@ -234,10 +226,50 @@ def test_beyond_a_table_over_travel_jax_gives_nan(double):
         torque(DIAGRAM, MANY, 0.24)
 
 
-def test_rows_that_jax_traces_are_refused_with_what_to_do(double):
+def test_traced_rows_are_refused_with_a_remedy(double):
     def of_values(values):
         return torque(ks.Table(X, values, over="travel"), MANY).sum()
 
     for run in (double.jit(of_values), double.grad(of_values)):
         with pytest.raises(ks.ParameterError, match=r"rows have no values yet.*numbers of the mechanism"):
             run(np.array([1.0, 2.0, 3.0]))
+
+
+# Rows of a table read from a file
+
+
+@every(
+    ("text", "options", "words"),
+    [
+        ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("crank angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("# bench 3, 12 May\ncrank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("crank_angle [rad], torque [N mm]\n0, 1\n2, 2\n4, 3\n", {"unit": "N m"}, None),
+        ("travel [mm], pressure [bar]\n0, 1\n1, 2\n", {}, "no column 'force'"),
+        ("travel [mm], pressure [kN]\n0, 1\n1, 2\n", {"area": 1.0}, "pressure"),
+        ("travel [deg], force [kN]\n0, 1\n1, 2\n", {}, "travel"),
+        ("angle [deg], force [kN]\n0, 1\n1, 2\n", {}, "no column 'crank_angle'"),
+        ("travel [mm], force [kN]\n1, 1\n1, 2\n", {}, "travel must rise.* for a jump give two travels close together"),
+        ("travel [mm], force [kN]\n1, 1\n2, 2\n1, 3\n3, 1\n", {}, "travel must rise.* give the stroke back"),
+        ("travel [mm], force [kN]\n1, 1\n", {}, "at least 2 rows"),
+        ("travel [mm], force [kN], back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'back' would not be read.*force_back"),
+        ("travel [mm], force [kN], Force back [kN]\n1, 1, 5\n2, 1, 5\n3, 1, 5\n", {}, None),
+        ("travel [mm], force [kN], force_return [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'force_return' would not be read"),
+        (
+            "travel [mm], force [kN], force_bak [kN]\n1, 1, 5\n2, 1, 5\n",
+            {},
+            "'force_bak' would not be read.*force_back",
+        ),
+        ("travel [mm], pressure [bar], force_back [kN]\n1, 1, 5\n2, 1, 5\n", {"area": 1.0}, "pressure_back"),
+        ("crank_angle [deg], force [N], force_back [N]\n0, 1, 5\n120, 2, 5\n240, 3, 5\n", {}, "over travel"),
+        ("travel [m], force [N], pressure [Pa], pressure_back [Pa]\n1, 1, 5, 5\n2, 1, 5, 5\n3, 1, 5, 5\n", {}, None),
+    ],
+)
+def test_csv_tables_are_read_or_refused(tmp_path, text, options, words):
+    path = written(tmp_path, text)
+    if words is None:
+        assert ks.Table.from_csv(path, **options).y.size == 3
+        return
+    with pytest.raises(ks.CaseError, match=words) as caught:
+        ks.Table.from_csv(path, **options)
+    assert "table.csv" in str(caught.value)

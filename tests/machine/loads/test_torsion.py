@@ -19,7 +19,7 @@ BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
         (ks.TorsionSpring(4.0, -1.1, on="rocker"), "give a free angle nearer to it"),
     ],
 )
-def test_a_spring_on_a_link_that_passes_half_a_turn_is_refused_at_any_crank_angle(item, words):
+def test_spring_beyond_half_a_turn_is_refused(item, words):
     with pytest.raises(ks.ParameterError, match=words):
         ks.solve(BAR, 0.7, crank_speed=1.0, loads=item)
 
@@ -31,7 +31,7 @@ def test_a_spring_on_a_link_that_passes_half_a_turn_is_refused_at_any_crank_angl
         ((0.2, 0.2, 0.1, 0.1), "coupler"),  # passes half a turn at crank angle 0
     ],
 )
-def test_a_link_that_turns_round_where_change_points_are_passed_takes_no_spring(lengths, on):
+def test_link_turning_round_takes_no_spring(lengths, on):
     *bars, ground = lengths
     passing = ks.four_bar(*bars, rocker_pivot=(ground, 0.0), assembly="open")
     for free in (0.0, 1.5, -1.5, 3.0):
@@ -39,12 +39,12 @@ def test_a_link_that_turns_round_where_change_points_are_passed_takes_no_spring(
             ks.solve(passing, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, free, on=on))
 
 
-def test_a_link_that_never_turns_takes_a_spring_of_a_constant_couple():
+def test_fixed_link_takes_a_constant_couple():
     pump, spring = ks.crank_slider(0.1, 0.3, guide_angle=0.4), ks.TorsionSpring(4.0, 0.1, on="slider")
     assert ks.solve(pump, [0.7, 2.0], crank_speed=1.0, loads=spring).guide_moment == pytest.approx([1.2, 1.2])
 
 
-def test_a_coupler_that_turns_with_the_crank_takes_no_spring():
+def test_coupler_turning_with_crank_takes_no_spring():
     double_crank = ks.four_bar(0.4, 0.35, 0.45, rocker_pivot=(0.1, 0.0))
     with pytest.raises(ks.ParameterError, match=r"TorsionSpring on 'rocker'.*it makes full turns"):
         ks.solve(double_crank, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, on="rocker"))
@@ -63,7 +63,7 @@ def test_the_angle_is_the_principal_one_to_rounding(free):
     assert largest(spring.couple(s) - (2.0 - 7.0 * angles)) < 2e-14
 
 
-def test_a_sweep_names_the_design_whose_link_turns_round():
+def test_sweep_names_the_design_that_turns_round():
     import pandas as pd
 
     scene = ks.Scene(BAR, 1.0, 0.0, ks.TorsionSpring(4.0, 1.5, on="rocker"))
@@ -73,7 +73,7 @@ def test_a_sweep_names_the_design_whose_link_turns_round():
     assert "half a turn" in swept["failed"][1]
 
 
-def test_a_program_refuses_values_by_which_a_link_turns_round():
+def test_program_refuses_values_that_turn_round():
     program = ks.compile(ks.Scene(BAR, 1.0, 0.0, ks.TorsionSpring(4.0, 1.5, on="rocker")), "O2", engine="numpy")
     assert np.isfinite(program(0.3, {"torsion_spring.free_angle": 1.2})["O2"]).all()
     with pytest.raises(ks.ParameterError, match="half a turn"):
@@ -87,7 +87,7 @@ def test_a_torque_on_a_slider_is_taken_by_its_guide():
     assert not s.balancing_torque.any()
 
 
-def test_a_torsion_damper_between_links_takes_the_square_of_their_relative_rate():
+def test_torsion_damper_takes_relative_rate_squared():
     damper = ks.TorsionDamper(0.4, on="coupler", against="coupler2")
     s, still = (ks.solve(six_bar(), [0.3, 2.0], crank_speed=3.0, loads=loads) for loads in (damper, ()))
     power = 3.0 * (s.balancing_torque - still.balancing_torque)

@@ -91,7 +91,7 @@ def test_a_registry_that_lacks_the_unit_is_said_so():
         ks.Link(bare.Quantity(3, "ell"))
 
 
-def test_lists_arrays_and_tuples_of_quantities_are_taken_one_by_one():
+def test_lists_and_arrays_of_quantities_convert():
     parts = [UNITS.Quantity(250.0, "mm"), UNITS.Quantity(2.0, "span"), 0.75]
     assert plain(parts, "m") == [0.25, 0.5, 0.75]
     assert plain(tuple(parts), "m") == (0.25, 0.5, 0.75)
@@ -106,7 +106,7 @@ def test_what_is_no_quantity_comes_back_itself():
         assert not is_quantity(value)
 
 
-def test_magnitudes_that_are_no_numbers_are_refused_for_what_they_are():
+def test_wrong_magnitudes_are_refused():
     for magnitude, words in (
         (1j, "complex number"),
         (np.ma.array([1.0]), "masked array"),

@@ -78,7 +78,7 @@ def quantities(s):
 
 
 @pytest.mark.parametrize("name", [*KINDS, "four-bar", "six-bar", "long chain"])
-def test_both_paths_agree_to_30_digits_in_every_quantity(name):
+def test_both_paths_agree_to_30_digits(name):
     checks = 1 if name == "long chain" else 2
     found = {quantity: certified(scene(name), quantity, checks=checks) for quantity in quantities(scene(name))}
     assert max(item.agreement for item in found.values()) < 1e-35
@@ -114,7 +114,7 @@ def worst_error(s, quantity):
 
 
 @pytest.mark.parametrize(("case", "variant"), VARIANTS)
-def test_double_precision_lies_within_5e_15_of_the_largest_value(case, variant):
+def test_double_precision_is_within_5e_15(case, variant):
     s = load_case(case).solve(variant, 360)
     names = ["balancing_torque", *s.reactions, *(["slider_acceleration"] if "slider" in s.mechanism.links else [])]
     errors = {name: worst_error(s, name) for name in names if not (variant in SPRUNG and name == "B")}
@@ -122,7 +122,7 @@ def test_double_precision_lies_within_5e_15_of_the_largest_value(case, variant):
 
 
 @pytest.mark.parametrize("variant", SPRUNG)
-def test_the_slider_pin_force_that_a_spring_nearly_takes_away_lies_within_a_rounding_of_spring_and_inertia(variant):
+def test_nearly_cancelled_pin_force_is_within_rounding(variant):
     """Two forces of 200 kN leave 12 kN: their own rounding is 1e-14 of that."""
     s = load_case("sawframe_2r63").solve(variant, 360)
     reference = certified(s, "B", checks=2)
@@ -200,7 +200,7 @@ def test_a_kernel_wrong_by_1e_27_is_caught(monkeypatch, module, kernel, field, n
         certified(scene(name), quantity)
 
 
-def test_a_guide_is_taken_by_its_direction_not_by_the_rounding_of_its_length():
+def test_guide_is_taken_by_its_direction():
     """The stored pair is 1e-10 too long, which no kernel forgives."""
     x, y = np.cos(0.3) * (1 + 1e-10), np.sin(0.3) * (1 + 1e-10)
     s = ks.solve(ks.crank_slider(0.1, 0.4, guide=ks.Guide(None, 0.05, (x, y)), slider=link(1.0)), FEW, crank_speed=5.0)

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS
-from support.curves import torque_study
+from support.studied import torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -26,9 +26,7 @@ def curve(table, method, first, last):
     ("method", "order", "coarsest", "finest"),
     [("differences, 2nd order", 2, 1e-1, 1e-3), ("differences, 4th order", 4, 3e-1, 3e-2)],
 )
-def test_error_of_differences_falls_with_the_power_of_the_step_that_is_their_order(
-    torque, method, order, coarsest, finest
-):
+def test_difference_error_falls_by_its_order(torque, method, order, coarsest, finest):
     """At steps from which rounding, which the step squared divides, is less than a hundredth of the error."""
     step, error = curve(torque, method, finest, coarsest)
     slopes = np.diff(np.log(error)) / np.diff(np.log(step))
@@ -36,7 +34,7 @@ def test_error_of_differences_falls_with_the_power_of_the_step_that_is_their_ord
 
 
 @pytest.mark.parametrize("method", ["differences, 2nd order", "differences, 4th order"])
-def test_error_of_differences_rises_again_as_rounding_over_the_square_of_the_step(torque, method):
+def test_difference_error_rises_again_by_rounding(torque, method):
     _, error = curve(torque, method, 0.0, 1e-3)
     assert error[-1] > 20 * error.min()
     assert error[-1] < 1e3 * 2.0**-53 / (1e-5 if "2nd" in method else 1e-4) ** 2
@@ -48,13 +46,13 @@ SINGULARITY = np.arccosh(2.0 / 0.3)
 """
 
 
-def test_error_of_spectral_differentiation_falls_geometrically_with_the_samples(torque):
+def test_spectral_error_falls_geometrically(torque):
     samples, error = curve(torque, "spectral differentiation", 8, 24)
     rates = -np.diff(np.log(error)) / np.diff(samples)
     assert rates == pytest.approx(SINGULARITY / 2, rel=0.03)
 
 
-def test_spectral_differentiation_takes_a_turn_from_any_angle_as_studies_of_friction_begin_between_dead_centres():
+def test_spectral_turn_may_begin_at_any_angle():
     pump = ks.crank_slider(0.1, 0.5, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0))
     turn = np.linspace(0, 2 * np.pi, 36, endpoint=False) + np.pi / 36
     rubbing = {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.05, 0.02)}
@@ -67,14 +65,14 @@ def test_spectral_differentiation_takes_a_turn_from_any_angle_as_studies_of_fric
         method.prepare(uneven, "balancing_torque", 32)
 
 
-def test_error_of_harmonic_series_falls_geometrically_with_the_harmonics(torque):
+def test_harmonic_series_error_falls_geometrically(torque):
     """The plain crank-slider on a guide through O has even harmonics only."""
     harmonics, error = curve(torque, "harmonic series", 2, 6)
     rates = -np.diff(np.log(error)) / np.diff(harmonics)
     assert rates == pytest.approx(SINGULARITY, rel=0.03)
 
 
-def test_two_masses_are_no_method_for_a_coupler_with_its_mass_beyond_its_joints():
+def test_two_masses_need_the_mass_between_joints():
     """One of them would be negative, and the table says so."""
     mechanism = ks.crank_slider(0.3, 1.0, coupler=ks.Link(10.0, (-0.2, 0.0), 1.0), slider=ks.Link(5.0))
     solution = ks.solve(mechanism, np.linspace(0, 2 * np.pi, 12, endpoint=False), crank_speed=10.0)

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.studies.methods import configurations, constraints, integration, newton
+from kinetostatics.studies.methods import configurations, constraints, integration, motion, newton
 from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import CHAINS, TURN, error, solved
 from support.machines import CLOSE, KINDS
@@ -27,7 +27,7 @@ every_mechanism = pytest.mark.parametrize("name", [*KINDS, *CHAINS])
 
 
 @every_mechanism
-def test_global_system_gives_every_quantity_of_the_closed_forms(name):
+def test_global_system_equals_closed_forms(name):
     """At the table's own positions, which continuation finds from one position of the library."""
     s = solved(name)
     model = constraints.Model(s.mechanism)
@@ -46,7 +46,7 @@ def test_each_newton_iteration_squares_the_error(name):
     assert all(after < 3 * before**2 + CLOSE for before, after in pairwise(errors)), errors
 
 
-def test_crank_speed_may_vary_over_the_angles_and_these_may_come_in_any_order_beyond_a_turn():
+def test_speed_and_angles_may_vary_freely():
     angle = np.random.default_rng(1).uniform(-8.0, 8.0, 40)
     s = solved("circle", angle, speed=10.0 + np.sin(angle), acceleration=5.0 * np.cos(angle))
     assert error(s, "B", NEWTON.prepare(s, "B", 4)()) < CLOSE
@@ -74,7 +74,7 @@ def test_what_no_constraint_equation_gives_is_refused(method):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.errors.ConditionWarning")
-def test_singular_equations_at_a_change_point_passed_are_refused_in_one_line():
+def test_singular_change_point_is_refused_in_a_line():
     deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", coupler=ks.Link(1.0, 0.1))
     s = ks.solve(deltoid, np.linspace(0.0, 6.0, 7), crank_speed=10.0)
     for method in (NEWTON, *integration.METHODS):
@@ -82,3 +82,59 @@ def test_singular_equations_at_a_change_point_passed_are_refused_in_one_line():
             NotGivenError, match="four-bar passes change points, where constraint equations are singular"
         ):
             method.prepare(s, "balancing_torque", method.settings[-1])()
+
+
+# Integration over the turn
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
+@pytest.mark.parametrize("name", ["plain", "cosine law", "six-bar"])
+def test_error_of_integration_falls_with_its_tolerance(name, method):
+    s = solved(name, acceleration=0.0)
+    limits = (
+        {1e-4: 0.1, 1e-8: 1e-4, 1e-12: 1e-8} if "Baumgarte" in method.name else {1e-4: 1e-4, 1e-8: 1e-11, 1e-12: CLOSE}
+    )
+    for wanted in ("A", "coupler_rate", "balancing_torque"):
+        errors = [error(s, wanted, method.prepare(s, wanted, tolerance)()) for tolerance in limits]
+        assert all(found < limit for found, limit in zip(errors, limits.values(), strict=True)), (wanted, errors)
+        assert all(after < 0.01 * before + CLOSE for before, after in pairwise(errors)), errors
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
+def test_integration_needs_constant_speed(method):
+    s = solved("plain", acceleration=0.0)
+    for change in (
+        {"crank_acceleration": 1.0},
+        {"crank_speed": np.full(TURN.size, 12.0)},
+        {"crank_angle": TURN[::-1]},
+        {"crank_angle": 1.1 * TURN},
+        {"crank_angle": TURN[:1]},
+    ):
+        with pytest.raises(NotGivenError, match="integration runs"):
+            method.prepare(replace(s, **change), "O", 1e-6)
+
+
+# Ways to a motion over time
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", motion.BENCHMARKS)
+@pytest.mark.parametrize(
+    ("method", "setting", "error"),
+    [("ours, NumPy", None, 1e-11), ("reduced inertia, RK45", 1e-7, 1e-3), ("reduced inertia, LSODA", 1e-9, 1e-4)],
+)
+def test_methods_reach_the_published_ends_of_motions(name, method, setting, error):
+    problem = motion.BENCHMARKS[name]()
+    (found,) = (one for one in motion.METHODS if one.name == method)
+    assert abs(found.prepare(problem, "", setting)() - problem.exact) < error
+
+
+@pytest.mark.slow
+def test_constraints_reach_the_published_end():
+    (constraints,) = (one for one in motion.METHODS if one.name.startswith("constraint"))
+    problem = motion.slider_crank()
+    assert abs(constraints.prepare(problem, "", 1e-5)() - problem.exact) < 1e-6
+    with pytest.raises(ks.errors.NotGivenError, match="change points"):
+        constraints.prepare(motion.n_four_bar(), "", 1e-5)

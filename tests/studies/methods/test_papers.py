@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.quantities import components
+from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.studies.methods import METHODS, papers
 from support.sawframe_study import CANCELLED, CASE, CIRCLE, COLUMNS, COSINE, PLAIN, PUBLISHED
 
@@ -21,16 +21,16 @@ def difference(s):
 
 
 @pytest.mark.parametrize("column", [name for name in COLUMNS if name != "as printed"])
-def test_right_sign_agrees_with_the_balance_of_powers_to_rounding(column):
+def test_right_sign_balances_powers_to_rounding(column):
     assert difference(COLUMNS[column][0]) < 1e-10
 
 
-def test_printed_sign_fails_the_balance_of_powers_by_up_to_1176_newton_metres():
+def test_printed_sign_fails_by_1176_newton_metres():
     s, *_ = COLUMNS["as printed"]
     assert difference(s.at(np.radians(np.arange(0, 360, 0.1)))) == pytest.approx(1176, abs=1)
 
 
-def test_block_is_in_equilibrium_with_the_right_sign_only():
+def test_block_balances_with_the_right_sign_only():
     """Forces on the block from coupler, cam and slotted crank; the cam's normal leans back by the pressure angle."""
 
     def unbalanced(s):
@@ -44,19 +44,19 @@ def test_block_is_in_equilibrium_with_the_right_sign_only():
 
 
 @pytest.mark.parametrize("quantity", ["balancing_torque", "cam_force", "slot_force", "O", "A", "B", "guide"])
-def test_exact_cancellation_by_the_library_equals_the_papers_formulas_with_the_right_sign(quantity):
+def test_exact_cancellation_equals_the_papers(quantity):
     ours, theirs = (np.array(components(s, quantity)) for s in (CANCELLED, COLUMNS["right sign"][0]))
     np.testing.assert_allclose(theirs, ours, rtol=0, atol=1e-13 * CIRCLE.largest_force_term)
 
 
-def test_sign_changes_slot_force_and_what_follows_from_it_alone():
+def test_sign_changes_slot_force_and_its_effects():
     printed = COLUMNS["as printed"][0]
     for quantity in ("cam_force", "A", "B", "guide", "slider_acceleration"):
         np.testing.assert_allclose(components(printed, quantity), components(CANCELLED, quantity), rtol=1e-9, atol=1e-7)
     assert np.max(np.abs(printed.slot_force - CANCELLED.slot_force)) > 3e3
 
 
-def test_case_file_has_the_published_coefficients_in_the_order_of_the_crank_angle_and_says_what_they_are_worth():
+def test_case_file_has_the_published_coefficients():
     table = CASE.comparison_table("cam-circle")
     rows = [f"torque extremum {number}" for number in range(1, 5)]
     assert list(table.loc[rows, "published"]) == [f"{value} (ratio)" for value in PUBLISHED["n_d"]]
@@ -65,7 +65,7 @@ def test_case_file_has_the_published_coefficients_in_the_order_of_the_crank_angl
     assert "coincidence" in CASE.published.note
 
 
-def test_method_as_printed_is_studied_apart_from_the_right_ones():
+def test_printed_method_is_studied_apart():
     assert papers.AS_PRINTED in METHODS
     assert papers.AS_PRINTED not in papers.METHODS
     assert "wrong sign" in papers.AS_PRINTED.name
@@ -73,7 +73,7 @@ def test_method_as_printed_is_studied_apart_from_the_right_ones():
 
 
 @pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
-def test_method_as_printed_gives_the_solution_as_printed(quantity):
+def test_printed_method_gives_the_printed_solution(quantity):
     found = papers.AS_PRINTED.prepare(CIRCLE, quantity, None)()
     np.testing.assert_array_equal(found, components(papers.as_printed(CIRCLE), quantity))
 
@@ -87,6 +87,54 @@ def test_method_as_printed_gives_the_solution_as_printed(quantity):
         (ks.load_case("chain_unit").solve("rho-0.1", 8), "circular cam; four-bar has none"),
     ],
 )
-def test_what_the_study_prints_no_equations_for_is_refused(refused, words):
+def test_missing_equations_are_refused(refused, words):
     with pytest.raises(ks.errors.NotGivenError, match=words):
         papers.AS_PRINTED.prepare(refused, "O", None)
+
+
+# Formulas as the studies print them
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("column", COLUMNS)
+def test_coefficients_of_each_reading_of_the_study(column):
+    s, extremum_ratios, mean_ratio, reaction_ratio, cam_force = COLUMNS[column]
+    found = ks.compare(PLAIN, s)
+    np.testing.assert_allclose(found.torque_extremum_ratios, extremum_ratios, rtol=0, atol=5.1e-4)
+    assert found.mean_torque_ratio == pytest.approx(mean_ratio, abs=5.1e-4)
+    assert found.peak_reaction_ratio("O") == pytest.approx(reaction_ratio, abs=5.1e-3)
+    assert found.cam_force_range()[1][1] == pytest.approx(1e3 * cam_force, abs=5.1)
+
+
+@pytest.mark.slow
+def test_printed_extrema_lie_at_their_angles():
+    found = ks.extremes(COLUMNS["as printed"][0], "balancing_torque")
+    np.testing.assert_allclose(np.degrees(found.angle), [48, 137, 224, 311], atol=0.6)
+    assert CIRCLE.at(np.zeros(1)).slider_position[0] == pytest.approx(ks.extremes(CIRCLE, "slider_position").largest)
+
+
+@pytest.mark.slow
+def test_published_figures_follow_the_printed_sign():
+    def errors(s):
+        found = ks.compare(PLAIN, s)
+        pairs = zip(
+            [*found.torque_extremum_ratios, found.mean_torque_ratio], [*PUBLISHED["n_d"], PUBLISHED["k_d"]], strict=True
+        )
+        return [abs(ratio / printed - 1) for ratio, printed in pairs]
+
+    assert max(errors(COLUMNS["as printed"][0])) < 0.007
+    assert ks.compare(PLAIN, COLUMNS["as printed"][0]).peak_reaction_ratio("O") == pytest.approx(
+        PUBLISHED["O"], abs=0.5
+    )
+    for right in (CANCELLED, CIRCLE, COSINE):
+        assert max(errors(right)[:4]) > 0.18
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("column", ["as printed", "right sign", "linear spring"])
+def test_coupler_inertia_force_has_four_extrema(column):
+    """The study counts three: its fourth lies at 0 = 360 degrees, on the edge of the chart."""
+    found = ks.extremes(COLUMNS[column][0], lambda s: magnitude(s.inertia_force("coupler")))
+    angles = (np.degrees(found.angle) + 1) % 360 - 1
+    np.testing.assert_allclose(np.sort(angles), [0, 90.1, 180, 269.9], atol=0.05)
+    np.testing.assert_allclose(found.range, [25.33e3, 53.86e3], atol=5.1)

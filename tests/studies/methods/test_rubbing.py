@@ -8,9 +8,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.studies.methods import certified, independent, integration, kane, newton
+from support.case_files import shipped
 from support.every import every
-from support.rubbing_machines import KINDS, Drawn
-from support.shipped import shipped
+from support.friction_machines import KINDS, Drawn
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
 (NEWTON,) = newton.METHODS
@@ -27,7 +27,7 @@ def difference(s, quantity, found):
 
 @pytest.mark.slow
 @every("kind", KINDS)
-def test_one_linear_system_after_the_other_finds_the_forces_of_the_kernels(kind):
+def test_repeated_linear_systems_equal_the_kernels(kind):
     s = drawn(kind)
     for quantity in ("balancing_torque", *s.reactions, *(name for name in s.scalars if "force" in name)):
         assert difference(s, quantity, NEWTON.prepare(s, quantity, 6)()) < 1e-11, quantity
@@ -35,7 +35,7 @@ def test_one_linear_system_after_the_other_finds_the_forces_of_the_kernels(kind)
 
 @pytest.mark.slow
 @every("kind", KINDS)
-def test_independent_path_confirms_the_kernels_to_30_digits(flint, kind):
+def test_independent_path_confirms_30_digits(flint, kind):
     s = drawn(kind, 2, ANGLES[:2])
     for quantity in ("balancing_torque", *(name for name in s.reactions if "guide" in name)):
         assert certified.certified(s, quantity).agreement < 1e-30
@@ -43,7 +43,7 @@ def test_independent_path_confirms_the_kernels_to_30_digits(flint, kind):
 
 @pytest.mark.slow
 @every("variant", shipped("sawframe_2r63_friction").variants)
-def test_friction_of_the_shipped_saw_is_certified_and_known_to_two_other_methods(flint, variant):
+def test_shipped_saw_friction_is_certified(flint, variant):
     s = shipped("sawframe_2r63_friction").variants[variant].scene.solve(ANGLES)
     assert s.friction
     for quantity in ("balancing_torque", "O", "B"):
@@ -53,7 +53,7 @@ def test_friction_of_the_shipped_saw_is_certified_and_known_to_two_other_methods
             assert ks.precision.relative_errors(found, reference).max() < (1e-13 if method is NEWTON else 1e-8)
 
 
-def test_more_friction_moves_what_a_pin_bears_from_what_it_bears_without():
+def test_friction_changes_the_pin_force():
     """So that agreement is not that of forces which friction leaves alone."""
     s = drawn("four-bar")
     idle = replace(s, friction=type(s.friction)())

@@ -24,7 +24,8 @@ def at(found, degrees):
     return rows
 
 
-def test_a_curve_is_that_of_the_solution_with_its_extremes_closed_at_the_end():
+@pytest.mark.slow
+def test_report_curve_is_the_solutions():
     solutions = subject("sawframe_2r63").solutions
     plot = figures.over_turn(solutions, "balancing_torque")
     found = lines(plot)["line 2"]
@@ -37,20 +38,20 @@ def test_a_curve_is_that_of_the_solution_with_its_extremes_closed_at_the_end():
     assert set(found["variant"]) == {"cam-cosine"}
 
 
-def test_curves_of_shorter_periods_are_repeated_over_the_longest():
+def test_shorter_periods_are_repeated():
     found = lines(figures.over_turn(subject("v_twin").solutions, "balancing_torque"))
     assert [found[f"line {row}"]["angle"][-1] for row in range(3)] == pytest.approx([720, 720, 720])
     value, rows = found["line 0"]["value"], at(found["line 0"], np.arange(721))
     np.testing.assert_allclose(value[rows[360:]], value[rows[:361]], rtol=1e-14)
 
 
-def test_a_machine_without_the_quantity_has_an_empty_line():
+def test_absent_quantity_has_an_empty_line():
     found = lines(figures.over_turn(subject("sawframe_2r63").solutions, "cam_force"))
     assert [len(found[f"line {row}"]["angle"]) > 360 for row in range(3)] == [False, True, True]
     assert len(found["line 0"]["angle"]) == 0
 
 
-def test_a_hodograph_has_the_components_and_a_point_for_each_machine():
+def test_hodograph_has_components_and_points():
     solutions = subject("pumpjack").solutions
     plot = figures.hodograph(solutions, "O")
     for row, solution in enumerate(solutions.values()):
@@ -82,7 +83,7 @@ def test_without_bokeh_it_is_said_how_to_get_it(monkeypatch):
         figures.require()
 
 
-def test_what_grows_without_bound_is_not_drawn_and_sets_no_unit():
+def test_unbounded_values_are_not_drawn():
     with warnings.catch_warnings(action="ignore"):
         solution = near_change_points().solve(360)
         size = np.hypot(*solution.reaction("O"))

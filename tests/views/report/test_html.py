@@ -16,7 +16,7 @@ pytest.importorskip("bokeh")
 HOSTILE = "</script><script>alert(1)</script> \"quoted\" 'n' & <b>x</b> {{ 7*7 }} $$x$$ @y{0} Säge пила 鋸 שלום"
 
 
-def test_the_page_holds_all_it_needs_and_may_ask_for_nothing():
+def test_page_is_self_contained():
     text, _ = page("pumpjack")
     assert "default-src 'none'" in text
     beside = re.sub(r"<script>.*?</script>", "", text, flags=re.S)
@@ -26,7 +26,7 @@ def test_the_page_holds_all_it_needs_and_may_ask_for_nothing():
     assert len(text.encode()) < 6e6
 
 
-def test_the_page_has_a_section_for_each_thing_and_none_that_is_empty():
+def test_page_has_no_empty_section():
     seen = words(page("pumpjack")[0])
     for heading in (
         "At a glance",
@@ -43,7 +43,7 @@ def test_the_page_has_a_section_for_each_thing_and_none_that_is_empty():
     assert 'id="drive"' not in page("pumpjack")[0]
 
 
-def test_the_page_says_version_command_sources_and_files():
+def test_page_names_version_command_and_sources():
     made, seen = subject("pumpjack"), words(page("pumpjack")[0])
     assert f"kinetostatics {ks.__version__}" in seen
     assert COMMAND in seen
@@ -52,7 +52,7 @@ def test_the_page_says_version_command_sources_and_files():
     assert made.files[1][1][:16] in seen
 
 
-def test_hostile_names_and_titles_stand_as_text_and_progress_is_told():
+def test_hostile_names_are_shown_as_text():
     scenes = {HOSTILE: plain(), "plain": plain(crank_speed=20.0)}
     told = []
     text = html.page(subject_of(scenes, title=HOSTILE), told.append)
@@ -86,7 +86,7 @@ def test_warnings_stand_as_remarks():
     assert "no value with a correct digit at all" in seen
 
 
-def test_the_first_angle_shown_is_that_of_the_largest_torque_of_the_reference():
+def test_first_angle_has_the_largest_torque():
     solution = subject("pumpjack").reference.solution
     data = page("pumpjack")[1]
     assert data["start"] == np.argmax(np.abs(solution.balancing_torque))

@@ -1,10 +1,13 @@
 """The public door of reports."""
 
+import shutil
+import stat
 import sys
 
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.errors import FileError
 from kinetostatics.views.report import html, printing
 from support.every import every
 from support.reports import plain, words
@@ -14,7 +17,7 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("bokeh")
 
 
-def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
+def test_report_of_scenes_returns_its_path(tmp_path):
     path = ks.report({"press": plain()}, tmp_path / "new" / "press.html", title="Press")
     assert path == tmp_path / "new" / "press.html"
     assert "Press" in words(path.read_text(encoding="utf-8"))
@@ -25,7 +28,7 @@ def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
     ("", "is a folder"), ("report.txt", "the ending"), ("no.html/report.html", "no.html is no folder"),
     ("bad\0.html", "is no name of a file"),
 ])  # fmt: skip
-def test_a_place_that_cannot_be_written_is_refused_before_any_work(name, message, tmp_path, monkeypatch):
+def test_unwritable_report_is_refused_first(name, message, tmp_path, monkeypatch):
     (tmp_path / "no.html").write_text("x", encoding="utf-8")
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ks.KinetostaticsError, match=message):
@@ -57,7 +60,7 @@ def test_the_case_file_is_not_replaced(tmp_path):
         ks.report(case, case)
 
 
-def test_a_pdf_without_a_browser_is_refused_before_any_work(tmp_path, monkeypatch):
+def test_pdf_without_a_browser_is_refused_first(tmp_path, monkeypatch):
     monkeypatch.setattr(printing, "BROWSERS", ("no-such-browser",))
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is found"):
@@ -85,3 +88,44 @@ def test_what_is_no_name_of_a_file_is_refused(path, pdf):
 def test_letters_that_no_file_can_hold_are_replaced(tmp_path):
     path = ks.report(plain(), tmp_path / "x.html", title="saw \udcff", command="kinetostatics report \udcff.toml")
     assert "saw ?" in words(path.read_text(encoding="utf-8"))
+
+
+# Printing
+
+
+def a_browser(folder, monkeypatch, script):
+    path = folder / "chromium"
+    path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setattr(shutil, "which", lambda name: str(path) if name == "chromium" else None)
+    page = folder / "page.html"
+    page.write_text("<p>page", encoding="utf-8")
+    return page
+
+
+def test_missing_browsers_are_listed(monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(ks.KinetostaticsError, match=r"none of chromium, .* is found: install one, or open the report"):
+        printing.browser()
+
+
+def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
+    place = "--print-to-pdf="
+    write = f'for word in "$@"; do case $word in {place}*) printf "%%PDF-1.4 x" > "${{word#{place}}}";; esac; done'
+    page = a_browser(tmp_path, monkeypatch, write)
+    printing.print_page(page, tmp_path / "page.pdf")
+    assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 x"
+
+
+def test_failed_browser_is_reported(tmp_path, monkeypatch):
+    page = a_browser(tmp_path, monkeypatch, "echo no display here >&2; exit 7")
+    with pytest.raises(FileError, match="ended with status 7 and without a PDF: no display here"):
+        printing.print_page(page, tmp_path / "page.pdf")
+    assert not (tmp_path / "page.pdf").exists()
+
+
+def test_a_browser_that_does_not_end_is_given_up(tmp_path, monkeypatch):
+    page = a_browser(tmp_path, monkeypatch, "exec sleep 30")
+    monkeypatch.setattr(printing, "PATIENCE", 0.2)
+    with pytest.raises(FileError, match="could not print the report"):
+        printing.print_page(page, tmp_path / "page.pdf")

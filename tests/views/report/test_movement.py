@@ -1,6 +1,7 @@
 """Drawings as data: rigid strokes and others come back as they were, arrows have one scale."""
 
 import numpy as np
+import pytest
 
 from kinetostatics.views.report.movement import FILLED, LONGEST, REACH, movements, packed, unpacked
 from kinetostatics.views.shape import Shape
@@ -31,7 +32,8 @@ def test_numbers_come_back_as_they_were_packed():
     np.testing.assert_array_equal(unpacked(packed(values, "<f8"), "<f8"), values)
 
 
-def test_every_stroke_comes_back_as_the_shape_declares_it_in_each_pose():
+@pytest.mark.slow
+def test_strokes_are_restored_in_each_pose():
     for case in ("sawframe_2r63", "mower_drive", "shaper"):
         for machine, drawing in zip(subject(case).machines.values(), drawn(case)["drawings"], strict=True):
             solution = machine.solution
@@ -44,7 +46,7 @@ def test_every_stroke_comes_back_as_the_shape_declares_it_in_each_pose():
                 np.testing.assert_allclose(found, stroke.points, atol=3e-5 * shape.size)
 
 
-def test_links_go_as_poses_springs_as_shapes_and_what_stands_still_as_it_is():
+def test_moving_parts_are_stored_as_poses():
     strokes = drawn("sawframe_2r63")["drawings"][1]["strokes"]
     kinds = {
         stroke["kind"]: "shapes" if "shapes" in stroke else "poses" if "poses" in stroke else "" for stroke in strokes
@@ -55,7 +57,7 @@ def test_links_go_as_poses_springs_as_shapes_and_what_stands_still_as_it_is():
     assert all(stroke["filled"] == (stroke["kind"] in FILLED) for stroke in strokes)
 
 
-def test_the_longest_arrow_has_its_share_of_the_largest_machine_and_all_machines_one_scale():
+def test_arrows_have_one_scale_for_all_machines():
     found = drawn("sawframe_2r63")
     shapes = [Shape(machine.solution) for machine in subject("sawframe_2r63").machines.values()]
     size = max(shape.size for shape in shapes)
@@ -65,7 +67,7 @@ def test_the_longest_arrow_has_its_share_of_the_largest_machine_and_all_machines
     assert np.isclose(found["force"], max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions))
 
 
-def test_the_box_holds_every_joint_and_the_tip_of_every_arrow():
+def test_box_holds_joints_and_arrow_tips():
     found = drawn("shaper")
     left, low, right, high = found["box"]
     for machine in subject("shaper").machines.values():
@@ -82,11 +84,11 @@ def test_the_box_holds_every_joint_and_the_tip_of_every_arrow():
             assert (y <= high + 1e-9).all()
 
 
-def test_arrows_stand_at_the_joints_that_outputs_declare():
+def test_arrows_stand_at_declared_joints():
     assert drawn("sawframe_2r63")["drawings"][0]["arrows"] == {"A": "A", "B": "B", "guide": "B", "O": "O"}
 
 
-def test_a_reaction_that_grows_without_bound_does_not_make_all_others_vanish():
+def test_unbounded_reaction_hides_no_other():
     import warnings
 
     import kinetostatics as ks

@@ -1,15 +1,20 @@
 """Values at the angles of the page are the library's, in units that read well."""
 
+import math
 import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 
+import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.rounding import FLOOR
 from kinetostatics.views.report.movement import unpacked
 from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
+from kinetostatics.views.report.tables import of_frame, times, with_published
+from kinetostatics.views.report.words import angle, pretty
 from support.every import every
 from support.reports import near_change_points, series, subject
 
@@ -19,7 +24,8 @@ def of(case):
     return {"quantities": readings(machines), "counts": [m.solution.crank_angle.size for m in machines.values()]}
 
 
-def test_every_value_is_that_of_the_solution_and_rounding_is_0():
+@pytest.mark.slow
+def test_readings_are_the_solutions_values():
     for case in ("sawframe_2r63", "v_twin"):
         found = of(case)
         for row, machine in enumerate(subject(case).machines.values()):
@@ -34,6 +40,7 @@ def test_every_value_is_that_of_the_solution_and_rounding_is_0():
                 assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
 
 
+@pytest.mark.slow
 def test_extremes_stand_between_the_angles():
     for case in ("sawframe_2r63", "compressor"):
         found = of(case)["quantities"]
@@ -56,7 +63,7 @@ def test_a_quantity_that_a_machine_lacks_stands_empty():
     assert values[1] is not None
 
 
-def test_units_read_well_and_are_the_same_for_all_machines():
+def test_units_are_the_same_for_all_machines():
     found = of("sawframe_2r63")["quantities"]
     assert (found["balancing_torque"]["unit"], found["O"]["unit"]) == ("kN·m", "kN")
     assert found["pressure_angle"]["unit"] == "°"
@@ -65,7 +72,7 @@ def test_units_read_well_and_are_the_same_for_all_machines():
     assert found["O"]["text"] == "ground on crank"
 
 
-def test_forces_stand_before_motion_and_what_never_turns_is_left_out():
+def test_forces_precede_motion():
     names = list(of("sawframe_2r63")["quantities"])
     assert names[0] == "balancing_torque"
     assert names.index("O") < names.index("slider_position")
@@ -80,9 +87,62 @@ def test_decimals_give_the_largest_value_six_digits(largest, count):
     assert decimals(largest) == count
 
 
-def test_a_reaction_near_a_change_point_sets_neither_unit_nor_decimals_nor_scale():
+def test_reaction_near_change_point_sets_no_scale():
     with warnings.catch_warnings(action="ignore"):
         found = readings(subject_of({"a": near_change_points()}).machines)
     assert (found["O"]["unit"], found["O"]["factor"], found["O"]["decimals"]) == ("N", 1.0, 4)
     assert 30.0 < found["O"]["sight"] < 300.0
     assert found["balancing_torque"]["sight"] is None
+
+
+# Tables as text
+
+
+FRAME = pd.DataFrame(
+    {
+        "unit": ["N m", "1"],
+        "plain": [286771.94, 3.16347e-16],
+        "ratio": [6.080751, np.nan],
+        "largest at [deg]": [1e-13, 39.2871],
+    },
+    index=pd.Index(["torque", "power residual"], name="quantity"),
+)
+
+
+def test_frame_becomes_text_with_wanted_digits():
+    found = of_frame(FRAME, "caption", "note")
+    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
+    assert found.rows == [["torque", "N·m", "286772", "6.081", "0.00"], ["power residual", "", "3.2e-16", "", "39.29"]]
+    assert (found.words, found.caption, found.note) == (2, "caption", "note")
+
+
+def test_published_figures_stand_in_brackets():
+    found = with_published(FRAME, {"torque": {"plain": "about 287 kN m"}}, "x.toml", "")
+    assert found.rows[0][2] == "286772 (about 287 kN m)"
+
+
+def test_misplaced_published_figures_are_refused():
+    published = {"torqe": {"plain": "1"}, "torque": {"plan": "1"}}
+    with pytest.raises(ks.CaseError, match=r"2 problems[\s\S]*row is 'torqe'[\s\S]*column of 'torque' is 'plan'"):
+        with_published(FRAME, published, "x.toml", "")
+
+
+def test_a_ratio_says_how_many_times():
+    assert [times(ratio) for ratio in (6.0807, np.nan, np.inf)] == ["6.081 ×", "", "∞ ×"]
+
+
+# Numbers and units as a reader wants them
+
+
+@every("unit, text", [
+    ("N m", "N·m"), ("kg m2", "kg·m²"), ("kg m^2", "kg·m²"), ("m/s2", "m/s²"), ("rad/s", "rad/s"), ("deg", "°"),
+    ("1", ""), ("", ""),
+    ("N/m**3", "N/m³"),
+])  # fmt: skip
+def test_units_have_raised_exponents_and_dots(unit, text):
+    assert pretty(unit) == text
+
+
+def test_an_angle_of_rounding_is_zero():
+    assert angle(1.1e-13) == angle(-1e-9) == "0.00"
+    assert angle(math.nan) == ""

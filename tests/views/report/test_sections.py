@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 RUBBING = partial(subject, "sawframe_2r63_friction", "cam-cosine")
 
 
-def test_glance_has_a_row_for_each_machine_with_torque_gain_and_power_balance():
+def test_glance_has_a_row_for_each_machine():
     found = sections.glance(subject("sawframe_2r63"))
     saw = ks.load_case("sawframe_2r63").compare("plain", "cam-cosine")
     cells = dict(zip(found.columns, table_of(found, "cam-cosine"), strict=True))
@@ -27,13 +27,13 @@ def test_glance_has_a_row_for_each_machine_with_torque_gain_and_power_balance():
     assert "power lost [W]" not in found.columns
 
 
-def test_glance_tells_the_power_lost_where_something_rubs():
+def test_glance_shows_lost_power():
     found = sections.glance(RUBBING())
     lost = RUBBING().machines["plain"].solution.losses.total
     assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
 
 
-def test_comparison_of_all_machines_stands_in_one_table_with_ratios_and_published_figures():
+def test_comparison_of_all_machines_is_one_table():
     (found,) = sections.comparisons(subject("sawframe_2r63"))
     assert found.columns == ["", "unit", "plain", "cam-circle", "cam-cosine", "published"]
     row = table_of(found, "mean |balancing torque|")
@@ -55,7 +55,7 @@ def test_one_machine_is_compared_with_nothing():
     assert sections.comparisons(subject_of(plain())) == []
 
 
-def test_extremes_are_those_of_the_library_with_their_digits():
+def test_report_extremes_are_the_librarys():
     made = subject("pumpjack")
     for machine, found in zip(made.machines.values(), sections.extremes(made), strict=True):
         assert found.caption == machine.name
@@ -73,7 +73,7 @@ def test_where_digits_are_lost_fewer_are_shown():
     assert found < sections._digits(plain().solve(360), "B", np.array([0.0, 180.0]))
 
 
-def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
+def test_certainty_names_power_balance_and_condition():
     found = sections.certainty(RUBBING())
     assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 2
     assert all(
@@ -82,7 +82,7 @@ def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
     assert " at " in table_of(found, "condition: lengths' relative errors are magnified up to")[1]
 
 
-def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
+def test_rounding_bounds_are_shown():
     row = "rounding error of the torque, proven bound [N·m]"
     idle = np.max(subject("shaper").machines["idle"].solution.error_bound("balancing_torque"))
     assert idle <= float(table_of(sections.certainty(subject("shaper")), row)[2]) < 1.1 * idle
@@ -98,7 +98,7 @@ def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
     assert rubbing[1][1] == "not proven at 1 of 360 angles"
 
 
-def test_the_torque_is_calculated_by_hand_for_each_machine_at_the_angle_first_shown():
+def test_torque_is_explained_for_each_machine():
     made = subject("pumpjack")
     found = sections.calculations(made, 13)
     assert list(found) == list(made.machines)
@@ -107,7 +107,7 @@ def test_the_torque_is_calculated_by_hand_for_each_machine_at_the_angle_first_sh
         assert explained.conclusion in unescape(found[name])
 
 
-def test_a_machine_that_no_formula_is_known_of_has_no_calculation(monkeypatch):
+def test_unknown_formula_has_no_calculation(monkeypatch):
     made = subject_of({"own": plain(), "plain": plain()})
 
     def unknown(*_):
@@ -117,7 +117,7 @@ def test_a_machine_that_no_formula_is_known_of_has_no_calculation(monkeypatch):
     assert sections.calculations(made, 3) == {}
 
 
-def test_losses_stand_for_each_machine_that_rubs_with_their_sum():
+def test_losses_are_listed_with_their_sum():
     tables = sections.losses(RUBBING())
     assert [table.caption for table in tables] == list(RUBBING().machines)
     assert table_of(tables[0], "all")[2] == "100"
@@ -137,7 +137,7 @@ def test_drive_is_told_for_machines_with_a_motor_alone():
     assert sections.driven(subject("pumpjack")) == ({}, [], [])
 
 
-def test_a_motor_that_is_too_weak_is_told_in_place_of_its_table(tmp_path):
+def test_weak_motor_replaces_its_table(tmp_path):
     text = ks.load_case("sawframe_2r63").path.read_text(encoding="utf-8")
     weak = text.replace("[variants.plain]\n", "[variants.plain]\nfriction = { guide = { mu = 0.9 } }\n")
     weak = weak.replace('"55 kW"', '"5 W"')
@@ -148,7 +148,7 @@ def test_a_motor_that_is_too_weak_is_told_in_place_of_its_table(tmp_path):
     assert reasons[0].startswith("plain: ")
 
 
-def test_inputs_are_parted_into_what_is_common_and_what_is_not():
+def test_inputs_are_split_into_common_and_own():
     common, apart = sections.inputs(subject("sawframe_2r63"))
     assert table_of(common, "slider.mass") == ["slider.mass", "kg", "600"]
     assert table_of(common, "gravity.direction") == ["gravity.direction", "°", "-90"]

@@ -5,12 +5,12 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.report.subject import subject_of
+from support.case_files import shipped
 from support.every import every
 from support.reports import plain, subject
-from support.shipped import shipped
 
 
-def test_machines_of_a_case_stand_in_its_order_with_the_reference_first():
+def test_reference_machine_comes_first():
     found = subject("mower_drive")
     assert list(found.machines) == ["unbalanced", "full", "partial-1", "partial-2", "partial-3", "optimal"]
     assert found.reference.name == shipped("mower_drive").reference
@@ -18,12 +18,12 @@ def test_machines_of_a_case_stand_in_its_order_with_the_reference_first():
 
 
 @pytest.mark.slow
-def test_one_variant_stands_beside_the_reference_and_the_reference_alone():
+def test_single_variant_stands_beside_reference():
     assert list(subject("mower_drive", "full").machines) == ["unbalanced", "full"]
     assert list(subject("mower_drive", "unbalanced").machines) == ["unbalanced"]
 
 
-def test_angles_are_whole_degrees_over_the_period_of_each_machine():
+def test_angles_are_whole_degrees():
     found = subject("v_twin")
     assert [machine.solution.crank_angle.size for machine in found.machines.values()] == [360, 360, 720]
     np.testing.assert_allclose(np.degrees(found.machines["firing"].solution.crank_angle), np.arange(720), atol=1e-12)
@@ -39,12 +39,13 @@ def test_a_long_period_has_a_longer_step_common_to_all():
     assert [machine.solution.crank_angle.size for machine in found.machines.values()] == [1200, 120]
 
 
-def test_words_of_a_case_file_stand_as_the_numbers_derived():
+def test_words_of_the_case_become_numbers():
     given = subject("sawframe_2r63").machines["cam-cosine"].given
     assert given["spring.stiffness"] == (pytest.approx(673764.99), "N/m")
     assert given["coupler_length"] == (pytest.approx(2.02190518), "m")
 
 
+@pytest.mark.slow
 def test_scenes_have_their_labels_and_units():
     found = subject_of({"light": plain(), "heavy": plain().varied({"slider.mass": 80.0})})
     assert found.title == "crank-slider"

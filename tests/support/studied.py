@@ -1,9 +1,35 @@
-"""Scenes whose needs are looked for, and what a simplification changes in them."""
+"""Scenes and methods for tests of studies."""
+
+from functools import cache
 
 import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies import precision
+from kinetostatics.studies.methods import METHODS
+
+FEW = [
+    method
+    for method in METHODS
+    if method.name
+    in (
+        "ours, NumPy",
+        "ours, torque by powers",
+        "differences, 2nd order",
+        "differences, 4th order",
+        "spectral differentiation",
+        "harmonic series",
+        "two-mass coupler",
+    )
+]
+
+
+@cache
+def torque_study():
+    """The study of one case, the plain sawframe."""
+    return precision.study(ks.load_case("sawframe_2r63").solve("plain", 48), methods=FEW, repeats=1)
+
 
 TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
 SPEED = 30.0

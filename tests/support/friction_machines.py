@@ -1,4 +1,4 @@
-"""Random mechanisms whose joints rub, each as the library has it and as `rubbing.System` of its own geometry."""
+"""Random mechanisms with friction in their joints, each for the package and as `multibody.System`."""
 
 import math
 
@@ -7,7 +7,7 @@ import numpy as np
 
 import kinetostatics as ks
 
-from .rubbing import Body, Pin, Roller, Slide, System, circle
+from .multibody import Body, Pin, Roller, Slide, System, circles_meet
 
 RUBBED = ks.crank_slider(
     0.1,
@@ -32,7 +32,7 @@ class Drawn:
 
     def __init__(self, kind, seed, scale=1.0):
         self.rng, self.scale = np.random.default_rng([KINDS.index(kind), seed]), scale
-        self.bodies, self.joints, self.friction, self.applied = {}, {}, {}, []
+        self.bodies, self.poses, self.joints, self.friction, self.applied = {}, {}, {}, {}, []
         self.r = self.real(0.08, 0.15)
         getattr(self, "_" + kind.replace("-", "_").replace(" ", "_"))()
         self.speed = float(self.rng.choice([-1, 1]) * self.real(3.0, 40.0))
@@ -48,6 +48,7 @@ class Drawn:
         x, y = (item.vector for item in self.scene.loads if isinstance(item, ks.Gravity)).__next__()
         self.system = System(
             self.bodies,
+            self.poses,
             self.joints,
             mp.mpf(self.speed),
             mp.mpf(self.acceleration),
@@ -68,7 +69,7 @@ class Drawn:
         mass = self.real(0.1, 9)
         inertia = self.inertia(mass)
         centre = self.real(-0.1, 0.2), self.real(-0.05, 0.05)
-        self.bodies[name] = Body(point, direction, mass, mp.mpc(*centre), inertia)
+        self.bodies[name], self.poses[name] = Body(mass, centre, inertia), (point, direction)
         return ks.Link(mass, centre, inertia)
 
     def pin(self, name, on, against, at):
@@ -150,7 +151,7 @@ class Drawn:
         a = self.r
         b, h, pivot = self.real(2, 3) * a, self.real(2.2, 3) * a, (self.real(2, 2.5) * a, self.real(-0.5, 0.5) * a)
         side, O2 = int(self.rng.choice([-1, 1])), mp.mpc(*pivot)
-        B = lambda phi: circle(self.A(phi), b, O2, h, side)  # noqa: E731
+        B = lambda phi: circles_meet(self.A(phi), b, O2, h, side)  # noqa: E731
         q = lambda phi: (B(phi) - self.A(phi)) / b  # noqa: E731
         p = lambda phi: (B(phi) - O2) / h  # noqa: E731
         group = ks.RockerGroup(
@@ -190,7 +191,7 @@ class Drawn:
         point = lambda phi: along * mp.expj(phi)  # noqa: E731
         one, two = self.real(4, 5) * self.r, self.real(4, 5) * self.r
         side = int(self.rng.choice([-1, 1]))
-        D = lambda phi: circle(self.B(phi), one, point(phi), two, side)  # noqa: E731
+        D = lambda phi: circles_meet(self.B(phi), one, point(phi), two, side)  # noqa: E731
         dyad = ks.Dyad(
             one,
             two,
@@ -271,11 +272,7 @@ class Drawn:
         self.mechanism = ks.Mechanism("yoke", crank, (group,))
 
 
-def by_newton(drawn, angle):
-    return drawn.system.solved(angle)
-
-
-def differences(kind, seed, scale=1.0, changed=None, solver=by_newton):
+def differences(kind, seed, scale=1.0, changed=None):
     """Largest difference of forces, friction, losses and torque from a full system, relative; and the solution."""
     drawn = Drawn(kind, seed, scale)
     if changed is not None:
@@ -283,7 +280,7 @@ def differences(kind, seed, scale=1.0, changed=None, solver=by_newton):
     angle = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
     solution = drawn.scene.solve(angle)
     with mp.workdps(40):
-        forces, torque, friction, loss = solver(drawn, angle)
+        forces, torque, friction, loss = drawn.system.forces(angle)
         pins = {name: complex(forces[name]) for name, joint in drawn.joints.items() if isinstance(joint, Pin)}
         size = max(map(abs, pins.values()))
         found = [abs(complex(*solution.reaction(name)) - force) for name, force in pins.items()]
