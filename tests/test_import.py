@@ -11,7 +11,7 @@ import kinetostatics as ks
 
 pytestmark = pytest.mark.slow
 
-HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "sympy")
+HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "scipy.stats", "sympy")
 FEW = 3
 """Modules that importing the package may load, the standard library's aside."""
 
@@ -30,6 +30,16 @@ def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
     count, heavy = printed(code).splitlines()
     assert 1 <= int(count) <= FEW
     assert heavy == "[]"
+
+
+@pytest.mark.parametrize("arguments", [["list"], ["run", "sawframe_2r63"], ["compare", "sawframe_2r63"]])
+def test_a_command_loads_no_library_that_it_does_not_use(arguments):
+    used = {"numba", "pydantic"} if arguments != ["list"] else set()
+    code = (
+        f"import sys; from kinetostatics.cli import main; status = main({arguments}); "
+        f"print([status, *(name for name in {tuple(name for name in HEAVY if name not in used)} if name in sys.modules)])"
+    )
+    assert printed(code).splitlines()[-1] == "[0]"
 
 
 def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():

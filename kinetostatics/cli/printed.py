@@ -67,12 +67,19 @@ def print_table(table, bounds=None):
     tells by how much numbers may be wrong, if that is known.
     """
     index = table.index.to_frame(index=False, name=table.index.name or "index")
-    columns = [(str(name), [_cell(value) for value in index.iloc[:, at]]) for at, name in enumerate(index)]
+    columns = [(name, index.iloc[:, at]) for at, name in enumerate(index)]
     for at, name in enumerate(table):
-        errors = [0.0] * len(table) if bounds is None else bounds.iloc[:, at]
-        cells = map(_cell, table.iloc[:, at], errors, [str(name)] * len(table))
-        columns.append((str(name), list(cells)))
-    for place, part in enumerate(_parts(columns, width())):
+        columns.append((name, table.iloc[:, at], *([] if bounds is None else [bounds.iloc[:, at]])))
+    print_columns(*columns)
+
+
+def print_columns(*columns):
+    """Print a table as `print_table` does, of columns: heading, values and, if known, bounds on their errors."""
+    texts = []
+    for heading, values, *bounds in columns:
+        errors = bounds[0] if bounds else [0.0] * len(values)
+        texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
+    for place, part in enumerate(_parts(texts, width())):
         print(("\n" if place else "") + _drawn(part))
 
 

@@ -82,5 +82,5 @@ def _size(text, unit):
 
 def _deviation(text, unit):
     """Standard deviation of a spread, SI."""
-    ((distribution, given),) = spreads.distributions({"": text}).values()
-    return float(distribution.std()) * factor(given, unit)
+    spread = spreads.spread_of(text)
+    return spread.deviation * factor(spread.unit, unit)

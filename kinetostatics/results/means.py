@@ -115,6 +115,7 @@ def _torque(turn, angle):
 
 def _mean_of_absolute_torque(turn):
     """Mean, about how much it may be wrong, rounding of the values, and panels of the sum."""
+
     def torque(angle):
         return _torque(turn, angle)
 

@@ -29,7 +29,7 @@ def test_all_that_cannot_be_read_is_told_at_once_with_the_forms_there_are():
         assert words in str(caught.value)
 
 
-@every("reader", [spreads.axis, spreads._distribution])
+@every("reader", [spreads.axis, spreads.spread_of])
 @every("given", ["70..85:10", "70 .. 85", "uniform 70..85", "triangular 70..80..85", "normal 80 +- 2"])
 def test_numbers_without_a_unit_are_said_to_have_none(reader, given):
     with pytest.raises(ks.ParameterError, match=r'it has no unit \("1" where there is none\); write "600'):
@@ -40,3 +40,13 @@ def test_numbers_without_a_unit_are_said_to_have_none(reader, given):
 def test_bare_numbers_are_refused_with_the_forms_there_are(given):
     with pytest.raises(ks.ParameterError, match=r'each with its unit; write "600\.\.900 kN/m:40" for a grid'):
         spreads.read({"crank_length": given}, spreads.axis)
+
+
+@every(
+    "given",
+    ["600..900 kN/m", "normal 712 kN/m +- 5 kN/m", *(f"triangular 69..{mode}..78 kN/m" for mode in (69, 71, 76))],
+)
+def test_median_and_deviation_are_those_of_the_distribution(given):
+    spread = spreads.spread_of(given)
+    assert spread.median == pytest.approx(spread.distribution.median(), rel=1e-14)
+    assert spread.deviation == pytest.approx(spread.distribution.std(), rel=1e-14)

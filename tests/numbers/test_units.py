@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from kinetostatics.numbers.units import base_factor, factor, quoted, to_si
+from kinetostatics.numbers import units
+from kinetostatics.numbers.units import USUAL_UNITS, base_factor, factor, quoted, to_si
 
 
 @pytest.mark.parametrize(
@@ -64,3 +65,16 @@ def test_long_values_are_shown_short():
 def test_advice_is_in_the_units_of_drawings(text, unit, advice):
     with pytest.raises(ValueError, match=f"write for example {advice}$"):
         to_si(text, unit)
+
+
+def test_usual_units_are_those_of_pint():
+    for name in USUAL_UNITS:
+        scale, base, zero = units._by_pint(((name, 1),))
+        own, powers, _ = units._by_table(((name, 1),))
+        assert own == pytest.approx(scale, rel=3e-16)
+        assert (powers, zero) == (base, 0.0)
+
+
+def test_products_of_usual_units_are_exact():
+    assert factor("g cm^2", "kg m^2") == 1e-7
+    assert factor("kN/mm", "N/m") == 1e6

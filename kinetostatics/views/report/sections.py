@@ -81,7 +81,11 @@ def _coefficients(subject):
     for machine in subject.others:
         frames[machine.name], bounds[machine.name] = subject.comparison(machine)
     rows = []
-    more = {row for other, frame in frames.items() for row in left_out(frame, [name, other])}
+    more = {
+        row
+        for other, frame in frames.items()
+        for row in left_out(dict(zip(frame.index, frame[[name, other]].to_numpy(), strict=True)))
+    }
     for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index if row not in more):
         with_row = [other for other, frame in frames.items() if quantity in frame.index]
         known = [frames[other].loc[quantity] for other in with_row]
