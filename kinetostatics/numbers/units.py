@@ -26,8 +26,8 @@ _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
 
 
-_PREFIXES = {"": 1, "k": 10**3, "M": 10**6, "m": Fraction(1, 10**3)}
-_PREFIXED = {
+_PREFIXES: dict[str, Fraction | int] = {"": 1, "k": 10**3, "M": 10**6, "m": Fraction(1, 10**3)}
+_PREFIXED: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "m": (1, {"meter": 1}),
     "g": (Fraction(1, 1000), {"kilogram": 1}),
     "s": (1, {"second": 1}),
@@ -38,7 +38,7 @@ _PREFIXED = {
     "rad": (1, {"radian": 1}),
 }
 _DEGREE = Fraction(math.pi) / 180, {"radian": 1}
-USUAL_UNITS = {
+USUAL_UNITS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     **{
         prefix + name: (scale * size, base)
         for prefix, scale in _PREFIXES.items()

@@ -240,8 +240,7 @@ def left_out(rows):
     if len(labels) <= MOST:
         return []
     columns = np.array([rows[label] for label in labels], dtype=float).T
-    columns = [column for column in columns if not np.isnan(column).all()]
-    ends = {find(column) for column in columns for find in (np.nanargmin, np.nanargmax)}
+    ends = {find(column) for column in columns if not np.isnan(column).all() for find in (np.nanargmin, np.nanargmax)}
     return [label for place, label in enumerate(labels) if place not in ends]
 
 
