@@ -6,7 +6,7 @@ import textwrap
 
 from ..numbers import checks, files
 from ..numbers.headings import parted
-from ..numbers.shown import number
+from ..numbers.formatting import number
 from ..views.report.tables import require_places
 
 STDOUT = "-"

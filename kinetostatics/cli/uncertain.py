@@ -5,7 +5,7 @@ from functools import partial
 
 from ..errors import ParameterError
 from ..numbers import checks, spreads
-from ..numbers.shown import about, at_most
+from ..numbers.formatting import about, at_most
 from ..numbers.units import factor, to_si
 from ..solution.tolerated import largest_with_uncertainty, with_uncertainty
 from .printed import print_table, say

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from html import escape
 from typing import NamedTuple
 
-from ..numbers.shown import number
+from ..numbers.formatting import number
 from .formulas import CALLS
 from .symbols import Symbol
 

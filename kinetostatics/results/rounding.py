@@ -11,7 +11,7 @@ from ..engines.engines import NUMPY
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale, unit_of
 from ..numbers.lazy import cached_property
-from ..numbers.shown import number
+from ..numbers.formatting import number
 
 FLOOR = 1e-13
 """Size, relative to the terms that a quantity is made of, below which it is rounding: neither a value nor a rise."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import unit_of
-from ...numbers.shown import DIGITS, at_most
+from ...numbers.formatting import DIGITS, at_most
 from ...results.comparison import left_out
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import CaseError
 from ...numbers import checks
-from ...numbers.shown import DIGITS
+from ...numbers.formatting import DIGITS
 from .words import angle, number, pretty
 
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}

@@ -2,8 +2,8 @@
 
 import math
 
-from ...numbers import shown
-from ...numbers.shown import DIGITS
+from ...numbers import formatting as shown
+from ...numbers.formatting import DIGITS
 
 SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from kinetostatics.numbers.shown import at_most, number
+from kinetostatics.numbers.formatting import at_most, number
 from support.every import every
 
 
