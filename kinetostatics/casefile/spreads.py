@@ -1,7 +1,7 @@
 """The tolerances of a case file: what is wrong with them, and units that look like slips."""
 
 from ..errors import KinetostaticsError
-from ..numbers.headings import heading, si_columns
+from ..numbers.formatting import heading, si_columns
 from ..numbers.spreads import read, spread_of
 from ..numbers.units import base_factor
 

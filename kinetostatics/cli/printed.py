@@ -5,8 +5,7 @@ import sys
 import textwrap
 
 from ..numbers import checks, files
-from ..numbers.headings import parted
-from ..numbers.formatting import number
+from ..numbers.formatting import angle, number, parted
 from ..views.report.tables import require_places
 
 STDOUT = "-"
@@ -94,9 +93,10 @@ def with_published(table, published, path):
 
 
 def _cell(value, bound=0.0, heading=""):
-    """A number as all tables show it, an angle with the digits that six digits of a turn have."""
-    angle = parted(heading)[1] == "deg" and not isinstance(value, str)
-    return number(round(value, 3) if angle else value, bound=0.0 if isinstance(bound, str) else bound)
+    """A value as text."""
+    return (
+        angle(value) if parted(heading)[1] == "deg" else number(value, bound=0.0 if isinstance(bound, str) else bound)
+    )
 
 
 def _parts(columns, room):

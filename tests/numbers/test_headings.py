@@ -2,7 +2,7 @@
 
 import pytest
 
-from kinetostatics.numbers.headings import heading, parted, si_columns
+from kinetostatics.numbers.formatting import heading, parted, si_columns
 
 
 @pytest.mark.parametrize(

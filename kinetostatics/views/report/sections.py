@@ -6,12 +6,11 @@ import numpy as np
 
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import unit_of
-from ...numbers.formatting import DIGITS, at_most
+from ...numbers.formatting import DIGITS, angle, at_most, digits_of, pretty
 from ...results.comparison import left_out
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
-from .tables import Table, digits_of, of_frame, times, with_published
-from .words import angle, number, pretty
+from .tables import Table, number, of_frame, times, with_published
 
 FIGURES = 15.95
 """Digits of a double number."""
