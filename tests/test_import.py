@@ -5,7 +5,7 @@ import pickle
 import shutil
 import subprocess
 import sys
-from importlib import resources
+from importlib import import_module, resources
 from pathlib import Path
 
 import pytest
@@ -15,7 +15,7 @@ from kinetostatics import errors, version
 
 pytestmark = pytest.mark.slow
 
-HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "sympy")
+HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "scipy.stats", "sympy")
 FEW = 3
 """Modules that importing the package may load, the standard library's aside."""
 
@@ -36,14 +36,38 @@ def test_import_is_light():
     assert heavy == "[]"
 
 
+@pytest.mark.parametrize("arguments", [["list"], ["run", "sawframe_2r63"], ["compare", "sawframe_2r63"]])
+def test_commands_load_only_what_they_use(arguments):
+    used = {"numba", "pydantic"} if arguments != ["list"] else set()
+    code = f"import sys; from kinetostatics.cli import main; status = main({arguments}); print(status, *sys.modules)"
+    status, *loaded = printed(code).splitlines()[-1].split()
+    assert status == "0"
+    assert not ({*HEAVY} - used) & {*loaded}
+
+
+@pytest.mark.parametrize("package", [ks, ks.design])
+def test_stub_places_every_public_name(package):
+    """Type checkers read it, and so does the package when a name is first used."""
+    stub = Path(package.__file__).with_suffix(".pyi").read_text("utf-8")
+    places = [
+        (item.module, alias)
+        for item in ast.parse(stub).body
+        if isinstance(item, ast.ImportFrom)
+        for alias in item.names
+    ]
+    assert all(alias.asname == alias.name for _, alias in places)  # only these are names for type checkers
+    assert sorted(alias.name for _, alias in places) == package.__all__
+    assert set(package.__all__) <= set(dir(package))
+    for module, alias in places:
+        place = f"{package.__name__}.{module or alias.name}"
+        found = getattr(import_module(place), alias.name, None) if module else import_module(place)
+        assert getattr(package, alias.name) is (found or import_module(f"{place}.{alias.name}"))
+
+
 def test_public_names_are_complete():
     found: dict = {}
     exec("from kinetostatics import *", found)
     assert set(ks.__all__) <= set(found)
-    assert set(ks.__all__) <= set(dir(ks))
-    (checked,) = [item for item in ast.parse(Path(ks.__file__).read_text("utf-8")).body if isinstance(item, ast.If)]
-    shown = {item.module or "": [name.name for name in item.names] for item in checked.body}
-    assert shown == ks._WHERE
 
 
 def test_name_is_looked_up_once():

@@ -119,15 +119,20 @@ class Case:
         >>> list(case.with_published(case.compare("plain", "cam-cosine").frame()))
         ['unit', 'plain', 'cam-cosine', 'ratio', 'published']
         """
+        printed = self.published_of(table.index)
+        return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
+
+    def published_of(self, rows):
+        """Published figures by row, each with what it is in brackets; `CaseError` for one that has no row here."""
         printed = {
             quantity: f"{text} ({column})"
             for column in ("ratio", "value")
             for quantity, text in getattr(self.published, column).items()
         }
-        problems = [self._row_problem(quantity, table.index) for quantity in printed]
+        problems = [self._row_problem(quantity, rows) for quantity in printed]
         if any(problems):
             raise CaseError(self.path, [f"published: {problem}" for problem in problems if problem])
-        return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
+        return printed
 
     def _row_problem(self, quantity, rows):
         """What is wrong with the row that a published figure belongs to; one that other variants have is right."""
@@ -193,7 +198,7 @@ def load_case(path) -> Case:
     286772 N
     """
     path, raw = reading.read(reading.place(path))
-    head, problems = reading.validated(schema.CaseTable, raw, lambda keys: keys)
+    head, problems = schema.validated(schema.CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
     common = raw.get("common", {})
@@ -236,13 +241,13 @@ def _variant(name, own, common, folder, problems):
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
         problems += _kind_problems(kind, merged, place)
         return None
-    table, found = reading.validated(schema.VARIANTS[kind], merged, place)
+    table, found = schema.validated(schema.VARIANTS[kind], merged, place)
     problems += found
     if table is None:
         return None
 
     def tell(error):
-        problems.extend(f"{reading.key_path(place(keys))}: {text}" for keys, text in error.problems)
+        problems.extend(f"{schema.key_path(place(keys))}: {text}" for keys, text in error.problems)
 
     try:
         read = build.tabulated(table, folder)
@@ -272,8 +277,8 @@ def _variant(name, own, common, folder, problems):
 
 def _kind_problems(kind, merged, place):
     """What is wrong with a variant of no kind there is; if it is clear which is meant, with the rest of it too."""
-    path, meant = reading.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
+    path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
     wrong = [f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS))]
     if meant is None:
         return wrong
-    return wrong + reading.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
+    return wrong + schema.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]

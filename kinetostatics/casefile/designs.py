@@ -13,7 +13,7 @@ from ..design.problem import bounds
 from ..design.torque_free import torque_free_cam
 from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
-from . import reading, schema
+from . import schema
 
 CAM = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
 """Keys of a torque-free cam as `torque_free_cam` takes them."""
@@ -101,7 +101,7 @@ def designs_of(tables, reference, variants, problems):
     """Designs by name, of tables as they stand in the file; what is wrong with them is added to the problems."""
     found = {}
     for name, raw in tables.items():
-        read, wrong = reading.validated(schema.OneDesign, {"design": raw}, lambda keys, name=name: _place(name, keys))
+        read, wrong = schema.validated(schema.OneDesign, {"design": raw}, lambda keys, name=name: _place(name, keys))
         problems += wrong
         if read is None:
             continue

@@ -1,9 +1,9 @@
 """The tolerances of a case file: what is wrong with them, and units that look like slips."""
 
 from ..errors import KinetostaticsError
-from ..numbers.headings import si_columns
+from ..numbers.formatting import heading, si_columns
+from ..numbers.spreads import read, spread_of
 from ..numbers.units import base_factor
-from ..sweeps import designs
 
 FAR_OFF = 300.0
 """How many times a tolerance may be above or below its parameter before its unit is doubted."""
@@ -15,7 +15,7 @@ def spread_problems(spreads, variants):
     for name, text in spreads.items():
         columns = [name]
         try:
-            columns = designs.columns(designs.distributions({name: text}))
+            columns = [heading(name, read({name: text}, spread_of)[name].unit)]
         except KinetostaticsError as error:
             yield f"tolerances: {str(error).removeprefix('designs: ')}"
         if all(variants.values()):
@@ -25,8 +25,8 @@ def spread_problems(spreads, variants):
 def far_off(spreads, variants):
     """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
     for name, text in spreads.items():
-        distribution, unit = designs.distributions({name: text})[name]
-        size = max(abs(float(distribution.median())), float(distribution.std())) * base_factor(unit)
+        spread = spread_of(text)
+        size = max(abs(spread.median), spread.deviation) * base_factor(spread.unit)
         nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
         if nominal and all(not 1 / FAR_OFF < size / value < FAR_OFF for value in nominal):
             si = next(paths[name] for item in variants.values() if name in (paths := item.units))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..numbers import checks, files
 from . import machine
-from .printed import chosen, of_variants, print_table, require_writable, say, tell
+from .printed import chosen, of_variants, print_columns, print_table, require_writable, say, tell
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """What is written of an explanation, by the ending of its file."""
@@ -17,8 +17,6 @@ STARTERS = ("crank-slider", "four-bar", "chain")
 
 
 def list_cases(options):
-    import pandas as pd
-
     from ..casefile.reading import read, shipped_cases
 
     raw = {name: (read(path)[1], path) for name, path in shipped_cases().items()}
@@ -29,6 +27,8 @@ def list_cases(options):
     if machine.wants_json(options):
         machine.print_json("list", cases=cases)
     elif machine.wants_csv(options):
+        import pandas as pd
+
         machine.print_csv(pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases]))
     else:
         breadth = max(map(len, raw)) + 2
@@ -100,7 +100,7 @@ def _extremes(solution, given):
 
 def _print_extremes(case, solutions, given, options):
     from ..results.losses import lose
-    from ..results.tables import extremes_by_name, frames
+    from ..results.tables import SHOWN, extremes_by_name
     from . import uncertain
 
     say(case.title)
@@ -108,9 +108,13 @@ def _print_extremes(case, solutions, given, options):
         print(f"\n{name}: {solution.mechanism.name}\n")
         found = extremes_by_name(solution)
         del found[CHECKED]
-        table, bounds = frames(found)
-        table.columns = [column.removeprefix("smallest ").removeprefix("largest ") for column in table.columns]
-        print_table(table, bounds)
+        rows = found.values()
+        heads = ("quantity", [row.quantity.label for row in rows]), ("unit", [row.quantity.unit for row in rows])
+        ends, errors = (
+            list(zip(*parts, strict=True)) for parts in zip(*((row.ends, row.errors) for row in rows), strict=True)
+        )
+        names = [name.removeprefix("smallest ").removeprefix("largest ") for name in SHOWN]
+        print_columns(*heads, *zip(names, ends, errors, strict=True))
         say(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"

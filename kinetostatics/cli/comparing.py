@@ -1,15 +1,15 @@
 """The command ``compare``: dynamic coefficients of the variants of a case, published figures beside ours."""
 
+from math import isnan, nan
+
 from ..errors import CaseError
 from . import machine
-from .printed import print_table, require_writable, say, with_published
+from .printed import print_columns, print_table, require_writable, say, with_published
 
 RESIDUAL = "power residual"
 
 
 def compare(options):
-    import pandas as pd
-
     from ..casefile.case import load_case
     from ..results.comparison import Comparison
 
@@ -26,93 +26,101 @@ def compare(options):
         name: Comparison(reference, case.solve(name), (case.reference, name))
         for name in machine.progress(options, names, "comparing")
     }
-    tables = {name: case.with_published(comparison.frame()) for name, comparison in found.items()}
     special = {
         "balancing": ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
         "linkage": ("swing and transmission", case.linkage_table(), case.published.linkage),
     }
     special = {key: item for key, item in special.items() if item[1] is not None}
     if machine.wants_json(options):
-        _print_json(case, tables, special)
+        _print_json(case, found, special)
     elif not machine.quiet(options):
-        _print(case, tables, {name: comparison.error_bounds() for name, comparison in found.items()}, special)
+        _print(case, found, special)
     if options.csv:
-        rows = [_with_roles(case, name, table).reset_index() for name, table in tables.items()]
-        machine.give_csv(options, pd.concat(rows))
+        import pandas as pd
+
+        machine.give_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
 
 
-def _with_roles(case, name, table):
-    """Columns of a comparison by what they are, in place of the names of the variants."""
+def _with_roles(case, name, comparison):
+    """Table of a comparison with columns by what they are, in place of the names of the variants."""
+    table = case.with_published(comparison.frame())
     table = table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
     table.insert(1, "variant_name", name)
     table.insert(1, "reference_name", case.reference)
     return table
 
 
-def _print_json(case, tables, special):
+def _print_json(case, found, special):
     machine.print_json(
         "compare",
         case=machine.of_case(case),
         ratios="reference / variant; above 1 the variant has less",
         variants={
-            name: machine.rows(_with_roles(case, name, table).drop(columns=["reference_name", "variant_name"]))
-            for name, table in tables.items()
+            name: machine.rows(_with_roles(case, name, comparison).drop(columns=["reference_name", "variant_name"]))
+            for name, comparison in found.items()
         },
         **{key: {"values": table.to_dict(), "published": published} for key, (_, table, published) in special.items()},
     )
 
 
-def _print(case, tables, bounds, special):
+def _print(case, found, special):
     from ..results.comparison import left_out
 
+    tables = {name: {row.label: row for row in comparison.rows} for name, comparison in found.items()}
+    published = [case.published_of(list(table)) for table in tables.values()]
     say(case.title)
     if case.published.note:
         say("\n" + " ".join(case.published.note.split()))
-    for heading, table, published in special.values():
-        say(f"\n{heading}{'; published figures in brackets' if published else ''}\n")
-        print_table(with_published(table, published, case.path))
+    for heading, table, figures in special.values():
+        say(f"\n{heading}{'; published figures in brackets' if figures else ''}\n")
+        print_table(with_published(table, figures, case.path))
+    residual = max(max(table[RESIDUAL].pair) for table in tables.values())
+    labels = [label for label in _in_order([list(table) for table in tables.values()]) if label != RESIDUAL]
+    first = {label: next(table[label] for table in tables.values() if label in table) for label in labels}
+    values = {label: [row.pair[0], *_of_all(tables, label, "pair")] for label, row in first.items()}
+    bounds = {label: [row.bounds[0], *_of_all(tables, label, "bounds")] for label, row in first.items()}
+    ratios = {label: _of_all(tables, label, "ratio") for label in labels}
+    bounds_of_ratios = {label: _of_all(tables, label, "bound_of_ratio") for label in labels}
+    more = left_out(values)
+    shown = [label for label in labels if label not in more]
+    heads = ("quantity", shown), ("unit", [first[label].unit for label in shown])
+    columns = _columns([case.reference, *tables], shown, values, bounds)
     if len(tables) == 1:
-        ((name, table),) = tables.items()
+        (name,) = tables
         say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
-        more = left_out(table, [case.reference, name])
-        _print_known(table.drop(index=[RESIDUAL, *more]), bounds[name])
+        columns += _columns(["ratio"], shown, ratios, bounds_of_ratios)
+        texts = [("published", [published[0].get(label, "") for label in shown])] if published[0] else []
+        print_columns(*heads, *columns, *texts)
     else:
         say(f"\nvalues of {case.reference} and of what it is compared with\n")
-        values, ratios = _values(case, tables), _ratios(case, tables)
-        more = left_out(values, [case.reference, *tables])
-        _print_known(values.drop(index=more), _values(case, bounds))
+        print_columns(*heads, *columns, *_published(shown, case.published.value))
         say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
-        _print_known(ratios.drop(index=more, errors="ignore"), _ratios(case, bounds))
+        shown = [label for label in shown if not all(map(isnan, ratios[label]))]
+        columns = _columns(tables, shown, ratios, bounds_of_ratios)
+        print_columns(("quantity", shown), *columns, *_published(shown, case.published.ratio))
     if more:
         say(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
-    residual = max(float(table.loc[RESIDUAL, list(table.columns[1:3])].max()) for table in tables.values())
     say(f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power")
 
 
-def _print_known(table, bounds):
-    """A table with the digits that bounds on its numbers leave, which some rows and columns have not."""
-    print_table(table, bounds.reindex(index=table.index, columns=table.columns))
+def _of_all(tables, label, name):
+    """An attribute of the row of each table; of a pair that of the variant, NaN of tables without the row."""
+    found = [getattr(table[label], name) if label in table else nan for table in tables.values()]
+    return [item[1] if isinstance(item, tuple) else item for item in found]
 
 
-def _values(case, tables):
-    """Values of the reference and all variants side by side; rows that only some have among the others."""
-    import pandas as pd
-
-    both = [table.drop(index=RESIDUAL) for table in tables.values()]
-    rows = _in_order([list(table.index) for table in both])
-    shared = pd.concat([table.iloc[:, :2] for table in both])
-    shared = shared[~shared.index.duplicated()].loc[rows]
-    others = {name: table.iloc[:, 2].reindex(rows) for name, table in zip(tables, both, strict=True)}
-    return _with_published_column(shared.assign(**others), case.published.value)
+def _columns(headings, shown, values, bounds):
+    """Columns to print, of values and bounds by row."""
+    return [
+        (heading, [values[label][at] for label in shown], [bounds[label][at] for label in shown])
+        for at, heading in enumerate(headings)
+    ]
 
 
-def _ratios(case, tables):
-    """Ratios to all variants side by side, of what has any."""
-    import pandas as pd
-
-    rows = _in_order([list(table.index) for table in tables.values()])
-    found = pd.DataFrame({name: table["ratio"].reindex(rows) for name, table in tables.items()}).dropna(how="all")
-    return _with_published_column(found.rename_axis("quantity"), case.published.ratio)
+def _published(shown, figures):
+    """Column of published figures, if rows have any."""
+    texts = [figures.get(label, "") for label in shown]
+    return [("published", texts)] if any(texts) else []
 
 
 def _in_order(lists):
@@ -127,8 +135,3 @@ def _in_order(lists):
                 found.insert(place, name)
                 place += 1
     return found
-
-
-def _with_published_column(table, published):
-    texts = [published.get(row, "") for row in table.index]
-    return table.assign(published=texts) if any(texts) else table

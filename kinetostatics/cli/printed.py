@@ -5,8 +5,7 @@ import sys
 import textwrap
 
 from ..numbers import checks, files
-from ..numbers.headings import parted
-from ..numbers.shown import number
+from ..numbers.formatting import angle, number, parted
 from ..views.report.tables import require_places
 
 STDOUT = "-"
@@ -67,12 +66,19 @@ def print_table(table, bounds=None):
     tells by how much numbers may be wrong, if that is known.
     """
     index = table.index.to_frame(index=False, name=table.index.name or "index")
-    columns = [(str(name), [_cell(value) for value in index.iloc[:, at]]) for at, name in enumerate(index)]
+    columns = [(name, index.iloc[:, at]) for at, name in enumerate(index)]
     for at, name in enumerate(table):
-        errors = [0.0] * len(table) if bounds is None else bounds.iloc[:, at]
-        cells = map(_cell, table.iloc[:, at], errors, [str(name)] * len(table))
-        columns.append((str(name), list(cells)))
-    for place, part in enumerate(_parts(columns, width())):
+        columns.append((name, table.iloc[:, at], *([] if bounds is None else [bounds.iloc[:, at]])))
+    print_columns(*columns)
+
+
+def print_columns(*columns):
+    """Print a table as `print_table` does, of columns: heading, values and, if known, bounds on their errors."""
+    texts = []
+    for heading, values, *bounds in columns:
+        errors = bounds[0] if bounds else [0.0] * len(values)
+        texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
+    for place, part in enumerate(_parts(texts, width())):
         print(("\n" if place else "") + _drawn(part))
 
 
@@ -87,9 +93,10 @@ def with_published(table, published, path):
 
 
 def _cell(value, bound=0.0, heading=""):
-    """A number as all tables show it, an angle with the digits that six digits of a turn have."""
-    angle = parted(heading)[1] == "deg" and not isinstance(value, str)
-    return number(round(value, 3) if angle else value, bound=0.0 if isinstance(bound, str) else bound)
+    """A value as text."""
+    return (
+        angle(value) if parted(heading)[1] == "deg" else number(value, bound=0.0 if isinstance(bound, str) else bound)
+    )
 
 
 def _parts(columns, room):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..numbers import checks, files
-from ..numbers.headings import parted
+from ..numbers.formatting import parted
 from . import machine
 from .printed import chosen, print_table, require_writable, say, write_table
 

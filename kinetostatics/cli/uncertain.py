@@ -5,7 +5,7 @@ from functools import partial
 
 from ..errors import ParameterError
 from ..numbers import checks, spreads
-from ..numbers.shown import about, at_most
+from ..numbers.formatting import about, at_most
 from ..numbers.units import factor, to_si
 from ..solution.tolerated import largest_with_uncertainty, with_uncertainty
 from .printed import print_table, say
@@ -82,5 +82,5 @@ def _size(text, unit):
 
 def _deviation(text, unit):
     """Standard deviation of a spread, SI."""
-    ((distribution, given),) = spreads.distributions({"": text}).values()
-    return float(distribution.std()) * factor(given, unit)
+    spread = spreads.spread_of(text)
+    return spread.deviation * factor(spread.unit, unit)

@@ -19,6 +19,7 @@ from ..machine.loads import is_given
 from ..machine.pairs import Rolling, Sliding
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
+from ..numbers.brackets import find_roots
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from .driven import STEP, Driven, State, apart
@@ -283,8 +284,6 @@ class RubbingDriven(Driven):
         Friction torque always resists the motion, so the root lies beyond that without friction, `rest / inertia`, on
         the side to which friction points there.
         """
-        from scipy.optimize import elementwise
-
         every = np.arange(rest.size)
         start = rest / inertia
         first = friction_at(start, every)
@@ -301,9 +300,7 @@ class RubbingDriven(Driven):
         def left(share, place):
             return friction_at(start[place] + share * reach[place], place) + inertia[place] * share * reach[place]
 
-        share = elementwise.find_root(
-            left, (0.0 * rest, 0.0 * rest + 1.0), args=(every,), tolerances={"xatol": SHARE}
-        ).x
+        share = find_roots(left, 0.0 * rest, 0.0 * rest + 1.0, SHARE)
         acceleration = start + share * reach
         friction = friction_at(acceleration, every)
         with np.errstate(invalid="ignore"):

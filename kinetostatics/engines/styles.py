@@ -4,7 +4,7 @@ from collections.abc import Callable
 from html import escape
 from typing import NamedTuple
 
-from ..numbers.shown import number
+from ..numbers.formatting import exact, number
 from .formulas import CALLS
 from .symbols import Symbol
 
@@ -74,9 +74,7 @@ def _hold_of(value):
 
 def in_digits(value, exactly=False):
     """A number to 6 digits, or as short as tells it exactly."""
-    if exactly:
-        return repr(value).removesuffix(".0")
-    return number(value) or "nan"
+    return exact(value) if exactly else number(value) or "nan"
 
 
 GREEK = {

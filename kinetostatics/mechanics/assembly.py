@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import AssemblyError, ParameterError
 from ..machine.loads import TURN
 from ..machine.placement import require_positions
+from ..numbers.brackets import find_minima, find_roots
 from ..numbers.elementary import ROUNDING
 from . import quantities
 
@@ -105,8 +106,6 @@ def intervals(mechanism, group, design=(), angles=()):
     Found on a grid of half a degree, at the given angles and where the closure margin is smallest between them, each
     end by root finding on the margin.
     """
-    from scipy.optimize import elementwise
-
     margin, whole = _margin(mechanism, group, design), TURN * mechanism.turns
     grid = np.concatenate([_grid(mechanism), np.mod(angles, whole)])
     with np.errstate(invalid="ignore"):
@@ -118,8 +117,7 @@ def intervals(mechanism, group, design=(), angles=()):
         change = np.flatnonzero(gap != np.roll(gap, -1))
         if not change.size:
             return tuple((float(angle), float(angle)) for angle in angles[margin(angles) < 0])
-        root = elementwise.find_root(margin, (ends[change], ends[change + 1]))
-    edges = root.x
+        edges = find_roots(lambda angle, _: margin(angle), ends[change], ends[change + 1])
     starts, stops = edges[~gap[change]], edges[gap[change]]
     if stops.size and stops[0] < starts[0]:
         stops = np.roll(stops, -1)
@@ -186,8 +184,6 @@ def _grid(mechanism):
 
 def _lowest(margin, mechanism, below):
     """Crank angles of the local minima of a margin that may be less than `below`, found between half degrees."""
-    from scipy.optimize import elementwise
-
     grid = _grid(mechanism)
     samples = margin(grid)
     before, after = np.roll(samples, 1), np.roll(samples, -1)
@@ -197,8 +193,8 @@ def _lowest(margin, mechanism, below):
         return place
     step = TURN / STEPS
     with np.errstate(invalid="ignore"):
-        found = elementwise.find_minimum(margin, (place - step, place, place + step))
-    lowest = np.where(margin(found.x) < margin(place) - ROUNDING, found.x, place)
+        found = find_minima(lambda angle, _: margin(angle), (place - step, place, place + step))
+    lowest = np.where(margin(found) < margin(place) - ROUNDING, found, place)
     return lowest[margin(lowest) < below]
 
 

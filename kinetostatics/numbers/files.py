@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import CaseError, FileError
 from . import checks
-from .headings import heading, tolerant
+from .formatting import heading, tolerant
 from .texts import on_disk
 from .units import NUMBER, factor, quoted
 
@@ -62,7 +62,7 @@ def read_columns(path, wanted):
     path : path
         Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
         numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out. Before
-        the heading there may be comments, lines that begin with ``#``. Names are read as `headings.tolerant` has it.
+        the heading there may be comments, lines that begin with ``#``. Names are read as `formatting.tolerant` has it.
     wanted : dict
         Column name to SI unit.
 

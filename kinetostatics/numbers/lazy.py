@@ -1,9 +1,10 @@
-"""Properties that are computed when first read, and kept; pyplot, loaded when a figure is drawn."""
+"""What is loaded or computed when first used, and kept: public names, properties, pyplot."""
 
 import functools
 import os
 import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
@@ -22,7 +23,45 @@ else:
             return found
 
 
-__all__ = ["cached_property", "pyplot"]
+__all__ = ["cached_property", "public_name", "pyplot"]
+
+
+@functools.cache
+def _stub(package):
+    """Function that loads a name of a package's stub `__init__.pyi`, and the names."""
+    import lazy_loader
+
+    load, _, names = lazy_loader.attach_stub(package, sys.modules[package].__file__)
+    return load, names
+
+
+def public_name(package, name, otherwise=lambda name: ""):
+    """Public name of a package as its stub says where it is; for ``"__all__"`` the list of names.
+
+    Parameters
+    ----------
+    package, name : str
+    otherwise : function
+        What the error says of a name that is not near any.
+    """
+    missing = f"module {package!r} has no attribute {name!r}"
+    if name.startswith("_") and name != "__all__":  # Python itself asks for these
+        raise AttributeError(missing, name=name, obj=sys.modules[package])
+    load, names = _stub(package)
+    if name == "__all__":
+        return names
+    if name not in names:
+        from .checks import hint
+
+        raise AttributeError(missing + (hint(name, names) or otherwise(name)), name=name, obj=sys.modules[package])
+    try:
+        found = load(name)
+    except AttributeError as error:
+        if error.name != name or not isinstance(error.obj, ModuleType):
+            raise
+        found = import_module(f"{error.obj.__name__}.{name}")  # a module of that room, not loaded yet
+    setattr(sys.modules[package], name, found)
+    return found
 
 
 def pyplot():

@@ -4,8 +4,10 @@ Or quantities of pint: the values of a grid; ``(low, high)``, ``("normal", mean,
 likeliest, high)``.
 """
 
+import math
 import re
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,7 +62,7 @@ def distributions(spreads):
     >>> float(found.mean()), float(found.std()), unit
     (712.0, 5.0, 'kN/m')
     """
-    return read(spreads, _distribution)
+    return {name: (found.distribution, found.unit) for name, found in read(spreads, spread_of).items()}
 
 
 def read(spreads, reader):
@@ -125,25 +127,67 @@ def axis(given):
     return np.linspace(low, high, int(match[4])), _known(match[3])
 
 
-def _distribution(given):
-    """Distribution of the values, and their unit."""
-    from scipy import stats
+class Spread(NamedTuple):
+    """How a number spreads.
 
-    name, numbers, unit = _spread(given)
-    if name == "uniform":
-        low, high = _rising(numbers)
-        return stats.uniform(low, high - low), unit
-    if name == "triangular":
-        low, likeliest, high = _rising(numbers)
-        return stats.triang((likeliest - low) / (high - low), low, high - low), unit
-    mean, deviation = numbers
-    if deviation <= 0:
+    Attributes
+    ----------
+    kind : "uniform", "triangular" or "normal"
+    numbers : list of float
+        Low, likeliest and high value, without the likeliest of a uniform one; mean and standard deviation.
+    unit : str
+    """
+
+    kind: str
+    numbers: list
+    unit: str
+
+    @property
+    def distribution(self):
+        """That of scipy.stats, frozen."""
+        from scipy import stats  # takes 0.9 s
+
+        low, *middle, high = self.numbers
+        if self.kind == "normal":
+            return stats.norm(low, high)
+        if self.kind == "uniform":
+            return stats.uniform(low, high - low)
+        return stats.triang((middle[0] - low) / (high - low), low, high - low)
+
+    @property
+    def median(self):
+        """Median of the values."""
+        low, *middle, high = self.numbers
+        if self.kind == "normal":
+            return low
+        if self.kind == "uniform" or 2.0 * middle[0] == low + high:
+            return 0.5 * (low + high)
+        end, other = (low, high) if 2.0 * middle[0] > low + high else (high, low)  # the end far from the likeliest
+        return end + math.copysign(math.sqrt(0.5 * (other - end) * (middle[0] - end)), other - end)
+
+    @property
+    def deviation(self):
+        """Standard deviation of the values."""
+        low, *middle, high = self.numbers
+        if self.kind == "normal":
+            return high
+        if self.kind == "uniform":
+            return math.sqrt((high - low) ** 2 / 12.0)
+        return math.sqrt(((high - low) ** 2 - (middle[0] - low) * (high - middle[0])) / 18.0)
+
+
+def spread_of(given):
+    """`Spread` of a text or of quantities; `ValueError` if it is none."""
+    spread = Spread(*_parts(given))
+    if spread.kind != "normal":
+        _rising(spread.numbers)
+    elif spread.numbers[1] <= 0:
         raise ValueError("the standard deviation must be greater than 0")
-    return stats.norm(mean, deviation), unit
+    return spread
 
 
-def _spread(given):
-    """Kind of the distribution, its numbers, and their unit."""
+def _parts(given):
+    """Kind of the spread, its numbers, and their unit."""
     if not isinstance(given, str):
         named = isinstance(given, list | tuple) and len(given) > 1 and isinstance(given[0], str)
         name, quantities = (given[0], given[1:]) if named else ("uniform", given)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .content import LIBRARY, key_of, of_class
+from .fingerprint import LIBRARY, key_of, of_class
 from .leaves import NUMBER, PART, TABLE, Axis, Kept, Leaves, Opaque, field_kinds
 
 

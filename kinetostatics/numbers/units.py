@@ -1,12 +1,14 @@
-"""Text with a unit ("300 mm", "320 rpm") to SI, read with pint. An angle is no plain number: 5 Hz is no crank speed.
+"""Text with a unit ("300 mm", "320 rpm") to SI. An angle is no plain number: 5 Hz is no crank speed.
 
 Numbers are written in ASCII digits with a decimal point and no thousands separators. A unit is a product or quotient of
-names with small whole powers ("kN/mm", "kg m^2", "1/s"), worked from left to right; nothing else reaches pint.
+names with small whole powers ("kN/mm", "kg m^2", "1/s"), worked from left to right. A table knows the usual names.
+pint, which takes half a second to load, is asked for others only, and gets nothing but names and powers.
 """
 
 import math
 import re
 import unicodedata
+from fractions import Fraction
 from functools import cache, partial
 
 NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
@@ -22,6 +24,38 @@ _FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|°[CF]?|%)(?:(?:\^|\*\*)?([-+]?[1-9])
 _BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
 _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
+
+
+_PREFIXES: dict[str, Fraction | int] = {"": 1, "k": 10**3, "M": 10**6, "m": Fraction(1, 10**3)}
+_PREFIXED: dict[str, tuple[Fraction | int, dict[str, int]]] = {
+    "m": (1, {"meter": 1}),
+    "g": (Fraction(1, 1000), {"kilogram": 1}),
+    "s": (1, {"second": 1}),
+    "N": (1, {"kilogram": 1, "meter": 1, "second": -2}),
+    "Pa": (1, {"kilogram": 1, "meter": -1, "second": -2}),
+    "J": (1, {"kilogram": 1, "meter": 2, "second": -2}),
+    "W": (1, {"kilogram": 1, "meter": 2, "second": -3}),
+    "rad": (1, {"radian": 1}),
+}
+_DEGREE = Fraction(math.pi) / 180, {"radian": 1}
+USUAL_UNITS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
+    **{
+        prefix + name: (scale * size, base)
+        for prefix, scale in _PREFIXES.items()
+        for name, (size, base) in _PREFIXED.items()
+    },
+    "cm": (Fraction(1, 100), {"meter": 1}),
+    "t": (1000, {"kilogram": 1}),
+    "min": (60, {"second": 1}),
+    "h": (3600, {"second": 1}),
+    "GPa": (10**9, {"kilogram": 1, "meter": -1, "second": -2}),
+    "bar": (10**5, {"kilogram": 1, "meter": -1, "second": -2}),
+    "deg": _DEGREE,
+    "degree": _DEGREE,
+    "rpm": (Fraction(math.pi) / 30, {"radian": 1, "second": -1}),
+    "percent": (Fraction(1, 100), {}),
+}
+"""By name the exact factor to SI base units, and the powers of these, by the names that pint gives them."""
 
 
 @cache
@@ -88,7 +122,7 @@ def of_quantity(quantity):
     unit = f"{quantity.units:~C}" or "1"
     base_factor(unit)
     theirs = quantity._REGISTRY.Quantity(1.0, quantity.units).to_root_units()
-    ours = _registry().Quantity(1.0, _spelled_for_pint(unit)).to_root_units()
+    ours = _registry().Quantity(1.0, _spelled_for_pint(_parts(unit))).to_root_units()
     if str(theirs.units) != str(ours.units) or not math.isclose(theirs.magnitude, ours.magnitude, rel_tol=1e-12):
         raise ValueError(f'unit "{unit}" is another in the registry of the quantity than here; give it in one of SI')
     return unit
@@ -99,21 +133,18 @@ def base_factor(given):
     return factor(given, given)
 
 
+@cache
 def _base(given, unit):
-    """Factor to base units, and these."""
-    import pint
-
-    registry = _registry()
+    """Factor to base units, and their powers by name; `unit` is the one wanted, for the message."""
     try:
-        units = registry.parse_units(_spelled_for_pint(given))
-        scale, base = registry.get_base_units(units)
-        nothing = registry.Quantity(0.0, units).to_base_units().magnitude
-    except (pint.PintError, ValueError, TypeError, AttributeError):
+        parts = _parts(given)
+        scale, base, zero = _by_table(parts) if USUAL_UNITS.keys() >= {name for name, _ in parts} else _by_pint(parts)
+    except ValueError:
         scale = None
     if scale is None or not 0 < scale < math.inf:
         remedy = "" if given == unit else f'; give one that converts to "{unit}"'
         raise ValueError(f'unit "{quoted(given)[1:-1]}" is not known{remedy}')
-    if nothing != 0.0:
+    if zero != 0.0:
         raise ValueError(
             f'unit "{given}" has a zero of its own, so that twice its number is not twice as much; give a unit whose '
             "zero is nothing, as K, or delta_degC for a difference"
@@ -121,19 +152,48 @@ def _base(given, unit):
     return scale, base
 
 
-def _spelled_for_pint(text):
-    """The unit as a plain expression; `ValueError` unless it is a product or quotient of names with small powers."""
+def _by_table(parts):
+    """Factor to base units, their powers, and 0.0, the value in base units of the number 0."""
+    scale, base = Fraction(1), dict.fromkeys(("meter", "kilogram", "second", "radian"), 0)
+    for name, power in parts:
+        size, inner = USUAL_UNITS[name]
+        scale *= Fraction(size) ** power
+        for part, exponent in inner.items():
+            base[part] += power * exponent
+    return float(scale), {part: exponent for part, exponent in base.items() if exponent}, 0.0
+
+
+def _by_pint(parts):
+    """The same by pint; `ValueError` for a name that it does not know."""
+    import pint
+
+    registry = _registry()
+    try:
+        units = registry.parse_units(_spelled_for_pint(parts))
+        scale, base = registry.get_base_units(units)
+        return scale, dict(base._units), registry.Quantity(0.0, units).to_base_units().magnitude
+    except (pint.PintError, TypeError, AttributeError) as error:
+        raise ValueError(str(error)) from None
+
+
+def _spelled_for_pint(parts):
+    return "*".join(f"{name}**{power}" for name, power in parts) or "1"
+
+
+def _parts(text):
+    """Names and powers that a unit is the product of; `ValueError` unless it is one of names with small powers."""
     if len(text) > LONGEST:
         raise ValueError("too long")
-    spelled, place = [], 0
-    if reciprocal := re.match(r"\s*1\s*(?=/|per\b|$)", text):
-        spelled, place = ["1"], reciprocal.end()
+    reciprocal = re.match(r"\s*1\s*(?=/|per\b|$)", text)
+    parts: list[tuple[str, int]] = []
+    place = reciprocal.end() if reciprocal else 0
     while place < len(text):
-        if spelled:
+        sign = 1
+        if parts or reciprocal:
             between = _BETWEEN.match(text, place)
             if not between:
                 raise ValueError("two names touch")
-            spelled.append("/" if between[0].strip() in ("/", "per") else "*")
+            sign = -1 if between[0].strip() in ("/", "per") else 1
             place = between.end()
         found = _FACTOR.match(text, place)
         if not found:
@@ -141,11 +201,11 @@ def _spelled_for_pint(text):
         if found[1] in ("ton", "tons"):
             raise ValueError("short, long or metric; t and tonne are clear")
         power = found[2] or ("3" if found[3] == "³" else "2" if found[3] else "1")
-        spelled.append(f"{found[1].replace('°', 'degree').replace('%', 'percent')}**{int(power)}")
+        parts.append((found[1].replace("°", "degree").replace("%", "percent"), sign * int(power)))
         place = found.end()
-    if not spelled:
+    if not parts and not reciprocal:
         raise ValueError("no unit")
-    return "".join(spelled)
+    return tuple(parts)
 
 
 def quoted(value, most=80):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..machine.loads import in_rows
+from ..numbers.brackets import find_roots
 
 ASIDE = 1e-3
 """Crank angle from 0, rad, so that no sample meets a dead centre."""
@@ -21,7 +22,6 @@ def sign_changes(function, period, samples):
     samples : int
         Crank angles over the period between which each changes its sign once at most, or twice where it turns about.
     """
-    from scipy.optimize import elementwise
 
     def signs(angle):
         with np.errstate(all="ignore"):
@@ -36,7 +36,6 @@ def sign_changes(function, period, samples):
     low, high, row = _brackets(signs, values, angle)
     if not low.size:
         return row, low
-    asked = np.arange(low.size).reshape(low.shape)
     known = np.nan_to_num(row).astype(int)
 
     def own(angle, asked):
@@ -44,8 +43,9 @@ def sign_changes(function, period, samples):
         everywhere.flat[asked] = angle
         return np.take_along_axis(signs(everywhere), known[None], axis=0)[0].flat[asked]
 
-    root = elementwise.find_root(own, (low, high), args=(asked,)).x
-    ends = np.where(own(low, asked) == 0.0, low, high)
+    root = find_roots(own, low, high)
+    first = own(low.ravel(), np.arange(low.size)).reshape(low.shape)
+    ends = np.where(first == 0.0, low, high)
     return row, np.mod(np.where(np.isnan(root), ends, root), period)
 
 

@@ -109,7 +109,7 @@ class Comparison:
 
         What is rounding, within its proven bound or beside the largest force or torque of its mechanism, stands as 0.
         """
-        return self._as_frame((row.label, row.unit, *row.values, row.ratio) for row in self._rows)
+        return self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
 
     def error_bounds(self):
         """By how much the numbers of `frame` may be wrong by rounding, a pandas DataFrame of the same rows and columns.
@@ -117,20 +117,19 @@ class Comparison:
         NaN where nothing is proven: of means, of what is no quantity of the solution, and where there is no
         `Solution.error_bound`.
         """
-        return self._as_frame((row.label, row.unit, *row.bounds, row.bound_of_ratio) for row in self._rows)
+        return self._as_frame((row.label, row.unit, *row.bounds, row.bound_of_ratio) for row in self.rows)
 
     def _as_frame(self, rows):
         import pandas as pd
 
-        kept = [row for known, row in zip(self._rows, rows, strict=True) if not np.isnan(known.values).all()]
-        return pd.DataFrame(kept, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
+        return pd.DataFrame(list(rows), columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
 
     @cached_property
-    def _rows(self):
-        """All rows of the table."""
-        return list(self._made_rows())
+    def rows(self):
+        """Rows of `frame`, a list: `label`, `unit`, the `pair` of values, `ratio` and bounds on the errors of each."""
+        return [row for row in self._all_rows() if not np.isnan(row.pair).all()]
 
-    def _made_rows(self):
+    def _all_rows(self):
         yield self._row("mean |balancing torque|", TORQUE, self.mean_torques)
         yield from self._torque_extrema()
         yield from self._lost()
@@ -138,11 +137,11 @@ class Comparison:
             yield self._largest(f"largest {label_of(self.reference, name)}", name)
         for bar in self.reference.mechanism.couplers:
             for which, pair in zip(ENDS, zip(*self.inertia_force_range(bar.link), strict=True), strict=True):
-                yield _Row(f"{which} {bar.link} inertia force", "N", pair, np.nan)
+                yield Row(f"{which} {bar.link} inertia force", "N", pair, np.nan)
         for which, find in ENDS.items():
             pair, errors = self._ends("cam_force", find)
-            yield _Row(f"{which} cam force", "N", pair, np.nan, errors)
-        yield _Row("power residual", "1", tuple(solution.power_residual for solution in self._both), np.nan)
+            yield Row(f"{which} cam force", "N", pair, np.nan, errors)
+        yield Row("power residual", "1", tuple(solution.power_residual for solution in self._both), np.nan)
 
     @property
     def _both(self):
@@ -183,7 +182,7 @@ class Comparison:
         """A row of a quantity of both mechanisms, 0 where it is rounding."""
         each = zip(self._both, values, errors, strict=True)
         pair = tuple(float(without_rounding(solution, name, [value], error)[0]) for solution, value, error in each)
-        return _Row(label, unit_of(self.reference, name), pair, _ratio(*pair), errors)
+        return Row(label, unit_of(self.reference, name), pair, _ratio(*pair), errors)
 
     def _largest(self, label, name):
         """A row of the largest magnitudes of a quantity."""
@@ -200,7 +199,7 @@ class Comparison:
             yield self._row(f"{EXTREMUM} {number}", TORQUE, pair, error)
         paired = np.isfinite(matched)
         peaks = self._largest("largest |balancing torque|", TORQUE)
-        for shown, peak in zip((reference.value, matched), peaks.values, strict=True):
+        for shown, peak in zip((reference.value, matched), peaks.pair, strict=True):
             if not np.isclose(np.abs(shown[paired]), peak, rtol=1e-9).any():
                 yield peaks
                 return
@@ -212,33 +211,37 @@ class Comparison:
         both = [solution.losses for solution in self._both]
         for name in dict.fromkeys(name for losses in both for name in losses.lost):
             powers = tuple(losses.lost.get(name, np.nan) for losses in both)
-            yield _Row(f"mean power lost, {name}", "W", powers, _ratio(*powers))
-        yield _Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio)
-        yield _Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan)
+            yield Row(f"mean power lost, {name}", "W", powers, _ratio(*powers))
+        yield Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio)
+        yield Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan)
 
 
-class _Row(NamedTuple):
+class Row(NamedTuple):
     """A row of the table: values in both mechanisms, bounds on their errors."""
 
     label: str
     unit: str
-    values: tuple[float, ...]
+    pair: tuple[float, ...]
     ratio: float
     bounds: tuple[float, ...] = (np.nan, np.nan)
 
     @property
     def bound_of_ratio(self):
         with np.errstate(divide="ignore", invalid="ignore"):
-            return float(np.abs(self.ratio) * np.sum(np.divide(self.bounds, np.abs(self.values))))
+            return float(np.abs(self.ratio) * np.sum(np.divide(self.bounds, np.abs(self.pair))))
 
 
-def left_out(table, names):
-    """Rows of torque extrema that a table for people can do without, if they are many: all but each column's ends."""
-    rows = table.loc[[label for label in table.index if str(label).startswith(EXTREMUM)], list(names)]
-    if len(rows) <= MOST:
+def left_out(rows):
+    """Torque extrema that a table for people can do without, if they are many: all but each column's ends.
+
+    `rows` are the values of the columns by label; labels are returned.
+    """
+    labels = [label for label in rows if label.startswith(EXTREMUM)]
+    if len(labels) <= MOST:
         return []
-    rows = rows.astype(float).dropna(axis="columns", how="all")
-    return list(rows.index.difference([*rows.idxmin(), *rows.idxmax()], sort=False))
+    columns = np.array([rows[label] for label in labels], dtype=float).T
+    ends = {find(column) for column in columns if not np.isnan(column).all() for find in (np.nanargmin, np.nanargmax)}
+    return [label for place, label in enumerate(labels) if place not in ends]
 
 
 def compare(reference, balanced):

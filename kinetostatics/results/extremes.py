@@ -101,7 +101,7 @@ def extremes(solution, quantity):
     """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
 
     Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
-    limit positions; each extremum is then found by minimisation (scipy.optimize.elementwise) of the quantity evaluated
+    limit positions; each extremum is then found by minimisation (Chandrupatla's method) of the quantity evaluated
     by the mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope
     of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. At a jump the extrema are
     the values on its two sides; at one that a function does not declare, those of the nearest samples.

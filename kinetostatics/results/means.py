@@ -10,6 +10,7 @@ from ..engines.bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics import jamming
+from ..numbers.brackets import find_roots
 from ..numbers.elementary import UNIT
 from .extremes import extrema, warning
 from .turn import USABLE, require_single
@@ -114,7 +115,6 @@ def _torque(turn, angle):
 
 def _mean_of_absolute_torque(turn):
     """Mean, about how much it may be wrong, rounding of the values, and panels of the sum."""
-    from scipy.optimize import elementwise
 
     def torque(angle):
         return _torque(turn, angle)
@@ -123,7 +123,8 @@ def _mean_of_absolute_torque(turn):
     grid = _grid(turn)
     samples = torque(grid)
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
-    zeros = elementwise.find_root(torque, (grid[change], grid[change + 1])).x if change.size else []
+    ends = grid[change], grid[change + 1]
+    zeros = find_roots(lambda angle, _: torque(angle), *ends) if change.size else []
     (mean,), (error,), panels = _summed(lambda angle: np.abs(torque(angle))[None], turn, floor, zeros)
     return float(mean), float(error), floor, panels
 

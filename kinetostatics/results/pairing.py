@@ -16,8 +16,6 @@ def partners(reference, balanced):
 
     Of one kind each (maximum or minimum), one to one, so that they lie as near in crank angle as they can.
     """
-    from scipy.optimize import linear_sum_assignment
-
     period, own = reference.solution.period, balanced.solution.period
     times = max(1, round(period / own))
     angle = np.ravel(balanced.angle + own * np.arange(times)[:, None])
@@ -25,11 +23,23 @@ def partners(reference, balanced):
     apart = np.abs((reference.angle[:, None] - angle + period / 2) % period - period / 2)
     apart = apart + SAME * (_side(reference)[:, None] != side)
     apart = np.where(reference.maximum[:, None] == maximum, np.minimum(apart, APART), APART)
-    rows, columns = linear_sum_assignment(apart)
-    near = apart[rows, columns] < APART
+    rows, columns = _assigned(apart)
     found = np.full(len(reference), -1)
-    found[rows[near]] = columns[near] % max(len(balanced), 1)
+    found[rows] = columns % max(len(balanced), 1)
     return found
+
+
+def _assigned(apart):
+    """Rows and columns of the pairs, one to one, whose distances have the least sum; those of strangers left out."""
+    rows = np.flatnonzero((apart < APART).any(axis=1))
+    columns = apart[rows].argmin(axis=1) if rows.size else rows
+    if np.unique(columns).size < columns.size:  # the nearest of two are the same
+        from scipy.optimize import linear_sum_assignment
+
+        rows, columns = linear_sum_assignment(apart)
+        near = apart[rows, columns] < APART
+        rows, columns = rows[near], columns[near]
+    return rows, columns
 
 
 def of_partners(places, values):

@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..mechanics.quantities import quantity
 from ..numbers import checks
-from ..numbers.headings import heading
+from ..numbers.formatting import heading
 from .peaks import peak, pieces, scratch
 
 PEAK = 1e-4

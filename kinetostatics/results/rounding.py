@@ -10,8 +10,8 @@ from ..engines.bounded import of_magnitude
 from ..engines.engines import NUMPY
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale, unit_of
+from ..numbers.formatting import number
 from ..numbers.lazy import cached_property
-from ..numbers.shown import number
 
 FLOOR = 1e-13
 """Size, relative to the terms that a quantity is made of, below which it is rounding: neither a value nor a rise."""

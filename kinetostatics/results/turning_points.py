@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numbers.brackets import find_minima
 from .turn import BESIDE, SAME, runs
 
 CONTINUED = 1e-4
@@ -212,16 +213,9 @@ def _kept(angle, value, maximum, end, near):
 
 
 def _minimised(evaluate, brackets, sign):
-    from scipy.optimize import elementwise
-
-    found = elementwise.find_minimum(
-        lambda angle, sign: sign * evaluate(angle),
-        tuple(brackets),
-        args=(sign,),
-        tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
-    )
-    better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
-    return np.where(better, found.x, brackets[1])
+    found = find_minima(lambda angle, place: sign[place] * evaluate(angle), brackets, relative=0.0, tiny=0.0)
+    better = sign * evaluate(found) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
+    return np.where(better, found, brackets[1])
 
 
 def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):

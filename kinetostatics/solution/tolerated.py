@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
-from ..numbers.shown import about, number
+from ..numbers.formatting import about, number
 from ..results.bends import SMOOTH
 from ..results.extremes import extrema
 from ..results.rounding import AT_JUMP, Known

@@ -12,7 +12,7 @@ import pandas as pd
 from ..engines import compiled
 from ..errors import ParameterError
 from ..numbers import checks
-from ..numbers.headings import parted, si_columns
+from ..numbers.formatting import parted, si_columns
 from ..results.reductions import Output, parsed
 from ..solution.parameters import unknown
 from ..solution.scene import WORTH_COMPILING, Scene

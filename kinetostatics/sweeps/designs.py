@@ -17,7 +17,7 @@ from ..errors import ParameterError
 from ..machine.builders import crank_slider, four_bar, slotted_lever
 from ..machine.loads import Gravity, Spring, TorsionDamper, TorsionSpring
 from ..numbers import checks
-from ..numbers.headings import heading
+from ..numbers.formatting import heading
 from ..numbers.spreads import LARGEST, axis, distributions, read, require_mapping
 from ..numbers.units import factor
 from ..solution.scene import Scene

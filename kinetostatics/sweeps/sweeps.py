@@ -5,15 +5,19 @@ through any `concurrent.futures.Executor` (`workers`); with a folder the results
 (`dataset`), from which a sweep that was stopped goes on.
 """
 
+import sys
 import warnings
 from contextlib import closing
 
+import pandas as pd
+
 from ..numbers import checks
 from ..numbers.files import folder_problem
+from ..numbers.fingerprint import digest
+from ..version import __version__
 from .asked import job_of
 from .chunks import FAILED
 from .dataset import Dataset, Parts
-from .identity import identity
 from .job import PROBED, tried
 from .workers import ATTEMPTS, Workers, computed
 
@@ -80,7 +84,7 @@ def sweep(
     folder : path
         Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
         and the rest computed, also what was damaged since. A function is the same if its code is, with what it holds
-        and what it names of its own module (see `identity`).
+        and what it names of its own module (`numbers.fingerprint`).
     progress : bool
         Whether a bar is shown.
 
@@ -128,7 +132,7 @@ def sweep(
         chunk = chunk or (WIDE if here and job.wide else CHUNK)
         parts = Parts(designs, chunk)
         if folder is not None:
-            parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
+            parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
         todo = [number for number in parts.numbers if not parts.holds(number)]
         with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, hands)) as found:
             bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
@@ -150,3 +154,20 @@ def _bar(shown, total):
     from tqdm import tqdm
 
     return tqdm(total=total, unit=" designs", disable=not shown)
+
+
+def _identity(job, designs, compared, chunk):
+    """What the results of a sweep depend on, by name: a folder takes up a sweep only if all of it is the same."""
+    hashed = pd.util.hash_pandas_object(designs, index=True).to_numpy()
+    of_case = hasattr(compared[0], "content")
+    varied = "variant" if of_case else "scene" if hasattr(compared[0], "mechanism") else "function"
+    return {
+        "version": __version__,
+        **({} if of_case else {"python": sys.implementation.cache_tag}),  # whose code differs from release to release
+        **{name: digest(item) for name, item in zip((varied, "reference"), compared, strict=False)},
+        "outputs": [str(item) for item in job.outputs],
+        "angles": int(job.angles),
+        "chunk": int(chunk),
+        "columns": [str(column) for column in designs.columns],
+        "designs": digest(hashed),
+    }

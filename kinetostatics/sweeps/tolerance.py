@@ -12,7 +12,7 @@ import pandas as pd
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
-from ..numbers.headings import parted
+from ..numbers.formatting import parted
 from ..results.reductions import parsed
 from . import designs
 from .asked import chosen, is_case, is_varied, listed

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..mechanics.quantities import label_of
-from ..numbers import checks, headings
+from ..numbers import checks
+from ..numbers.formatting import parted
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ def drawn_over_turn(ax, curves):
 
 def readable(column):
     """Heading of a column of a table, "mean_absolute balancing_torque [N m]", as words for an axis."""
-    name, unit = headings.parted(column)
+    name, unit = parted(column)
     words = name.replace("_", " ").replace(".", " ")
     if words.startswith("ratio "):
         words = f"ratio of {words.removeprefix('ratio ')}, reference / design"

@@ -1,6 +1,6 @@
 """Figures of designs: fronts of two outputs."""
 
-from ..numbers.headings import parted
+from ..numbers.formatting import parted
 from .canvas import ACCENT, INK, axes, display, readable
 
 

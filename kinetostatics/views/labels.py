@@ -1,6 +1,6 @@
 """Labels that keep clear of each other and of what is drawn, placed anew whenever a figure is drawn."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -34,75 +34,112 @@ class Labels(Artist):
         ax: Any = self.axes
         lines, scale = ax.lines, renderer.points_to_pixels(1.0)
         paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
-        marks = [box for line in lines if isinstance(line.get_marker(), Path) for box in _boxes(line, scale)]
+        marks = [_boxes_of_markers(line, scale) for line in lines if isinstance(line.get_marker(), Path)]
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
         frees = []  # the places of each label, and what each costs beside all that is not a label
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
-            places = list(_places(point, size.width, size.height, scale))
-            frees.append((places, STEPS + [self._cost(box, points, marks, paths) for _, box, _ in places]))
+            places = _Places.around(point, size.width, size.height, scale)
+            frees.append((places, STEPS + self._costs(places.boxes, points, np.concatenate([NO_BOX, *marks]), paths)))
         chosen: list[tuple] = []
         for place in list(range(len(shown))) * ROUNDS:
             others = chosen[:place] + chosen[place + 1 :]
             places, costs = frees[place]
-            costs = costs + [_met(box, leader, others) for _, box, leader in places]
-            chosen[place : place + 1] = [places[int(np.argmin(costs))]]
+            best = int(np.argmin(costs + places.met(others)))
+            chosen[place : place + 1] = [(places.offsets[best], places.boxes[best], places.leaders[best])]
         for text, (offset, _, leader) in zip(shown, chosen, strict=True):
             text.set_position(offset / scale)
             if leader is not None:
                 Line2D(*leader.vertices.T, color="0.5", lw=0.5, transform=IdentityTransform()).draw(renderer)
 
-    def _cost(self, box, points, marks, paths):
+    def _costs(self, boxes, points, marks, paths):
+        """What it costs a label to lie in each of some boxes, (P,)."""
         frame: Any = self.axes
-        outside = not (frame.bbox.contains(box.x0, box.y0) and frame.bbox.contains(box.x1, box.y1))
+        outside = ~_contain(np.array([frame.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
+        crossed = [
+            [path.intersects_bbox(Bbox.from_extents(box), filled=filled) for path, filled in paths] for box in boxes
+        ]
         return (
-            ON_POINT * sum(box.contains(*point) for point in points)
-            + ON_POINT * sum(bool(Bbox.intersection(box, mark)) for mark in marks)
-            + ON_CURVE * sum(path.intersects_bbox(box, filled=filled) for path, filled in paths)
+            ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
+            + ON_POINT * _overlap(boxes, marks).sum(axis=1)
+            + ON_CURVE * np.sum(crossed, axis=1)
             + OUTSIDE * outside
         )
 
 
-def _met(box, leader, others):
-    """What it costs a label that it, or the line that leads to it, meets other labels and lines that lead to them."""
-    met = [Bbox.intersection(box, other) is not None for _, other, _ in others]
-    for _, other, line in others:
-        if line is not None:
-            met.append(line.intersects_bbox(box, filled=False))
-        if leader is not None:
-            met.append(leader.intersects_bbox(other, filled=False))
-            met.append(line is not None and leader.intersects_path(line, filled=False))
-    return ON_LABEL * sum(map(bool, met))
+NO_BOX = np.empty((0, 4))
 
 
-def _leader(point, box):
-    """A line from a point to the nearest place of its label, in pixels."""
-    return Path([point, np.clip(point, (box.x0, box.y0), (box.x1, box.y1))])
+def _overlap(boxes, others):
+    """Whether boxes, of rows (x0, y0, x1, y1), meet others, (boxes, others)."""
+    low, high = np.maximum(boxes[:, None, :2], others[:, :2]), np.minimum(boxes[:, None, 2:], others[:, 2:])
+    return (low <= high).all(axis=-1)
+
+
+def _contain(boxes, points):
+    """Whether boxes contain points, (boxes, points)."""
+    return _overlap(boxes, np.hstack([points, points]))
 
 
 def _in_pixels(item):
     return item.get_transform().transform_path(item.get_path())
 
 
-def _boxes(line, scale):
-    """Boxes of markers that have a shape of their own, in pixels."""
+def _boxes_of_markers(line, scale):
+    """Boxes of markers that have a shape of their own, in pixels, (N, 4)."""
     corners = line.get_marker().get_extents().get_points()
     corners = corners * 0.5 * scale * line.get_markersize() / np.abs(line.get_marker().vertices).max()
-    return [Bbox(corners + point) for point in _in_pixels(line).vertices]
+    return (corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4)
 
 
 STEPS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
 
 
-def _places(point, width, height, scale):
-    """Offset of the label's lower left corner from the point, its box, and a line to it if it is far, in pixels."""
-    for distance in DISTANCES:
-        for way in DIRECTIONS:
-            x = distance * scale * way.real + 0.5 * width * (np.sign(round(way.real, 9)) - 1.0)
-            y = distance * scale * way.imag + 0.5 * height * (np.sign(round(way.imag, 9)) - 1.0)
-            box = Bbox.from_bounds(point[0] + x, point[1] + y, width, height)
-            yield np.array([x, y]), box, _leader(point, box) if distance > LED else None
+class _Places(NamedTuple):
+    """Places where a label may lie, in pixels.
+
+    Attributes
+    ----------
+    offsets : array (P, 2)
+        Of the lower left corner from the point.
+    boxes : array (P, 4)
+    leaders : list of Path or None
+        Line from the point to the nearest place of the label, of labels that are far from it.
+    """
+
+    offsets: np.ndarray
+    boxes: np.ndarray
+    leaders: list
+
+    @classmethod
+    def around(cls, point, width, height, scale):
+        """Places around a point for a label of some size."""
+        distance, way = np.repeat(DISTANCES, len(DIRECTIONS)), np.tile(DIRECTIONS, len(DISTANCES))
+        x = distance * scale * way.real + 0.5 * width * (np.sign(way.real.round(9)) - 1.0)
+        y = distance * scale * way.imag + 0.5 * height * (np.sign(way.imag.round(9)) - 1.0)
+        offsets = np.column_stack([x, y])
+        boxes = np.hstack([point + offsets, point + offsets + [width, height]])
+        leaders = [
+            Path([point, np.clip(point, box[:2], box[2:])]) if far else None
+            for far, box in zip(distance > LED, boxes, strict=True)
+        ]
+        return cls(offsets, boxes, leaders)
+
+    def met(self, others):
+        """What it costs each place that it, or its leader, meets other labels and their leaders, (P,)."""
+        others_boxes = np.array([box for _, box, _ in others]).reshape(-1, 4)
+        count = _overlap(self.boxes, others_boxes).sum(axis=1)
+        bounds = [Bbox.from_extents(box) for box in self.boxes]
+        for _, other, line in others:
+            if line is not None:
+                count += [line.intersects_bbox(box, filled=False) for box in bounds]
+            other = Bbox.from_extents(other)
+            for place, leader in enumerate(self.leaders):
+                if leader is not None:
+                    count[place] += leader.intersects_bbox(other, filled=False)
+                    count[place] += line is not None and leader.intersects_path(line, filled=False)
+        return ON_LABEL * count
 
 
 def label(ax, text, point, **style):

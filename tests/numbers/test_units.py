@@ -4,8 +4,9 @@ import math
 
 import pytest
 
+from kinetostatics.numbers import units
 from kinetostatics.numbers.dimensions import dimension, spelled
-from kinetostatics.numbers.units import base_factor, factor, quoted, to_si
+from kinetostatics.numbers.units import USUAL_UNITS, base_factor, factor, quoted, to_si
 from tests.support.every import every
 
 
@@ -97,3 +98,16 @@ def test_units_that_engineers_write_come_back(unit):
 
 def test_other_powers_are_written_by_bases():
     assert spelled((5.0, 1.0, -1.5)) == "m5 kg s-1.5"
+
+
+def test_usual_units_are_those_of_pint():
+    for name in USUAL_UNITS:
+        scale, base, zero = units._by_pint(((name, 1),))
+        own, powers, _ = units._by_table(((name, 1),))
+        assert own == pytest.approx(scale, rel=3e-16)
+        assert (powers, zero) == (base, 0.0)
+
+
+def test_products_of_usual_units_are_exact():
+    assert factor("g cm^2", "kg m^2") == 1e-7
+    assert factor("kN/mm", "N/m") == 1e6

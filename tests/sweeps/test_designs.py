@@ -10,7 +10,7 @@ from scipy import stats
 
 import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
-from kinetostatics.numbers.headings import si_columns
+from kinetostatics.numbers.formatting import si_columns
 from kinetostatics.sweeps import designs
 from support.case_files import shipped
 from support.every import every

@@ -6,13 +6,15 @@ parts       groups and loads, by the rules of their classes
 drives      motors and flywheels
 designs     what is to be found: what varies, what must hold
 variants    mechanisms, and the head of a file
+validation  what is wrong with a table, in sentences
 """
 
 from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
-from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, kinds
+from .tables import CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
+from .validation import key_path, validated
 from .variants import (
     VARIANTS,
     CamVariant,
@@ -32,7 +34,6 @@ __all__ = [
     "BALANCE_THE_SLIDER",
     "MADE_OF",
     "MID_LENGTH",
-    "TAGS",
     "VARIANTS",
     "CamVariant",
     "CaseTable",
@@ -56,5 +57,6 @@ __all__ = [
     "TorqueFreeCamTable",
     "TorqueTable",
     "ValuesTable",
-    "kinds",
+    "key_path",
+    "validated",
 ]

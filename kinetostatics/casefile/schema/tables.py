@@ -31,7 +31,7 @@ from .texts import (
 class Table(BaseModel):
     """A table of a case file: unknown keys are errors."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 TAGS: dict[str, Any] = {}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..content import LIBRARY
+from ..fingerprint import LIBRARY
 from .measured import DimensionError, is_quantity, plain
 from .problems import Problem, shown
 from .usual import Usual

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
+from ...numbers.formatting import pretty
 from ..canvas import display, in_sight
 from ..peaks import with_peaks
-from .words import pretty
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
 """Quiet colours of the machines, in their order."""

@@ -8,13 +8,13 @@ from importlib import resources
 
 import numpy as np
 
+from ...numbers.formatting import pretty
 from ...results.losses import lose
 from ...version import __version__
 from ..canvas import display
 from . import figures, sections
 from .movement import movements, packed
 from .readings import readings
-from .words import pretty
 
 GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from ...mechanics.quantities import components, of_scene, scale, still
+from ...numbers.formatting import pretty
 from ...results.rounding import FLOOR, zeroed
 from ..canvas import display, in_sight, ordinary
 from .movement import packed
-from .words import pretty
 
 DIGITS = 6
 """Digits of the largest value that are shown, at most."""

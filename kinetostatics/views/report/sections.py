@@ -6,12 +6,11 @@ import numpy as np
 
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import unit_of
-from ...numbers.shown import DIGITS, at_most
+from ...numbers.formatting import DIGITS, angle, at_most, digits_of, pretty
 from ...results.comparison import left_out
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
-from .tables import Table, digits_of, of_frame, times, with_published
-from .words import angle, number, pretty
+from .tables import Table, number, of_frame, times, with_published
 
 FIGURES = 15.95
 """Digits of a double number."""
@@ -81,7 +80,11 @@ def _coefficients(subject):
     for machine in subject.others:
         frames[machine.name], bounds[machine.name] = subject.comparison(machine)
     rows = []
-    more = {row for other, frame in frames.items() for row in left_out(frame, [name, other])}
+    more = {
+        row
+        for other, frame in frames.items()
+        for row in left_out(dict(zip(frame.index, frame[[name, other]].to_numpy(), strict=True)))
+    }
     for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index if row not in more):
         with_row = [other for other, frame in frames.items() if quantity in frame.index]
         known = [frames[other].loc[quantity] for other in with_row]

@@ -1,17 +1,17 @@
 """Tables of a report: frames as text, units readable, published figures beside ours, bars for shares."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...errors import CaseError
-from ...numbers import checks
-from ...numbers.shown import DIGITS
-from .words import angle, number, pretty
+from ...numbers import checks, formatting
+from ...numbers.formatting import angle, digits_of, pretty
 
-DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
-"""Digits of what no reader takes so exactly, by column or row."""
+number = partial(formatting.number, infinity="∞")
+"""A number as text, as all tables of the report show it."""
 
 
 @dataclass(frozen=True)
@@ -78,11 +78,6 @@ def require_places(frame, published, path):
     ]
     if any(problems):
         raise CaseError(path, [problem for problem in problems if problem])
-
-
-def digits_of(row, column=""):
-    """Digits in which a number is told."""
-    return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
 
 
 def times(ratio, bound=0.0):

@@ -9,7 +9,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.engines import KERNELS
-from kinetostatics.numbers.content import key_of, of_class
+from kinetostatics.numbers.fingerprint import key_of, of_class
 
 ANGLES = np.linspace(0.0, 6.0, 20)
 GAIN = 1.0

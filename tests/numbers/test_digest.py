@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.sweeps.identity import digest
+from kinetostatics.numbers.fingerprint import digest
 from support.every import every
 
 BASE = """
@@ -182,7 +182,7 @@ def test_function_key_is_the_same_in_every_session(tmp_path):
     (tmp_path / "users_own.py").write_text(BASE, encoding="utf-8")
     code = (
         f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import users_own;"
-        "from kinetostatics.sweeps.identity import digest;"
+        "from kinetostatics.numbers.fingerprint import digest;"
         "print(*map(digest, users_own.items.values()))"
     )
     found = {subprocess.run([sys.executable, "-c", code], check=True, capture_output=True).stdout for _ in range(2)}

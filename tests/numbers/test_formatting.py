@@ -1,10 +1,10 @@
-"""Numbers as people read them: no digit that is not known."""
+"""Numbers and units as people read them: no digit that is not known."""
 
 import math
 
 import pytest
 
-from kinetostatics.numbers.shown import at_most, number
+from kinetostatics.numbers.formatting import angle, at_most, number, pretty
 from support.every import every
 
 
@@ -40,3 +40,22 @@ def test_shown_value_is_within_half_a_place(power):
 @every("bound, text", [(1.23e-10, "1.3e-10"), (0.25, "0.25"), (0.2500001, "0.26"), (9.91, "10"), (0.0, "0")])
 def test_a_bound_is_never_told_smaller_than_it_is(bound, text):
     assert at_most(bound) == text
+
+
+@every("value, text", [(math.inf, "∞"), (-math.inf, "-∞"), (math.nan, ""), (1.5, "1.5")])
+def test_infinity_may_have_a_sign_of_its_own(value, text):
+    assert number(value, infinity="∞") == text
+
+
+@every("unit, text", [
+    ("N m", "N·m"), ("kg m2", "kg·m²"), ("kg m^2", "kg·m²"), ("m/s2", "m/s²"), ("rad/s", "rad/s"), ("deg", "°"),
+    ("1", ""), ("", ""),
+    ("N/m**3", "N/m³"),
+])  # fmt: skip
+def test_units_have_raised_exponents_and_dots(unit, text):
+    assert pretty(unit) == text
+
+
+@every("degrees, text", [(1.1e-13, "0"), (-1e-9, "0"), (math.nan, ""), (138.58297, "138.583"), ("at", "at")])
+def test_an_angle_has_three_decimals(degrees, text):
+    assert angle(degrees) == text

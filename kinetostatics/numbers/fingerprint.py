@@ -1,0 +1,275 @@
+"""Fingerprints of user code and of designs: equal only where both compute the same.
+
+`key_of` and `of_class` give keys of functions and classes within a process, for programs that are kept. A key holds
+code and the constants that it refers to: globals, closures, defaults, attributes of functions, modules and classes. It
+is None where something may change unseen, as a list's items may.
+
+`digest` gives a text that is the same in every session, for sweeps that are resumed: of a case's variant, a scene or a
+function. Of a function it covers the compiled code with all that it refers to: constants, defaults, closures, what a
+`partial` binds, what a decorator wraps, the object of a method, and the values and functions of its own module. Of
+other modules it covers name and version only, and nothing that is looked up by text.
+"""
+
+import hashlib
+import re
+import sys
+from dataclasses import fields, is_dataclass
+from functools import cached_property, partial
+from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
+
+import numpy as np
+
+LIBRARY = __name__.partition(".")[0]
+SETTLED = (LIBRARY, "numpy", "math", "pint", "builtins", "typing", "abc")
+"""Packages whose functions and classes are taken as they are."""
+MISSING = "missing"
+MADE = {f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]}
+"""Methods that dataclasses are given, and those that only make an item: they compute nothing afterwards."""
+
+CODE = (
+    "co_code",
+    "co_consts",
+    "co_names",
+    "co_varnames",
+    "co_freevars",
+    "co_cellvars",
+    "co_argcount",
+    "co_posonlyargcount",
+    "co_kwonlyargcount",
+    "co_flags",
+)
+"""What of compiled code decides what it does; not where it was written."""
+
+IDLE = ("__dict__", "__weakref__", "__doc__", "__module__", "__annotations__", "__firstlineno__", "__slots__")
+"""What stands in a class without deciding what it does."""
+
+
+def key_of(value, names=(), above=()):
+    """Key of a constant, of a function, or of a class of which some names are used; None where it may change unseen."""
+    if isinstance(value, bool | int | float | complex | str | bytes | None):
+        return type(value), value, np.copysign(1.0, value) if isinstance(value, float) else None
+    if any(value is other for other in above):
+        return "again", next(place for place, other in enumerate(above) if value is other)
+    above = (*above, value)
+    if isinstance(value, ModuleType):
+        return value.__name__, *_used(value, names, above)
+    if isinstance(value, FunctionType):
+        return value if _is_settled(value) else _of_function(value, above)
+    if isinstance(value, type):
+        return value if _is_settled(value) else of_class(value, above)
+    if isinstance(value, staticmethod | classmethod):
+        return _all(type(value), key_of(value.__func__, (), above))
+    if isinstance(value, property | cached_property):
+        return _all(type(value), key_of(value.fget if isinstance(value, property) else value.func, (), above))
+    if isinstance(value, tuple):
+        return _all(type(value), *(key_of(part, (), above) for part in value))
+    if isinstance(value, BuiltinFunctionType):  # a method of a list, say, is one too
+        return value if isinstance(value.__self__, ModuleType | None) else None
+    if isinstance(value, np.ufunc | type(np.where)):
+        return value
+    return value if type(value).__module__.partition(".")[0] == LIBRARY and callable(value) else None
+
+
+def of_class(kind, above=()):
+    """Key of all that classes of the user's say, those that a class is derived from among them."""
+    return _all(*(part for base in kind.__mro__ if not _is_settled(base) for part in _said(base, above)))
+
+
+def _said(base, above):
+    yield base
+    for name, value in vars(base).items():
+        if name.startswith("__"):
+            if isinstance(value, FunctionType) and name not in MADE:
+                yield key_of(value, (), above)
+        elif not (name.startswith("_abc_") or type(value).__name__ in ("member_descriptor", "getset_descriptor")):
+            yield name
+            yield _declared(value, above)
+
+
+def _declared(value, above):
+    """Key of a class's attribute, which may be a table of declarations."""
+    if isinstance(value, dict):
+        return _all(dict, *(_declared(part, above) for pair in value.items() for part in pair))
+    if isinstance(value, list | tuple | set | frozenset):
+        return _all(type(value), *(_declared(part, above) for part in value))
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return value.dtype.str, value.shape, value.tobytes()
+    if value is not None and not isinstance(value, type) and type(value).__module__.partition(".")[0] == LIBRARY:
+        return "library's", id(value)
+    return key_of(value, (), above)
+
+
+def _of_function(function, above):
+    code, outer = function.__code__, function.__globals__
+    names = _names(code)
+    values = [outer.get(name, MISSING) for name in names] + _closed_over(function)
+    values += [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values(), *vars(function).values()]
+    return _all(code, *(key_of(value, names, above) for value in values))
+
+
+def _closed_over(function):
+    """Values of a function's closure; None for a name that has no value yet."""
+    values = []
+    for cell in function.__closure__ or ():
+        try:
+            values.append(cell.cell_contents)
+        except ValueError:
+            values.append(None)
+    return values
+
+
+def _names(code):
+    """Names that code, and functions within it, take from elsewhere."""
+    inner = (part for part in code.co_consts if isinstance(part, CodeType))
+    return tuple(dict.fromkeys([*code.co_names, *(name for part in inner for name in _names(part))]))
+
+
+def _used(module, names, above):
+    """What of a module is used; its functions are taken as they are."""
+    if module.__name__.partition(".")[0] in SETTLED:
+        return
+    for name in names:
+        value = vars(module).get(name, MISSING)
+        yield name
+        yield value if isinstance(value, FunctionType) else key_of(value, names, above)
+
+
+def _is_settled(item):
+    return (getattr(item, "__module__", None) or "").partition(".")[0] in SETTLED
+
+
+def _all(*parts):
+    """The parts, or None if one of them is."""
+    return None if any(part is None for part in parts) else parts
+
+
+def digest(item):
+    """Digest of a variant, a scene or a function, the same in every session."""
+    return _digested(item.content) if hasattr(item, "content") else _Digests().digest(item)
+
+
+class _Digests:
+    """Digests of objects by what they hold, the same for equal ones; one that holds itself is told by its depth."""
+
+    def __init__(self):
+        self._above, self._done = {}, {}
+
+    def digest(self, item):
+        if isinstance(item, bool | int | float | complex | str | bytes | type(None) | type(Ellipsis)):
+            return _hash(type(item).__name__, repr(item))
+        if id(item) in self._above:
+            return _hash("above", str(self._above[id(item)]))
+        if id(item) not in self._done:
+            self._above[id(item)] = len(self._above)
+            found = _hash(_named(type(item)), *self._parts(item))
+            del self._above[id(item)]
+            self._done[id(item)] = found, item  # kept, for another would take its id
+        return self._done[id(item)][0]
+
+    def _parts(self, item):
+        """What tells an object from others of its type."""
+        if isinstance(item, np.ndarray | np.generic):
+            whole = np.asarray(item)
+            held = self._all(whole.ravel().tolist()) if whole.dtype.hasobject else [_digested(whole.tobytes())]
+            return [str(whole.dtype), str(whole.shape), *held]
+        if type(item).__module__.startswith("pandas.") and hasattr(item, "to_numpy"):
+            return self._all([item.to_numpy(), *map(np.asarray, getattr(item, "axes", ()))])
+        if isinstance(item, list | tuple):
+            return self._all(item)
+        if isinstance(item, set | frozenset):
+            return sorted(self._all(item))
+        if isinstance(item, dict):
+            return self._all([part for pair in item.items() for part in pair])
+        if isinstance(item, CodeType):
+            return self._all(getattr(item, name) for name in CODE)
+        if isinstance(item, partial):
+            return self._all([item.func, item.args, dict(sorted(item.keywords.items()))])
+        if isinstance(item, property):
+            return self._all([item.fget, item.fset, item.fdel])
+        if isinstance(item, MethodType):
+            return self._all([item.__func__, item.__self__])
+        if isinstance(item, FunctionType):
+            return self._all(_held_by(item))
+        if isinstance(item, ModuleType | BuiltinFunctionType | np.ufunc):
+            return [_named(item)]
+        if isinstance(item, type):
+            return [_named(item), *self._all(_written_in(item))]
+        return self._all(_of_object(item))
+
+    def _all(self, items):
+        return [self.digest(item) for item in items]
+
+
+def _hash(*texts):
+    return _digested(repr(texts).encode())
+
+
+def _digested(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+def _named(item):
+    """Name of a module, class or function, with the version of what it comes from."""
+    module = item.__name__ if isinstance(item, ModuleType) else str(getattr(item, "__module__", ""))
+    version = getattr(sys.modules.get(_package(module)), "__version__", "")
+    return f"{module}.{getattr(item, '__qualname__', None) or getattr(item, '__name__', '')} {version}"
+
+
+def _package(module):
+    return module.partition(".")[0]
+
+
+def _library(module):
+    """Whether a module is Python's, ours, or installed, and so told by a version."""
+    if module == "__main__":
+        return False
+    file = getattr(sys.modules.get(module), "__file__", None) or ""
+    ours = _package(module) == _package(__name__)
+    return ours or _package(module) in sys.stdlib_module_names or "site-packages" in file or "dist-packages" in file
+
+
+def _held_by(function):
+    """Code of a function, what it holds and, unless it is a library's, what it names of its own module."""
+    code, defaults = function.__code__, (function.__defaults__, function.__kwdefaults__)
+    return code, *defaults, _closed_over(function), vars(function), _named_by(function)
+
+
+def _named_by(function):
+    known, module = function.__globals__, function.__module__
+    if _library(str(module)):
+        return {}
+    names = sorted(name for name in _names(function.__code__) if name in known)
+    return {name: known[name] for name in names if _own(known[name], module)}
+
+
+def _own(item, module):
+    """Whether something is a value, or written in this module."""
+    if isinstance(item, ModuleType):
+        return False
+    return not callable(item) or getattr(item, "__module__", module) == module
+
+
+def _written_in(kind):
+    """What is written in a class and in those it inherits from, but for a library's."""
+    written = [vars(base) for base in kind.__mro__ if not _library(base.__module__)]
+    return [{name: value for name, value in table.items() if name not in IDLE} for table in written]
+
+
+def _of_object(item):
+    """Class and state of any other object; its text where it has none, or is one of Python's own."""
+    wrapped = getattr(item, "__wrapped__", None)  # of what is cached or compiled
+    if is_dataclass(item):
+        return type(item), {field.name: getattr(item, field.name) for field in fields(item)}
+    slots = [name for kind in type(item).__mro__ for name in _slots(kind) if hasattr(item, name)]
+    state = {**getattr(item, "__dict__", {}), **{name: getattr(item, name) for name in slots}}
+    if wrapped is not None:
+        return type(item), wrapped
+    module = type(item).__module__
+    if not state or (_package(module) in sys.stdlib_module_names and module != "functools"):
+        return type(item), re.sub(r" at 0x\w+", "", repr(item))
+    return type(item), state
+
+
+def _slots(kind):
+    slots = vars(kind).get("__slots__", ())
+    return [slots] if isinstance(slots, str) else slots
