@@ -1,6 +1,5 @@
 """Values at the angles of the page are the library's, in units that read well."""
 
-import math
 import warnings
 
 import numpy as np
@@ -14,7 +13,6 @@ from kinetostatics.views.report.movement import unpacked
 from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
 from kinetostatics.views.report.tables import of_frame, times, with_published
-from kinetostatics.views.report.words import angle, pretty
 from support.every import every
 from support.reports import near_change_points, series, subject
 
@@ -129,20 +127,3 @@ def test_misplaced_published_figures_are_refused():
 
 def test_a_ratio_says_how_many_times():
     assert [times(ratio) for ratio in (6.0807, np.nan, np.inf)] == ["6.081 ×", "", "∞ ×"]
-
-
-# Numbers and units as a reader wants them
-
-
-@every("unit, text", [
-    ("N m", "N·m"), ("kg m2", "kg·m²"), ("kg m^2", "kg·m²"), ("m/s2", "m/s²"), ("rad/s", "rad/s"), ("deg", "°"),
-    ("1", ""), ("", ""),
-    ("N/m**3", "N/m³"),
-])  # fmt: skip
-def test_units_have_raised_exponents_and_dots(unit, text):
-    assert pretty(unit) == text
-
-
-def test_an_angle_of_rounding_is_zero():
-    assert angle(1.1e-13) == angle(-1e-9) == "0.00"
-    assert angle(math.nan) == ""
