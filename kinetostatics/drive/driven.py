@@ -149,8 +149,8 @@ class Driven:
         """
         sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
         values = self._given(sense * max(sense * speed, 0.0), sense)
-        found = self.program.unlooked(angle, values, self._compiled) if values else self.program.evaluated(angle)
-        inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
+        found = self.program.unlooked(angle, values, self._compiled)
+        inertia, slope, load = float(found[INERTIA]), float(found[SLOPE]), float(found[TORQUE])
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
     def prepare(self, speed):

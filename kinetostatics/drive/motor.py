@@ -204,11 +204,11 @@ class Kloss(Motor):
     synchronous_speed: float
     overload: float
 
-    @property
+    @cached_property
     def breakdown_torque(self):
         return self.overload * self.power / self.speed
 
-    @property
+    @cached_property
     def breakdown_slip(self):
         rated = (self.synchronous_speed - self.speed) / self.synchronous_speed
         return rated * (self.overload + math.sqrt((self.overload - 1.0) * (self.overload + 1.0)))

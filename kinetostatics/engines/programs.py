@@ -172,7 +172,10 @@ class Program:
         """Outputs at one crank angle, all floats; of a program without tables."""
         if compiled and self._has_paid(1):
             return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
-        return self._by_numbers(np.array([angle]), numbers, (1,))[:, 0].tolist()
+        try:
+            return self._plain(angle, float(np.sin(angle)), float(np.cos(angle)), _plain_numbers(numbers), ())
+        except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
+            return self.by_numpy(np.array([angle]), numbers, (), (1,))[:, 0].tolist()
 
     def _by_short_loop(self, angle, numbers, shape):
         """The same by the loop, with the sines that plain numbers have."""

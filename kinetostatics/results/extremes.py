@@ -1,7 +1,7 @@
 """True extrema of a result over the turn, found between samples by evaluating the mechanism itself."""
 
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -178,14 +178,23 @@ def _degrees(angles):
 
 
 def extrema(solution, quantity):
-    """The extrema without a warning."""
-
-    def function(at):
-        return values(at, quantity)
-
+    """The extrema without a warning; those of quantities are kept for all solutions of the same turn."""
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
+    if callable(quantity):
+        return _extrema(solution, turn, quantity)
+    if quantity not in turn.extrema:
+        turn.extrema[quantity] = replace(_extrema(solution, turn, quantity), solution=None)
+    found = turn.extrema[quantity]
+    arrays = {name: getattr(found, name).copy() for name in ("angle", "value", "maximum", "left_out")}
+    return replace(found, solution=solution, **arrays)
+
+
+def _extrema(solution, turn, quantity):
+    def function(at):
+        return values(at, quantity)
+
     position, own = unit_of(solution, quantity) == "m", None if callable(quantity) else solution
     called = quantity if isinstance(quantity, str) else "a function of the solution"
     left_out = np.empty(0) if position else turn.lost

@@ -118,6 +118,11 @@ class Turn:
     def angle(self):
         return self.at.crank_angle
 
+    @cached_property
+    def extrema(self):
+        """Extrema by quantity, kept when they are first computed."""
+        return {}
+
     @property
     def panels(self):
         """Number of panels from which a quadrature starts: two samples wide."""

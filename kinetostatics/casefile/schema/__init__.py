@@ -12,7 +12,7 @@ validation  what is wrong with a table, in sentences
 from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
-from .tables import CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable
+from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
 from .validation import key_path, validated
 from .variants import (
@@ -34,6 +34,7 @@ __all__ = [
     "BALANCE_THE_SLIDER",
     "MADE_OF",
     "MID_LENGTH",
+    "TAGS",
     "VARIANTS",
     "CamVariant",
     "CaseTable",
