@@ -74,7 +74,7 @@ class Machine(Drawn):
         """Largest difference from the tests' system at all crank angles, relative to the largest force."""
         gaps, size = [], 0.0
         for place, angle in enumerate(solution.crank_angle):
-            forces, torque, *_ = self.system.solved(mp.mpf(float(angle)))
+            forces, torque, *_ = self.system.forces(mp.mpf(float(angle)))
             with mp.workdps(40):
                 own = {name: [mp.mpf(float(part[place])) for part in parts] for name, parts in found.items()}
                 gaps.append(abs(own["balancing_torque"][0] - torque) / self.r)

@@ -2,7 +2,7 @@
 
 Run by ``python -m pytest tests/benchmarks --benchmark-only``. Every method computes one turn of 360 crank angles; those
 that come near the library's time are timed again in rounds in which they take turns, and medians are compared. How near
-each method comes to the certified reference is no matter of time and tested by ``tests/test_precision.py`` as well.
+each method comes to the certified reference is no matter of time, and ``tests/studies/test_precision.py`` tests it.
 """
 
 from dataclasses import dataclass

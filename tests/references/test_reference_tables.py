@@ -188,7 +188,7 @@ def test_plain_torque_extremes_are_the_documented_ones():
 
 @pytest.mark.parametrize(("variant", "documented"), [("cosine", 6.778), ("circle", 6.081)])
 def test_mean_torque_ratio(variant, documented):
-    """Published: 6.77, from a wrong sign (`test_sawframe_as_printed`); 6.778 comes near it by coincidence."""
+    """Published: 6.77, from a wrong sign (`studies/methods/test_papers`); 6.778 comes near it by coincidence."""
     found = comparison(variant)
     expected = [mean_absolute_torque("plain"), mean_absolute_torque(variant)]
     np.testing.assert_allclose(found.mean_torques, expected, rtol=1e-12)
@@ -200,7 +200,7 @@ def test_mean_torque_ratio(variant, documented):
     ("variant", "documented"), [("cosine", [7.27, 6.11, 6.45, 7.62]), ("circle", [6.37, 5.50, 5.73, 6.60])]
 )
 def test_torque_extremum_ratios_by_crank_angle(variant, documented):
-    """Published: 6.2, 7.55, 8.13, 6.42, from a wrong sign (`test_sawframe_as_printed`)."""
+    """Published: 6.2, 7.55, 8.13, 6.42, from a wrong sign (`studies/methods/test_papers`)."""
     found = comparison(variant).torque_extremum_ratios
     np.testing.assert_allclose(found, torque_extremes("plain") / torque_extremes(variant), rtol=CLOSE[variant])
     assert np.round(found, 2).tolist() == documented

@@ -1,4 +1,4 @@
-"""What tests share: mechanisms, loads and scenes, random ones, case files, and two independent oracles."""
+"""What tests share: mechanisms, loads and scenes, random ones, case files, and the independent multibody reference."""
 
 from pathlib import Path
 

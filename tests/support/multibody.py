@@ -1,9 +1,9 @@
 """The independent reference of forces: Newton-Euler equations of all bodies at once, with friction; no package inside.
 
 A planar vector is a complex number. Every body has a point and a unit direction over the crank angle; rates and
-accelerations are difference quotients of these at 240 digits, good to 80 also 1e-17 rad from a change point. One
-linear system of three equations for each body, moments about its own mass centre, has the forces of all joints and the
-driving torque as unknowns. Friction is repeated from these forces until nothing changes.
+accelerations are difference quotients of these at three times the digits of the forces. One linear system of three
+equations for each body, moments about its own mass centre, has the forces of all joints and the driving torque as
+unknowns. Friction is repeated from these forces until nothing changes.
 """
 
 from collections.abc import Callable
@@ -13,12 +13,9 @@ from typing import Any
 
 import mpmath as mp
 
-DIGITS = 80
-"""Of the forces; near change points their equations lose half of them."""
-FINE_DIGITS = 240
-"""Of the positions that are differenced."""
-STEP = mp.mpf(10) ** -60
-"""Of the crank angle, rad."""
+DIGITS = 40
+"""Of the forces, unless a system has its own; positions that are differenced have three times as many."""
+FINE_DIGITS = 3 * DIGITS
 
 
 @dataclass(frozen=True)
@@ -81,20 +78,21 @@ class System:
     acceleration: Any = 0
     gravity: Any = 0
     applied: list = field(default_factory=list)
+    digits: int = DIGITS
 
     def forces(self, angle, times=4000):
         """Forces by joint (of a slide force across + i couple), torque, friction and losses by joint."""
-        with mp.workdps(DIGITS):
+        with mp.workdps(self.digits):
             return _State(self, angle).forces(times)
 
     def motion(self, angle):
         """Position, velocity and acceleration of joints, mass centres (by body) and angles (by (body, "angle"))."""
-        with mp.workdps(DIGITS):
+        with mp.workdps(self.digits):
             return _State(self, angle).motion
 
     def solve(self, angle):
         """Motion and forces at one crank angle by the names of a solution, as plain complex and real numbers."""
-        with mp.workdps(DIGITS):
+        with mp.workdps(self.digits):
             state = _State(self, angle)
             forces, torque, *_ = state.forces()
         found = {order: {k: _plain(v) for k, v in table.items()} for order, table in state.motion.items()}
@@ -120,8 +118,12 @@ class _State:
 
     def __init__(self, system, angle):
         self.system = system
-        self.value, self.first, self.second = differences(self._points, angle)
+        self.value, self.first, self.second = differences(self._points, angle, system.digits)
         self.motion = self._motion()
+
+    def _assemble(self):
+        """The equations of all bodies: unknown forces of the joints and the torque, and what is known."""
+        system = self.system
         self.turning = {None: mp.mpf(0), **{name: self.first[name, "angle"] for name in system.bodies}}
         self.rows = {name: 3 * number for number, name in enumerate(system.bodies)}
         self.right = [part for name, body in system.bodies.items() for part in self._inertia_less_loads(name, body)]
@@ -204,6 +206,7 @@ class _State:
 
     def forces(self, times=4000):
         """Solve, and repeat with the friction of the forces found; None if that does not converge."""
+        self._assemble()
         found = mp.lu_solve(self.matrix, mp.matrix(self.right))
         vector, friction, loss = self._friction(found)
         if any(vector):
@@ -260,10 +263,10 @@ class _State:
         return force, -on_roller * relative * self.system.speed, force * along, -on_roller
 
 
-def differences(function, angle):
+def differences(function, angle, digits=DIGITS):
     """Value, first and second derivative of a table of functions of the crank angle, by five-point differences."""
-    with mp.workdps(FINE_DIGITS):
-        h = STEP
+    with mp.workdps(3 * digits):
+        h = mp.mpf(10) ** (-digits // 2)
         far_back, back, here, ahead, far_ahead = (function(mp.mpf(angle) + k * h) for k in (-2, -1, 0, 1, 2))
         first = {k: (far_back[k] - 8 * back[k] + 8 * ahead[k] - far_ahead[k]) / (12 * h) for k in here}
         second = {
@@ -396,7 +399,7 @@ def critical_length(amplitude, mean):
 # Four-bars
 
 
-def four_bar(bar):
+def four_bar(bar, digits=DIGITS):
     """System of a `FourBar` of plain numbers; its assembly may be a function of the crank angle."""
     side = bar.assembly if callable(bar.assembly) else lambda phi: bar.assembly
     c, h, pivot = mp.mpf(bar.coupler), mp.mpf(bar.rocker), mp.mpmathify(bar.pivot)
@@ -414,10 +417,10 @@ def four_bar(bar):
         "O2": Pin("rocker", None, poses["rocker"][0]),
     }
     gravity = bar.gravity[0] * mp.expj(bar.gravity[1])
-    return System(bar.links, poses, joints, bar.speed, bar.acceleration, gravity)
+    return System(bar.links, poses, joints, bar.speed, bar.acceleration, gravity, digits=digits)
 
 
-def slotted_lever(distance, offset, side, bodies, speed, acceleration, gravity):
+def slotted_lever(distance, offset, side, bodies, speed, acceleration, gravity, digits=DIGITS):
     """System of a crank of 1 m and a lever about (distance, 0), its slot at an offset on a side by the crank angle."""
     toward = cache(lambda phi: mp.expj(phi) - distance)
 
@@ -433,7 +436,7 @@ def slotted_lever(distance, offset, side, bodies, speed, acceleration, gravity):
         "O2": Pin("lever", None, pivot),
         "slot": Slide("block", "lever", mp.expj, direction),
     }
-    return System(bodies, poses, joints, speed, acceleration, gravity)
+    return System(bodies, poses, joints, speed, acceleration, gravity, digits=digits)
 
 
 def circles_meet(a, ra, b, rb, side):
