@@ -7,6 +7,7 @@ from functools import cache
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 
 gc.set_threshold(20_000, 20, 20)  # modules and thousands of tests live to the end: seldom look for garbage among them
@@ -41,14 +42,16 @@ def interpreted(monkeypatch):
     from support import by_arrays
 
     numba = ModuleType("numba")
-    numba.njit = lambda *signature, **options: lambda function: function
+    numba.njit = lambda *signature, **options: np.errstate(all="ignore")
     numba.types = None
     numba.config = SimpleNamespace(DISABLE_JIT=0)
     numba.__spec__ = ModuleSpec("numba", None)
     numba.extending = ModuleType("numba.extending")
     numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
-    monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
+    core = ModuleType("numba.core.compiler")
+    core.Compiler = object
+    for module in (numba, numba.extending, core):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
     by_arrays.stand_in(monkeypatch)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):

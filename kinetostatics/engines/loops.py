@@ -1,7 +1,7 @@
 """Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
 
-Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs; what is left is
-written as vectors (`vectors`). Many values are shared out to threads.
+Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs. Many values are
+shared out to threads.
 """
 
 import math
@@ -69,17 +69,17 @@ def run(loop, angle, sine, cosine, parameters, tables, results):
     if pieces > 1:
         pieces = min(pieces, cores(), designs if designs > 1 else angles)
     if pieces <= 1:
-        loop(angle, sine, cosine, parameters, tables, results)
+        loop(angle, sine, cosine, parameters, tables, results.ravel())
         return
     edges = np.linspace(0, designs if designs > 1 else angles, pieces + 1, dtype=int)
 
     def piece(start, stop):
         given = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
         if designs > 1:
-            loop(*given[:3], parameters[start:stop], given[3], results[start:stop])
+            loop(*given[:3], parameters[start:stop], given[3], results[start:stop].ravel())
         else:
             found = np.empty((1, results.shape[1], stop - start), results.dtype)
-            loop(*given[:3], parameters, given[3], found)
+            loop(*given[:3], parameters, given[3], found.ravel())
             results[..., start:stop] = found
 
     from concurrent.futures import ThreadPoolExecutor

@@ -1,13 +1,14 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
+from itertools import pairwise
+
 from ..numbers.elementary import ROUNDING, SPLIT
-from .fusing import fused, parts, still_needed
+from .fusing import fused, still_needed
 from .trace import BY_ANGLE, Node, needed
-from .vectors import edition
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
-ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})"
+ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 1)})"
 """What a loop takes: crank angles, their sines and cosines, parameters, tables, results."""
 TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
 
@@ -23,73 +24,44 @@ def shared(angle, sine, cosine):
         sine[i] = sin(angle[i])
 '''
 """Module that computes sines and cosines of crank angles."""
-LOOP_HEADER = f'''"""Written by kinetostatics, edition {{edition}}; may be deleted at any time."""
+LOOP_HEADER = '''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import atan, copysign, cos, inf, nan, sin, sqrt
 
-from kinetostatics.engines.vectors import over_angles
 from numba import njit
+from numba.core.compiler import Compiler
+from numpy import float64 as number
+from numpy import uint64
 
-options = dict(error_model="numpy", nogil=True)
-
-
-@njit(**options)
-def root(square, unit):
-    return sqrt(max(square, 0.0)) if square > {-ROUNDING!r} * unit else nan
+zero, one, no_number, threshold = number(0.0), number(1.0), number(nan), number({threshold!r})
 
 
-@njit(**options)
-def divisor(root, unit):
-    return unit if root < unit else root
+class SeparateArrays(Compiler):
+    def define_pipelines(self):
+        self.state.flags.noalias = True
+        return super().define_pipelines()
 
 
 '''
-LOOP_TYPE = f"""at_angles = over_angles(line)
-
-
-@njit("{ARGUMENTS}", cache=KEEP, **options)
-"""
-LOOP_HEAD = """def loop(angle, sine, cosine, parameters, tables, results):
+"""Start of a loop's module. No two arrays of a loop share memory: LLVM need not check that before it uses vectors."""
+LOOP = f"""@njit("{ARGUMENTS}", cache=KEEP, pipeline_class=SeparateArrays, error_model="numpy", nogil=True, _nrt=False)
+def loop(angles, sines, cosines, parameters, tables, results):
+    count = uint64(angles.shape[1]) & uint64({2**40 - 1})
     for design in range(parameters.shape[0]):
-        first = design * (angle.shape[0] > 1)
-        table = design * (tables.shape[1] > 1)"""
-LOOP = "        at_angles(angle, sine, cosine, tables, results, first, table, design, ({}))"
-
-TOTAL = f"""@njit(**options)
-def summed(a, b):
+        first = design * (angles.shape[0] > 1)
+        table = design * (tables.shape[1] > 1)
+        start = uint64(design) * uint64({{rows}}) * count"""
+"""Start of a loop. A count below 2^40 shows LLVM that no two rows of the results overlap, however many they are."""
+TWO_SUM = """@njit(error_model="numpy")
+def two_sum(a, b):
     whole = a + b
     part = whole - a
     return whole, (a - (whole - part)) + (b - part)
 
 
-@njit(**options)
-def parted(one, two, three, four, five, six):
-    whole, first = summed(one, two)
-    whole, second = summed(whole, three)
-    whole, third = summed(whole, four)
-    whole, fourth = summed(whole, five)
-    whole, fifth = summed(whole, six)
-    lost, first = summed(first, second)
-    lost, second = summed(lost, third)
-    lost, third = summed(lost, fourth)
-    lost, fourth = summed(lost, fifth)
-    whole, fifth = summed(lost, whole)
-    return whole, first, second, third, fourth, fifth
-
-
-@njit(**options)
-def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
-    whole, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
-    return whole + (first + second + third + fourth + fifth)
-
-
-@njit(**options)
-def lost(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
-    _, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
-    return abs(first) + abs(second) + abs(third) + abs(fourth) + abs(fifth)
-
-
-@njit(**options)
+"""
+"""What compensated sums need."""
+SQUARES = f"""@njit(error_model="numpy")
 def squared(a):
     whole, spread = a * a, {SPLIT!r} * a
     high = spread - (spread - a)
@@ -97,7 +69,7 @@ def squared(a):
     return whole, ((high * high - whole) + 2.0 * high * low) + low * low
 
 
-@njit(**options)
+@njit(error_model="numpy")
 def off_square(length, x, y):
     one, first = squared(x)
     two, second = squared(y)
@@ -105,18 +77,18 @@ def off_square(length, x, y):
     return one, first, two, second, -three, -third
 
 
-@njit(**options)
+@njit(error_model="numpy")
 def rest(length, x, y):
-    return total(*off_square(length, x, y)) / (2.0 * length)
+    return total6(*off_square(length, x, y)) / (2.0 * length)
 
 
-@njit(**options)
+@njit(error_model="numpy")
 def lost_by_squares(length, x, y):
-    return lost(*off_square(length, x, y))
+    return lost6(*off_square(length, x, y))
 
 
 """
-"""What a loop with sums that lose nothing has besides."""
+"""What the rounding of a vector's length needs."""
 
 FUSED = """from numba import types
 from numba.extending import intrinsic
@@ -139,7 +111,7 @@ def fma(typing, one, other, more):
 
 
 def loop(outputs, fuse=True, kind="float64") -> str:
-    """Source of a module with ``loop(angle, sine, cosine, parameters, tables, results)``.
+    """Source of a module with ``loop(angles, sines, cosines, parameters, tables, results)``.
 
     It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
     designs, N), and fills results (designs, outputs, N), all of a kind of numbers. Sums are fused with products, see
@@ -149,22 +121,46 @@ def loop(outputs, fuse=True, kind="float64") -> str:
     sums = fused(nodes) if fuse else {}
     if sums:
         nodes = still_needed(nodes, outputs, sums)
-    by_design = [node for node in nodes if node.varies < BY_ANGLE]
-    by_angle = [node for node in nodes if _is_computed_by_angle(node)]
-    used = {part for node in by_angle for part in parts(node, sums)}
-    used.update(part for part in outputs if isinstance(part, Node))
-    fixed = "".join(f"{_name(node)}, " for node in by_design if node in used)
-    operations = {node.operation for node in by_design}
-    lines = [
-        "def line(angle, sine, cosine, tables, numbers):",
-        f"    {fixed}= numbers" if fixed else "",
-        *(f"    {_fused(node, sums[node]) if node in sums else _defined(node)}" for node in by_angle),
-        f"    return ({' '.join(f'{_name(part)},' for part in outputs)})\n\n\n",
+    of_loop = [node for node in nodes if _is_computed_by_angle(node)]
+    lines = [LOOP.format(rows=len(outputs))]
+    lines += [f"        {_defined(node, _IN_LOOP)}" for node in nodes if node.varies < BY_ANGLE]
+    lines += ["        for i in range(count):", "            angle = angles[first, i]"]
+    lines += [
+        f"            {_fused(node, sums[node]) if node in sums else _defined(node, _IN_LOOP)}" for node in of_loop
     ]
-    header = LOOP_HEADER.format(edition=edition())
-    header += (FUSED if "fma" in operations else "") + ("" if operations.isdisjoint(("total", "rest")) else TOTAL)
-    body = [LOOP_HEAD, *(f"        {_defined(node, _BY_DESIGN)}" for node in by_design), LOOP.format(fixed)]
-    return header + "\n".join(filter(None, lines)) + LOOP_TYPE.replace("float64", kind) + "\n".join(body) + "\n"
+    lines += [
+        f"            results[start + uint64({row}) * count + i] = {_name(part)}" for row, part in enumerate(outputs)
+    ]
+    fma = FUSED if sums or any(node.operation == "fma" for node in nodes) else ""
+    header = LOOP_HEADER.format(threshold=-ROUNDING) + _helpers(nodes) + fma
+    return (header + "\n".join(lines) + "\n").replace("float64", kind)
+
+
+def _helpers(nodes):
+    """Source of the compensated sums that nodes call."""
+    calls = {(node.operation, len(node.arguments)) for node in nodes if node.operation in ("total", "lost")}
+    squares = any(node.operation in ("rest", "lost_by_squares") for node in nodes)
+    calls |= {("total", 6), ("lost", 6)} if squares else set()
+    return (TWO_SUM if calls else "") + "".join(_sum_of(*call) for call in sorted(calls)) + (SQUARES if squares else "")
+
+
+def _sum_of(name, count):
+    """Source of a `total` of so many terms, or of what it has `lost`: see `elementary.total`."""
+    terms = [f"t{k}" for k in range(count)]
+    steps = [f"    {there}, {here} = two_sum({here}, {there})" for here, there in pairwise(terms)]
+    found = (
+        f"t{count - 1} + ({' + '.join(terms[:-1])})"
+        if name == "total"
+        else " + ".join(f"abs({term})" for term in terms[:-1])
+    )
+    lines = [
+        '@njit(error_model="numpy")',
+        f"def {name}{count}({', '.join(terms)}):",
+        *steps,
+        *steps,
+        f"    return {found}",
+    ]
+    return "\n".join(lines) + "\n\n\n"
 
 
 def _fused(node, found):
@@ -206,7 +202,7 @@ def buffered_line(outputs) -> tuple[str, int]:
         if not _is_computed_by_angle(node):
             continue
         if _is_given(node):
-            place_of[node] = _expression(node, _PLAIN)
+            place_of[node] = _expression(node, _IN_LINE)
             continue
         names = [place_of.get(part) or _name(part) for part in node.arguments]
         spent = {part for part in node.arguments if isinstance(part, Node) and last[part] is node and part not in rows}
@@ -268,16 +264,32 @@ def is_of_angle(node):
     return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
 
 
-_PLAIN = {"angle": "angle", "parameter": "parameters[{}]", "table": "tables[{}]", "sin": "sine", "cos": "cosine"}
-"""What inputs, and sine and cosine of the crank angle, are called."""
-_BY_DESIGN = {"parameter": "parameters[design, {}]"}
-"""The same in the part of a loop that a design fixes."""
-_CALLS = {"held": "{}", "sign": "copysign(1.0, {})"}
-"""Operations that are no function of the same name."""
+_IN_LINE = {
+    "parameter": "parameters[{}]",
+    "table": "tables[{}]",
+    "sin": "sine",
+    "cos": "cosine",
+    "held": "{}",
+    "sign": "copysign(1.0, {})",
+}
+"""Inputs, and operations that are no function of the same name, in a line."""
+_IN_LOOP = {
+    "parameter": "parameters[design, {}]",
+    "table": "tables[{}, table, i]",
+    "sin": "sines[first, i]",
+    "cos": "cosines[first, i]",
+    "held": "{}",
+    "sign": "copysign(one, {})",
+    "divisor": "max({}, {})",
+    "total": "total{count}({all})",
+    "lost": "lost{count}({all})",
+    "root": "sqrt(max(zero, {0})) if {0} > threshold * {1} else no_number",
+}
+"""Inputs, and operations that are no function of the same name, in a compiled loop."""
 
 
-def _defined(node, inputs=_PLAIN):
-    return f"v{node.index} = {_expression(node, inputs)}"
+def _defined(node, words=_IN_LINE):
+    return f"v{node.index} = {_expression(node, words)}"
 
 
 def _name(part):
@@ -286,13 +298,12 @@ def _name(part):
     return "angle" if part.operation == "angle" else f"v{part.index}"
 
 
-def _expression(node, inputs):
+def _expression(node, words):
     kind = node.operation
-    if kind in ("angle", "parameter", "table"):
-        return inputs[kind].format(*node.arguments)
     if is_of_angle(node):
-        return inputs[kind]
+        return words[kind]
     names = [_name(part) for part in node.arguments]
     if kind in ("+", "-", "*", "/"):
         return f" {kind} ".join(names) if len(names) == 2 else f"{kind}{names[0]}"
-    return _CALLS.get(kind, f"{kind}({', '.join(names)})").format(*names)
+    form = words[kind] if kind in words and kind not in ("sin", "cos") else f"{kind}({{all}})"
+    return form.format(*names, all=", ".join(names), count=len(names))

@@ -8,9 +8,8 @@ from functools import cache
 
 import numpy as np
 
-from ..engines import compiled, scanning
-from ..engines.scanning import COLUMNS
-from ..engines.vectors import edition
+from ..engines import compiled
+from ..engines.scanning import COLUMNS, edition
 from ..engines.writing import ARGUMENTS, FILLED, GIVEN
 from ..numbers.elementary import ROUNDING
 from . import peaks
@@ -282,9 +281,9 @@ def passes(
         end = min(start + step, stop)
         results = held[: end - start]
         if tables.shape[1] > 1:
-            loop(angle, sine, cosine, parameters[start:end], tables[:, start:end].copy(), results)
+            loop(angle, sine, cosine, parameters[start:end], tables[:, start:end].copy(), results.ravel())
         else:
-            loop(angle, sine, cosine, parameters[start:end], tables, results)
+            loop(angle, sine, cosine, parameters[start:end], tables, results.ravel())
         reduced(results, rows, kinds, turns, memory, numbers, rough, start)
         closed(results, first, angle[0], gaps, nearest, start)
         start = end
@@ -294,7 +293,7 @@ def passes(
 @cache
 def _source():
     """The source with the edition of what writes it, so that machine code of another is not taken for its own."""
-    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(scanning, peaks)};", 1)
+    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(peaks)};", 1)
 
 
 class Passes:

@@ -37,8 +37,8 @@ def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recor
     compile(line, "line", "exec")
     for place, output in enumerate(made.outputs):
         assert f"    v{output.index} = " in loop
+        assert f"results[start + uint64({place}) * count + i] = v{output.index}\n" in loop
         assert f"r{place}" in line
-    assert f"    return ({' '.join(f'v{output.index},' for output in made.outputs)})\n" in loop
     assert 0 < buffers < len(line.splitlines())
 
 

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled, scanning, vectors
+from kinetostatics.engines import compiled, scanning
 from kinetostatics.engines.writing import ARGUMENTS
 from kinetostatics.results import passes, peaks
 from kinetostatics.results.passes import KINDS, Passes
@@ -57,9 +57,10 @@ def handed_on():
 
 @njit("{ARGUMENTS}", nogil=True)
 def loop(angle, sine, cosine, parameters, tables, results):
-    for design in range(results.shape[0]):
-        for row in range(results.shape[1]):
-            results[design, row] = tables[row, design]
+    results = results.reshape((-1, tables.shape[2]))
+    for design in range(tables.shape[1]):
+        for row in range(tables.shape[0]):
+            results[design * tables.shape[0] + row] = tables[row, design]
 """
     return compiled.loaded(text).loop
 
@@ -105,12 +106,12 @@ def test_designs_that_do_not_close_or_nearly_do_not_are_told(handed_on):
 
 
 def test_machine_code_is_told_apart_by_what_writes_it(monkeypatch):
-    """It is kept by its text, which does not have what `engines.scanning` and `engines.vectors` write."""
+    """It is kept by its text, which does not have what `engines.scanning` writes."""
     own = passes._source.__wrapped__()
-    assert f"edition {vectors.edition(scanning, peaks)};" in own
+    assert f"edition {scanning.edition(peaks)};" in own
     texts = {scanning: "another"}
-    monkeypatch.setattr(vectors.inspect, "getsource", lambda module: texts.get(module, "the same"))
-    monkeypatch.setattr(passes, "edition", vectors.edition.__wrapped__)
+    monkeypatch.setattr(scanning.inspect, "getsource", lambda module: texts.get(module, "the same"))
+    monkeypatch.setattr(passes, "edition", scanning.edition.__wrapped__)
     found = passes._source.__wrapped__()
     texts[scanning] = "yet another"
     assert len({own, found, passes._source.__wrapped__()}) == 3
