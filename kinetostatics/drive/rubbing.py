@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.compiled import available
+from ..engines.compiled import numba_available
 from ..errors import DriveError
 from ..machine.friction import PASSES
 from ..machine.loads import is_given
@@ -59,7 +59,7 @@ class RubbingDriven(Driven):
         self.senses = Senses.of(self.scene)
         self._engine, self._passes = engine, PASSES[0]
         self._asks_for_speed = not all(map(is_given, self.scene.loads))
-        self._single_by_loop = engine == "compiled" or (engine is None and available())
+        self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 

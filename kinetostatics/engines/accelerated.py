@@ -8,7 +8,8 @@ import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.elementary import ROUNDING, total
-from . import programs, writing
+from .operations import compile_line
+from .writing import line_source
 
 PROVEN = "cpu"
 """Platform whose functions keep to the errors that bounds take for granted, as a test shows."""
@@ -49,13 +50,13 @@ def device_of(platform=None):
         raise ParameterError(f"device {platform!r}: JAX finds none, only {', '.join(found)}") from None
 
 
-def named(device):
+def device_name(device):
     """What a device is called: "cpu", "gpu: NVIDIA H100"."""
     kind = device.device_kind
     return device.platform if kind.lower() == device.platform else f"{device.platform}: {kind}"
 
 
-class OnDevice:
+class DeviceProgram:
     """The arithmetic of a `Split` as JAX runs it on a device, compiled for each shape that it meets."""
 
     def __init__(self, split, device):
@@ -70,7 +71,7 @@ class OnDevice:
         scope["root"] = lambda square, unit: xp.where(
             square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
         )
-        line = programs.made(writing.line(outputs), scope)
+        line = compile_line(line_source(outputs), scope)
 
         def computed(angle, sine, cosine, parameters, rows, shape):
             return tuple(xp.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
@@ -102,10 +103,10 @@ def _width(jax, dtype):
         yield
 
 
-def require_proven(device):
+def require_known_rounding(device):
     """Refuse a bound for a device whose functions have not been held to their errors."""
     if device.platform != PROVEN:
         raise NotGivenError(
-            f"no bound can be given on {named(device)}: how its functions round has not been tested; compile the "
+            f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile the "
             f'program with device="{PROVEN}", engine="numpy" or engine="compiled" to have one'
         )

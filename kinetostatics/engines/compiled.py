@@ -8,7 +8,7 @@ from functools import cache
 from ..errors import MissingLibraryError
 
 
-def cores():
+def core_count():
     """Number of cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
@@ -24,21 +24,21 @@ def _problem():
     return "compiles nothing while NUMBA_DISABLE_JIT is set: unset it" if numba.config.DISABLE_JIT else None
 
 
-def available():
+def numba_available():
     """Whether numba is installed, can be imported, and compiles."""
     return _problem() is None
 
 
-def require():
+def require_numba():
     """Raise `MissingLibraryError` unless numba is available."""
     if problem := _problem():
         raise MissingLibraryError(f'the compiled engine needs numba, which {problem}; engine="numpy" works without')
 
 
 @cache
-def loaded(text):
+def load_compiled(text):
     """Module of a source, its machine code kept on disk."""
-    from .machine_code import load
+    from .machine_code import load_module
 
-    require()
-    return load(text, keep=True)
+    require_numba()
+    return load_module(text, keep=True)

@@ -14,9 +14,9 @@ from ..mechanics.gaps import gap, groups_behind
 from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
-from . import programs
 from .bounded import with_bounds
 from .bounds import CAP
+from .programs import program_of
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Recorded:
         if not is_plain(state.crank_angle):
             return KERNELS.values(state, names)
         try:
-            program, leaves = programs.of(state, names, lasting=not self.compiled)
+            program, leaves = program_of(state, names, lasting=not self.compiled)
         except NotGivenError:
             if self.strict:
                 raise
@@ -84,7 +84,7 @@ class Recorded:
         """
         if not is_plain(state.crank_angle):
             return KERNELS.with_bounds(state, names, tight)
-        program, leaves = programs.of(state, names)
+        program, leaves = program_of(state, names)
         values, bounds = with_bounds(program, state, leaves, self.compiled, tight)
         named = program.recording.named
         small = all(map(_is_small, leaves.numbers))

@@ -3,13 +3,13 @@
 from ..machine import hints
 from ..machine.links import present
 from ..numbers.checks.usual import FAR
-from . import writing
-from .operations import PLAIN, made
-from .record import recorded
+from .operations import PLAIN, compile_line
+from .record import recorded_scene
 from .trace import needed
+from .writing import line_source
 
 
-def first_look(kind, judged=()):
+def plausibility_test(kind, judged=()):
     """Function of the numbers of a scene: all lengths over the shortest, and whether hints may be due.
 
     None if it cannot be recorded. What is usual of some of its numbers is `judged`, pairs of leaf and `checks.Usual`.
@@ -21,7 +21,7 @@ def first_look(kind, judged=()):
         return f"v[{len(outputs) - 1}]"
 
     try:
-        scene = recorded(kind.structure)
+        scene = recorded_scene(kind.structure)
         extent, reaches, bars, bodies, turning, arms = hints.sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
@@ -42,7 +42,7 @@ def first_look(kind, judged=()):
     return extent / shortest, {" or ".join(odd) or "False"}"""
     if any(node.operation == "table" for node in needed(outputs)):
         return None
-    return made(source, PLAIN | {"sizes": made(writing.line(outputs), PLAIN)})
+    return compile_line(source, PLAIN | {"sizes": compile_line(line_source(outputs), PLAIN)})
 
 
 def _unusual(number, usual):

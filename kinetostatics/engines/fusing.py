@@ -14,7 +14,7 @@ from .trace import BY_ANGLE, Node
 NONE: frozenset[int] = frozenset()
 
 
-class Fused(NamedTuple):
+class FusedSum(NamedTuple):
     """A sum as one product and the rest, each with a sign, 1 or -1."""
 
     sign: int
@@ -24,9 +24,9 @@ class Fused(NamedTuple):
     rest: Any
 
 
-def fused(nodes) -> dict[Node, Fused]:
+def fused_sums(nodes) -> dict[Node, FusedSum]:
     """Sums that are fused among nodes in the order of computing; of two products the one that is known later."""
-    found: dict[Node, Fused] = {}
+    found: dict[Node, FusedSum] = {}
     ways: dict[Node, int] = {}
     held: dict[Node, frozenset[int]] = {}
     depths: dict[Node, int] = {}
@@ -48,7 +48,7 @@ def fused(nodes) -> dict[Node, Fused]:
         if is_sum and len(node.arguments) == 2:
             left, right = node.arguments
             choices = [
-                (depths[part], Fused(own * sign, product.arguments[0], product.arguments[1], others, rest))
+                (depths[part], FusedSum(own * sign, product.arguments[0], product.arguments[1], others, rest))
                 for part, own, others, rest in ((left, 1, minus, right), (right, minus, 1, left))
                 for sign, product in (_product(part),)
                 if product is not None and ways[product] not in held.get(rest, NONE)
@@ -58,18 +58,18 @@ def fused(nodes) -> dict[Node, Fused]:
     return found
 
 
-def parts(node, sums):
+def operands_of(node, sums):
     """Nodes that a node is computed from, as it is or as a product and the rest."""
     found = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
     return [part for part in found if isinstance(part, Node)]
 
 
-def still_needed(nodes, outputs, sums):
+def drop_unused(nodes, outputs, sums):
     """Nodes without products that are in their sums only."""
     wanted = {part for part in outputs if isinstance(part, Node)}
     for node in reversed(nodes):
         if node in wanted:
-            wanted.update(parts(node, sums))
+            wanted.update(operands_of(node, sums))
     return [node for node in nodes if node in wanted]
 
 

@@ -4,11 +4,11 @@ from itertools import product
 
 from .trace import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number
 
-SMALLEST = 2.0**-1022
+MIN_DIVISOR = 2.0**-1022
 """What is smaller may have no reciprocal."""
 
 
-class LeanGraph(Graph):
+class SimplifiedGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
     Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
@@ -52,7 +52,7 @@ class LeanGraph(Graph):
                     return right if below is left else left
             if _is_root(below):
                 return self.node("*", above, self._over(below))
-        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= SMALLEST):
+        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= MIN_DIVISOR):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 

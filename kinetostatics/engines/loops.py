@@ -8,27 +8,27 @@ import math
 
 import numpy as np
 
-from .compiled import cores, loaded
-from .recent import kept_for_same_angles
+from .compiled import core_count, load_compiled
+from .recent import keep_for_same_angles
 from .writing import TURN
 
-SHARE = 100_000
+VALUES_A_THREAD = 100_000
 """Values over designs and angles that are worth a thread of their own."""
-ALIGNED = 8
+VECTOR_NUMBERS = 8
 """Numbers in the largest vector of a processor."""
 NO_ROWS = np.empty((0, 1, 0))
 """Tables of a loop that needs none."""
 
 
-@kept_for_same_angles
-def turn(angle):
+@keep_for_same_angles
+def compiled_sines(angle):
     """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
     sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
-    loaded(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
+    load_compiled(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
     return sine, cosine
 
 
-def table_of_parameters(numbers, shape):
+def parameter_table(numbers, shape):
     """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
     if not shape:
         return np.array([numbers], dtype=float)
@@ -40,7 +40,7 @@ def table_of_parameters(numbers, shape):
     return table
 
 
-def table_of_rows(rows, shape):
+def row_table(rows, shape):
     """Tables (T, 1 or designs, N) from rows, each a number or an array (..., N), of results of a shape."""
     if not rows:
         return NO_ROWS
@@ -51,23 +51,23 @@ def table_of_rows(rows, shape):
     return np.array([np.broadcast_to(row, shape).reshape(full) for row in rows], dtype=float)
 
 
-def memory(*shape):
+def aligned_memory(*shape):
     """Memory for numbers, which begins where vectors of every processor are loaded at once."""
     size = math.prod(shape)
-    held = np.empty(size + ALIGNED)
-    first = -held.ctypes.data // held.itemsize % ALIGNED
+    held = np.empty(size + VECTOR_NUMBERS)
+    first = -held.ctypes.data // held.itemsize % VECTOR_NUMBERS
     return held[first : first + size].reshape(shape)
 
 
-def run(loop, angle, sine, cosine, parameters, tables, results):
+def run_loop(loop, angle, sine, cosine, parameters, tables, results):
     """Fill results (designs, outputs, N), in threads if there is much to do.
 
     Angles with their sines and cosines are (1 or designs, N), tables (T, 1 or designs, N), parameters (designs, P).
     """
     designs, _, angles = results.shape
-    pieces = designs * angles // SHARE
+    pieces = designs * angles // VALUES_A_THREAD
     if pieces > 1:
-        pieces = min(pieces, cores(), designs if designs > 1 else angles)
+        pieces = min(pieces, core_count(), designs if designs > 1 else angles)
     if pieces <= 1:
         loop(angle, sine, cosine, parameters, tables, results.ravel())
         return

@@ -15,10 +15,10 @@ from types import ModuleType
 
 from ..errors import CacheWarning
 from ..signals import deferred
-from .programs_folder import new_entry, programs_folder, sealed
+from .programs_folder import is_intact, new_entry, programs_folder
 
 
-def load(text, keep=False) -> ModuleType:
+def load_module(text, keep=False) -> ModuleType:
     """Module of a source text.
 
     Parameters
@@ -55,7 +55,7 @@ def _kept(text):
         raise OSError("NUMBA_CACHE_DIR is set, so numba would put it elsewhere")
     name = _name(text, *_machine())
     entry = programs_folder() / name
-    damaged = entry.exists() and not sealed(entry)
+    damaged = entry.exists() and not is_intact(entry)
     if damaged:
         shutil.rmtree(entry)
     if entry.exists():

@@ -55,7 +55,7 @@ def _total_of(*terms_and_out):
     np.copyto(out, total(*terms))
 
 
-def made(source, scope):
+def compile_line(source, scope):
     """Function `line` of a source, with what a scope holds as its operations."""
     scope = dict(scope)
     exec(source, scope)

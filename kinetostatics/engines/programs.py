@@ -13,21 +13,22 @@ import numpy as np
 from ..errors import NotGivenError, QuantityError
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import FLOATS, Leaves
-from . import loops, writing
-from .compiled import available, loaded
+from . import loops
+from .compiled import load_compiled, numba_available
 from .derivatives import gradients
-from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, made
-from .recent import kept_for_same_angles
+from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, compile_line
+from .recent import keep_for_same_angles
 from .record import record
 from .running import RunningBounds
 from .tight import tight_bound
 from .trace import needed, operations
+from .writing import buffered_source, line_source, loop_source
 
-FEW = 12
+MAX_PLAIN_ANGLES = 12
 """Crank angles, up to this many, that are computed one by one on plain numbers."""
-LONG, PAYS = 300, 20_000_000
+MIN_LONG_OPERATIONS, MIN_COMPILED_OPERATIONS = 300, 20_000_000
 """Operations from which few angles take longer on plain numbers than by a loop; after how many this is compiled."""
-BLOCK = 2048
+BUFFER_VALUES = 2048
 """Values over designs and angles that one buffer holds."""
 
 
@@ -91,23 +92,23 @@ class Program:
 
     @cached_property
     def _plain(self):
-        return made(writing.line(self.outputs), PLAIN)
+        return compile_line(line_source(self.outputs), PLAIN)
 
     @cached_property
     def buffered(self):
         """Lines of arrays for one design and for a batch, and how many buffers they take."""
-        source, count = writing.buffered_line(self.outputs)
-        return [made(source, ARRAYS | by_design) for by_design in self.scopes], count
+        source, count = buffered_source(self.outputs)
+        return [compile_line(source, ARRAYS | by_design) for by_design in self.scopes], count
 
     @cached_property
     def loop(self):
         """The compiled loop; see `writing.loop`."""
-        return loaded(writing.loop(self.outputs)).loop
+        return load_compiled(loop_source(self.outputs)).loop
 
     @cached_property
     def _short_loop(self):
         """One with every operation rounded, as plain numbers have it."""
-        return loaded(writing.loop(self.outputs, fuse=False)).loop
+        return load_compiled(loop_source(self.outputs, fuse=False)).loop
 
     def rows(self, state, leaves):
         """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
@@ -124,7 +125,7 @@ class Program:
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
         angle, shape = state.crank_angle, state.shape
         count = math.prod(shape)
-        if len(shape) < 2 and count <= FEW and not self.recording.tables:
+        if len(shape) < 2 and count <= MAX_PLAIN_ANGLES and not self.recording.tables:
             few = self._by_short_loop if compiled and self._has_paid(count) else self._by_numbers
             return few(angle, leaves.numbers, shape)
         run = self.by_loop if compiled else self.by_numpy
@@ -139,11 +140,11 @@ class Program:
         (single, batch), count = self.buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore", under=self.underflow):
-            sine, cosine = turn(angle)
+            sine, cosine = numpy_sines(angle)
             if len(shape) == 1:
                 try:
-                    for start in range(0, shape[0], BLOCK):
-                        part = slice(start, start + BLOCK)
+                    for start in range(0, shape[0], BUFFER_VALUES):
+                        part = slice(start, start + BUFFER_VALUES)
                         given = [row[part] if np.size(row) > 1 else row for row in rows]
                         own, free = results[:, part], _buffers(count, results[0, part].shape)
                         single(angle[part], sine[part], cosine[part], numbers, given, free, own)
@@ -162,12 +163,12 @@ class Program:
 
         For ever after the loop computes them, to the same bits but of the arc tangent.
         """
-        if self._operations < LONG:
+        if self._operations < MIN_LONG_OPERATIONS:
             return False
         self._computed += count * self._operations
-        if self._computed > PAYS and not available():
+        if self._computed > MIN_COMPILED_OPERATIONS and not numba_available():
             self._computed = -math.inf
-        return self._computed > PAYS
+        return self._computed > MIN_COMPILED_OPERATIONS
 
     def at_one(self, angle, numbers, compiled):
         """Outputs at one crank angle, all floats; of a program without tables."""
@@ -181,9 +182,9 @@ class Program:
 
     def _of_one_design(self, loop, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
-        parameters = loops.table_of_parameters(_plain_numbers(numbers), ())
+        parameters = loops.parameter_table(_plain_numbers(numbers), ())
         sine, cosine = turn(angle)
-        loops.run(loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
+        loops.run_loop(loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
         return results.reshape(-1, *shape)
 
     def _by_numbers(self, angle, numbers, shape):
@@ -199,16 +200,16 @@ class Program:
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
         if len(shape) == 1 and not rows:
-            return self._of_one_design(self.loop, angle, numbers, shape, loops.turn)
-        parameters = loops.table_of_parameters(numbers, shape[:-1])
+            return self._of_one_design(self.loop, angle, numbers, shape, loops.compiled_sines)
+        parameters = loops.parameter_table(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
         angles = np.broadcast_to(angle, shape).reshape(designs, -1) if own else angle.reshape(1, -1)
         angles = np.ascontiguousarray(angles)
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
-        tables = loops.table_of_rows(rows, shape or (1,))
-        sine, cosine = loops.turn(angles)
-        loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
+        tables = loops.row_table(rows, shape or (1,))
+        sine, cosine = loops.compiled_sines(angles)
+        loops.run_loop(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 
@@ -263,7 +264,7 @@ def _sines(angle):
     return np.sin(angle), np.cos(angle)
 
 
-turn = kept_for_same_angles(_sines)
+numpy_sines = keep_for_same_angles(_sines)
 
 
 _memory = threading.local()
@@ -281,7 +282,7 @@ def _buffers(count, shape):
 # Programs kept by structure
 
 
-def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
+def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
     """Program for some quantities of a `Dynamics` and of all others of its structure, and its own leaves.
 
     Recorded the first time it is asked for; each time for what may change unseen.
@@ -317,7 +318,7 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
     return found, leaves
 
 
-def numbered(state):
+def numbered_scene(state):
     """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
     parts: list[Any] = list(state.kind.numbered)
     mechanism, speed, acceleration, loads, friction, sense = parts + [None, None][len(parts) - 4 :]

@@ -76,7 +76,7 @@ def require_private(path):
                 raise UntrustedError(f"others may write to {step}; give another folder, or chmod go-w {step}")
 
 
-def sealed(entry) -> bool:
+def is_intact(entry) -> bool:
     """Whether a program's folder holds what it was sealed with.
 
     Raises

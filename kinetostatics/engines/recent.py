@@ -3,17 +3,17 @@
 import threading
 from functools import wraps
 
-MOST = 10_000
+MAX_KEPT_ANGLES = 10_000
 """Crank angles up to which they are kept."""
 _last = threading.local()
 
 
-def kept_for_same_angles(compute):
+def keep_for_same_angles(compute):
     """Function of an array of crank angles that is not repeated, in each thread, for those of the last call."""
 
     @wraps(compute)
     def computed(angle):
-        if angle.size > MOST:
+        if angle.size > MAX_KEPT_ANGLES:
             return compute(angle)
         key = angle.shape, angle.tobytes()
         held = _last.__dict__
@@ -25,6 +25,6 @@ def kept_for_same_angles(compute):
     return computed
 
 
-def forget():
+def forget_angles():
     """Compute anew at the next call in this thread: what is timed shall not gain by having been called before."""
     _last.__dict__.clear()

@@ -25,7 +25,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .bounds import Error
 from .gaping import Gaps
-from .lean import LeanGraph
+from .lean import SimplifiedGraph
 from .steep import SteepTable, not_known, of_pieces
 from .trace import Graph, Node, needed, operations
 
@@ -135,7 +135,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = Recorder(structure, way, LeanGraph(), steeply=True)
+    recorder = Recorder(structure, way, SimplifiedGraph(), steeply=True)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -159,7 +159,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     )
 
 
-def recorded(structure):
+def recorded_scene(structure):
     """The scene of a structure with a `Node` for each of its numbers."""
     return Recorder(structure).recorded
 

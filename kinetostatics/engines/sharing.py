@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from .compiled import loaded
-from .fusing import fused, parts, still_needed
+from .compiled import load_compiled
+from .fusing import drop_unused, fused_sums, operands_of
 from .programs import Program
 from .trace import BY_ANGLE, INPUTS, Graph, Node, needed, operations
-from .writing import is_of_angle, loop
+from .writing import is_of_angle, loop_source
 
-VALUES = 10_000_000
+MIN_SHARED_VALUES = 10_000_000
 """Values over designs and angles from which two loops are made in place of one."""
-SHARE = 0.25
+MIN_SHARE = 0.25
 """Least share of operations that is common."""
 
 
-def shared(program, numbers, angle, tables, count):
+def shared_loop(program, numbers, angle, tables, count):
     """A compiled loop for designs alike but for some numbers, and the tables it takes.
 
     Parameters
@@ -34,18 +34,20 @@ def shared(program, numbers, angle, tables, count):
     count : int
         How many designs there are.
     """
-    if count * angle.shape[1] < VALUES or len(angle) > 1 or tables.shape[1] > 1:
+    if count * angle.shape[1] < MIN_SHARED_VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables
     varied = {place for place, number in enumerate(numbers) if np.ndim(number)}
-    common, rest = apart(program.outputs, varied, len(tables))
-    if operations(common) < SHARE * operations(program.outputs):
+    common, rest = split_common(program.outputs, varied, len(tables))
+    if operations(common) < MIN_SHARE * operations(program.outputs):
         return program.loop, tables
     fixed = [0.0 if np.ndim(number) else number for number in numbers]
     rows = Program(program.recording, common).by_loop(angle[0], fixed, list(tables[:, 0]), angle.shape[1:])
-    return loaded(loop(rest, fuse=False)).loop, np.concatenate([tables.reshape(-1, *angle.shape), rows[:, None]])
+    return load_compiled(loop_source(rest, fuse=False)).loop, np.concatenate(
+        [tables.reshape(-1, *angle.shape), rows[:, None]]
+    )
 
 
-def apart(outputs, varied, first=0):
+def split_common(outputs, varied, first=0):
     """Nodes that designs have in common, and outputs in a graph that has them as rows of tables.
 
     Parameters
@@ -57,13 +59,15 @@ def apart(outputs, varied, first=0):
         Number of the first of these rows.
     """
     nodes = needed(outputs)
-    sums = fused(nodes)
-    nodes = still_needed(nodes, outputs, sums)
+    sums = fused_sums(nodes)
+    nodes = drop_unused(nodes, outputs, sums)
     own: set[Node] = set()
     for node in nodes:
-        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(parts(node, sums)):
+        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(
+            operands_of(node, sums)
+        ):
             own.add(node)
-    asked = {part for node in nodes if node in own for part in parts(node, sums)}.union(outputs)
+    asked = {part for node in nodes if node in own for part in operands_of(node, sums)}.union(outputs)
     common = [node for node in nodes if node in asked and _is_common(node, own)]
     rows = {node: first + place for place, node in enumerate(common)}
     graph = Graph()

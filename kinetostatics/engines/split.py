@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers.lazy import cached_property
-from . import loops, programs, writing
-from .compiled import loaded
-from .operations import BY_DESIGN
-from .programs import Program
+from . import loops
+from .compiled import load_compiled
+from .operations import BY_DESIGN, compile_line
+from .programs import BUFFER_VALUES, Program, numpy_sines
 from .trace import parted
+from .writing import line_source, loop_source
 
 
 class Given(NamedTuple):
@@ -36,7 +37,7 @@ class Given(NamedTuple):
     shape: tuple
 
 
-class Split:
+class MixedPrecision:
     """A program whose arithmetic at each crank angle is apart from what a design fixes.
 
     Attributes
@@ -48,7 +49,7 @@ class Split:
     def __init__(self, program):
         self._whole = program
         given, outputs = parted(program.outputs)
-        self._fixed = programs.made(writing.line(given), BY_DESIGN)
+        self._fixed = compile_line(line_source(given), BY_DESIGN)
         self.at_angles = Program(program.recording, outputs)
 
     def given(self, state, leaves, dtype):
@@ -60,7 +61,7 @@ class Split:
         with np.errstate(all="ignore"):
             parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
             rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
-            angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs.turn(angle)))
+            angle, sine, cosine = (part.astype(dtype) for part in (angle, *numpy_sines(angle)))
         return Given(angle, sine, cosine, parameters, rows, shape)
 
     def _fixed_by(self, numbers):
@@ -73,7 +74,7 @@ class Split:
         """Outputs (outputs, *shape) by array operations."""
         (_, batch), count = self.at_angles.buffered
         results = np.empty((len(self.at_angles.outputs), *given.shape), given.angle.dtype)
-        step = programs.BLOCK if len(given.shape) == 1 else given.shape[-1]
+        step = BUFFER_VALUES if len(given.shape) == 1 else given.shape[-1]
         with np.errstate(all="ignore"):
             for start in range(0, given.shape[-1], step):
                 part = slice(start, start + step)
@@ -87,22 +88,22 @@ class Split:
     def by_loop(self, given):
         """The same by a loop compiled for single precision."""
         shape, dtype = given.shape, given.angle.dtype
-        parameters = loops.table_of_parameters(given.parameters, shape[:-1]).astype(dtype)
+        parameters = loops.parameter_table(given.parameters, shape[:-1]).astype(dtype)
         own = given.angle.size > shape[-1]
         turn = [
             np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
             for array in given[:3]
         ]
-        rows = loops.table_of_rows(given.rows, shape).astype(dtype)
+        rows = loops.row_table(given.rows, shape).astype(dtype)
         results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
         angle, sine, cosine = turn
-        loops.run(self._loop, angle, sine, cosine, parameters, rows, results)
+        loops.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
     @cached_property
     def _loop(self):
         """The loop compiled for single precision."""
-        return loaded(writing.loop(self.at_angles.outputs, fuse=False, kind="float32")).loop
+        return load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
 
 
 def _of_type(part, dtype):

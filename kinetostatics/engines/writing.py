@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from ..numbers.elementary import ROUNDING, SPLIT
-from .fusing import fused, still_needed
+from .fusing import drop_unused, fused_sums
 from .trace import BY_ANGLE, Node, needed
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
@@ -110,7 +110,7 @@ def fma(typing, one, other, more):
 """What a loop with fused products and sums has before all else; two operations where the processor has not the one."""
 
 
-def loop(outputs, fuse=True, kind="float64") -> str:
+def loop_source(outputs, fuse=True, kind="float64") -> str:
     """Source of a module with ``loop(angles, sines, cosines, parameters, tables, results)``.
 
     It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
@@ -118,9 +118,9 @@ def loop(outputs, fuse=True, kind="float64") -> str:
     `fusing`, unless told.
     """
     nodes = needed(outputs)
-    sums = fused(nodes) if fuse else {}
+    sums = fused_sums(nodes) if fuse else {}
     if sums:
-        nodes = still_needed(nodes, outputs, sums)
+        nodes = drop_unused(nodes, outputs, sums)
     of_loop = [node for node in nodes if _is_computed_by_angle(node)]
     lines = [LOOP.format(rows=len(outputs))]
     lines += [f"        {_defined(node, _IN_LOOP)}" for node in nodes if node.varies < BY_ANGLE]
@@ -169,7 +169,7 @@ def _fused(node, found):
     return f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
 
 
-def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
+def line_source(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
     """Source of ``line(angle, sine, cosine, parameters, tables)``, which returns the outputs as they come.
 
     Of plain numbers; of arrays too, each operation with new memory.
@@ -180,7 +180,7 @@ def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> s
     return "\n".join(lines) + "\n"
 
 
-def buffered_line(outputs) -> tuple[str, int]:
+def buffered_source(outputs) -> tuple[str, int]:
     """Source of ``line(angle, sine, cosine, parameters, tables, buffers, results)`` on arrays, and how many buffers.
 
     Each operation writes into a buffer whose value is needed no more, or into its row of the results.

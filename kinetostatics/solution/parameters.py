@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from ..engines import programs
+from ..engines.programs import numbered_scene
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.kinds import Numbered
@@ -50,7 +50,7 @@ def unknown(scene, path, known=None):
 
 def leaves_of(places, state):
     """Which leaf of a `Dynamics` each number is, by path; of what is zero, and so absent, none."""
-    numbered = programs.numbered(state)
+    numbered = numbered_scene(state)
     found = {path: place.value(numbered) for path, place in places.items()}
     return {path: number for path, number in found.items() if isinstance(number, Numbered)}
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import accelerated, programs
+from kinetostatics.engines import accelerated
 from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.programs import program_of
 from support.elsewhere import diverse, errors, exact_values
 from support.every import every
 
@@ -20,7 +21,7 @@ SINGLE, DOUBLE = Backend("jax", "single", "cpu"), Backend("jax", "double", "cpu"
 @every("name", ["designs", "one angle of a table", "designs under a table", "friction", "speeds"])
 def test_jax_gives_values_within_their_bounds(jax, name):
     s = diverse()[name]
-    program, leaves = programs.of(s.dynamics, ("balancing_torque", "O"))
+    program, leaves = program_of(s.dynamics, ("balancing_torque", "O"))
     exact = program.run(s.dynamics, leaves)
     double, single = (backend.run(program, s.dynamics, leaves) for backend in (DOUBLE, SINGLE))
     assert double.dtype == float
@@ -68,7 +69,7 @@ def test_xla_writes_quotients_and_roots_as_they_are_recorded(jax):
 def test_the_mode_of_jax_is_as_it_was(jax):
     before = jax.config.jax_enable_x64
     s = diverse()["plain"]
-    program, leaves = programs.of(s.dynamics, ("slider_acceleration",))
+    program, leaves = program_of(s.dynamics, ("slider_acceleration",))
     for backend in (DOUBLE, SINGLE):
         backend.run(program, s.dynamics, leaves)
         assert jax.config.jax_enable_x64 == before
@@ -76,8 +77,8 @@ def test_the_mode_of_jax_is_as_it_was(jax):
 
 def test_the_device_is_the_first_that_jax_has_or_the_one_asked_for(jax):
     assert accelerated.device_of() is jax.devices()[0]
-    assert accelerated.named(accelerated.device_of("cpu")) == DOUBLE.device == "cpu"
-    assert accelerated.named(SimpleNamespace(platform="gpu", device_kind="NVIDIA X")) == "gpu: NVIDIA X"
+    assert accelerated.device_name(accelerated.device_of("cpu")) == DOUBLE.device == "cpu"
+    assert accelerated.device_name(SimpleNamespace(platform="gpu", device_kind="NVIDIA X")) == "gpu: NVIDIA X"
 
 
 def test_a_device_that_is_not_there_is_refused_with_those_that_are(jax):
@@ -87,7 +88,7 @@ def test_a_device_that_is_not_there_is_refused_with_those_that_are(jax):
 
 def test_no_bound_is_given_on_a_device_whose_functions_are_not_tested(jax, monkeypatch):
     s = diverse()["plain"]
-    program, leaves = programs.of(s.dynamics, ("slider_acceleration",))
+    program, leaves = program_of(s.dynamics, ("slider_acceleration",))
     strange = SimpleNamespace(platform="gpu", device_kind="NVIDIA X")
     monkeypatch.setattr(accelerated, "device_of", lambda platform: strange)
     with pytest.raises(ks.NotGivenError, match=r"no bound can be given on gpu: NVIDIA X.*device=.cpu"):

@@ -5,8 +5,8 @@ import pickle
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.programs import program_of
 from support.every import every
 
 PUMP = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
@@ -20,7 +20,7 @@ def state(angles):
 @every("angles", [0.3, [0.1, 0.2], np.linspace(0, 6, 40), np.zeros((2, 1, 5))], ids=np.shape)
 def test_results_and_bounds_have_the_shape_of_the_angles(precision, dtype, angles):
     backend = Backend("numpy", precision)
-    made, leaves = programs.of(state(angles), ("O",))
+    made, leaves = program_of(state(angles), ("O",))
     found, bounds = backend.run(made, state(angles), leaves), backend.bounds(made, state(angles), leaves)
     assert found.shape == bounds.shape == (2, *np.shape(angles))
     assert (found.dtype, bounds.dtype) == (dtype, float)
@@ -28,7 +28,7 @@ def test_results_and_bounds_have_the_shape_of_the_angles(precision, dtype, angle
 
 def test_in_double_precision_it_is_the_program_itself_with_the_bounds_of_a_solution():
     solution = ks.solve(PUMP, [0.1, 0.2], crank_speed=100.0)
-    made, leaves = programs.of(solution.dynamics, ("O",))
+    made, leaves = program_of(solution.dynamics, ("O",))
     backend = Backend("numpy")
     assert backend.is_own
     assert not Backend("numpy", "single").is_own
@@ -39,7 +39,7 @@ def test_in_double_precision_it_is_the_program_itself_with_the_bounds_of_a_solut
 
 def test_beyond_the_largest_input_there_is_no_bound():
     solution = ks.solve(ks.crank_slider(0.05, 0.2, slider=ks.Link(1e31)), [0.1], crank_speed=1.0)
-    made, leaves = programs.of(solution.dynamics, ("O",))
+    made, leaves = program_of(solution.dynamics, ("O",))
     assert np.isinf(Backend("numpy").bounds(made, solution.dynamics, leaves)).all()
 
 

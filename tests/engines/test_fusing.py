@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
-from kinetostatics.engines.fusing import fused
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.fusing import fused_sums
+from kinetostatics.engines.programs import Program, program_of
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.trace import Graph, needed
 
@@ -23,7 +22,7 @@ def numbers(graph):
 
 
 def parts(total):
-    found = fused(needed([total])).get(total)
+    found = fused_sums(needed([total])).get(total)
     return found and (found.sign, {found.one, found.other}, found.rest_sign, found.rest)
 
 
@@ -49,7 +48,7 @@ def test_products_that_twins_could_make_equal_stay_rounded(graph):
     sine, cosine, one, other, third, fourth = numbers(graph)
     force, twin = one * (other * sine + one) * cosine, third * (fourth * sine - other) * cosine
     for total in (force - twin, twin + (force + one), (one - force) - (twin + cosine).held()):
-        assert fused([*needed([total])]).get(total) is None
+        assert fused_sums([*needed([total])]).get(total) is None
     assert parts(force - sine * sine) is not None
 
 
@@ -71,7 +70,7 @@ def test_a_value_is_the_same_to_the_last_bit_whatever_is_computed_with_it():
     s = ks.solve(saw, np.linspace(0.0, 6.0, 500), crank_speed=33.5, loads=ks.Gravity(), engine="compiled")
     state, found = s.dynamics, []
     for names in (("O",), ("balancing_torque", "O", "guide_force", "kinetic_energy")):
-        program, leaves = programs.of(state, names)
+        program, leaves = program_of(state, names)
         for made in (program, program.bounded(), program.by_parameters((0, 1))):
             rows = made.run(state, leaves, compiled=True)[: len(program.outputs)]
             found.append(program.recording.named(rows)["O"])

@@ -3,9 +3,9 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.gaping import Gaps
-from kinetostatics.engines.lean import LeanGraph
+from kinetostatics.engines.lean import SimplifiedGraph
+from kinetostatics.engines.programs import Program
 from kinetostatics.engines.record import Recorder
 from kinetostatics.engines.trace import needed
 from support.every import every
@@ -15,7 +15,7 @@ VEE = ks.Mechanism("vee", ks.Crank(0.05), (ks.SliderGroup(0.2), SHORT))
 
 
 def recorder():
-    return Recorder(ks.Scene(VEE, 7.0).solve([0.1, 1.5], on_gap="nan").apart[0], None, LeanGraph())
+    return Recorder(ks.Scene(VEE, 7.0).solve([0.1, 1.5], on_gap="nan").apart[0], None, SimplifiedGraph())
 
 
 def values(recorder, output):
@@ -23,7 +23,7 @@ def values(recorder, output):
     s = ks.Scene(VEE, 7.0).solve([1.0, 0.1], on_gap="nan")
     assert s.closed.tolist() == [True, False]
     numbers = s.apart[1].numbers
-    return programs.Program(None, (output,))._by_numbers(s.crank_angle, numbers, (2,))[0]
+    return Program(None, (output,))._by_numbers(s.crank_angle, numbers, (2,))[0]
 
 
 @every("output", [0.0, 2.5])

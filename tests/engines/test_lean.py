@@ -2,14 +2,14 @@
 
 import pytest
 
-from kinetostatics.engines.lean import LeanGraph
+from kinetostatics.engines.lean import SimplifiedGraph
 from kinetostatics.engines.trace import needed
 
 
 @pytest.fixture
 def lean():
     """Sine and cosine of the crank angle, and two numbers of a design, that record few operations."""
-    graph = LeanGraph()
+    graph = SimplifiedGraph()
     angle = graph.angle()
     return angle.sin(), angle.cos(), graph.parameter(0), graph.parameter(1)
 
@@ -83,7 +83,7 @@ def test_zero_divisors_of_a_design_are_divided_by_where_they_stand(lean):
 
 def test_what_may_be_so_small_that_it_has_no_reciprocal_is_divided_by_as_it_is():
     """Zero by the smallest number is zero; zero times infinity would be none."""
-    graph = LeanGraph()
+    graph = SimplifiedGraph()
     x, length = graph.angle(), graph.parameter(0)
     for small in (x + 5e-324, x * x, x + 1.0):
         assert (length / small).operation == "/"

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops, programs
+from kinetostatics.engines import loops
+from kinetostatics.engines.programs import program_of
 from support.both_engines import ULP, again, assert_same
 from support.scenes import (
     ANGLES,
@@ -22,8 +23,8 @@ def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeyp
     """Of many designs each thread takes some, of a single one some angles."""
     expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)
     alone = [again(s).reaction("O") for s in expected]
-    monkeypatch.setattr(loops, "cores", lambda: 3)
-    monkeypatch.setattr(loops, "SHARE", 20)
+    monkeypatch.setattr(loops, "core_count", lambda: 3)
+    monkeypatch.setattr(loops, "VALUES_A_THREAD", 20)
     for s, before in zip(expected, alone, strict=True):
         found = again(s).reaction("O")
         assert np.array_equal(found, before)
@@ -32,22 +33,20 @@ def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeyp
 
 def test_parameters_stand_in_a_row_for_each_design():
     numbers = 1.0, np.array([[2.0], [3.0]]), np.array([4.0]), 5
-    assert loops.table_of_parameters(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
-    assert loops.table_of_parameters((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
-    assert (
-        loops.table_of_parameters((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist() == [[1, 6]] * 3 + [[1, 7]] * 3
-    )
+    assert loops.parameter_table(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
+    assert loops.parameter_table((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
+    assert loops.parameter_table((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist() == [[1, 6]] * 3 + [[1, 7]] * 3
 
 
 def test_a_row_of_a_table_for_one_design_may_have_an_axis_of_designs():
     rows = [np.arange(3.0)[None], 7.0, np.arange(3.0)]
     expected = [[[0.0, 1.0, 2.0]], [[7.0] * 3], [[0.0, 1.0, 2.0]]]
     for shape in ((3,), (1, 3), (1, 1, 3), (5, 3)):
-        np.testing.assert_array_equal(loops.table_of_rows(rows, shape), expected)
+        np.testing.assert_array_equal(loops.row_table(rows, shape), expected)
 
 
 def test_memory_begins_where_vectors_are_loaded_at_once():
-    held = [loops.memory(count, 3, 8) for count in (1, 2, 5)]
+    held = [loops.aligned_memory(count, 3, 8) for count in (1, 2, 5)]
     assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]
     assert [part.ctypes.data % 64 for part in held] == [0, 0, 0]
 
@@ -81,7 +80,7 @@ def test_a_limit_position_is_warned_of_with_the_same_words_from_the_same_place(i
 @pytest.mark.slow
 def test_loops_of_many_outputs_are_vectorised(numba):
     state = ks.load_case("sawframe_2r63").variants["plain"].scene.solve(np.linspace(0.0, 6.0, 3600)).dynamics
-    values, leaves = programs.of(state, ("O", "A", "B", "guide"))
+    values, leaves = program_of(state, ("O", "A", "B", "guide"))
     bounded = values.bounded()
     assert len(bounded.outputs) > 12
     times = {of: min(seconds(of, state, leaves) for _ in range(20)) for of in (values, bounded)}

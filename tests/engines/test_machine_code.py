@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from kinetostatics.engines import machine_code, programs_folder
-from kinetostatics.engines.machine_code import load
-from kinetostatics.engines.programs_folder import CHECKSUMS, new_entry, sealed
+from kinetostatics.engines.machine_code import load_module
+from kinetostatics.engines.programs_folder import CHECKSUMS, is_intact, new_entry
 from kinetostatics.errors import CacheWarning
 
 TEXT = """
@@ -51,7 +51,7 @@ def file_modes(path):
 def test_machine_code_is_found_again_and_is_for_its_user_alone(numba, folder, mask):
     before = os.umask(mask)
     try:
-        first, second = load(TEXT, keep=True), load(TEXT, keep=True)
+        first, second = load_module(TEXT, keep=True), load_module(TEXT, keep=True)
     finally:
         os.umask(before)
     assert (hits(first), hits(second)) == (0, 1)
@@ -62,12 +62,12 @@ def test_machine_code_is_found_again_and_is_for_its_user_alone(numba, folder, ma
 
 
 def test_what_is_not_to_be_kept_leaves_nothing(numba, folder):
-    assert load(TEXT).twice(2.1) == 4.2
+    assert load_module(TEXT).twice(2.1) == 4.2
     assert not folder.exists()
 
 
 def test_modules_of_plain_python_need_no_numba(folder):
-    assert load("def thrice(x):\n    return 3 * x\n").thrice(2) == 6
+    assert load_module("def thrice(x):\n    return 3 * x\n").thrice(2) == 6
 
 
 def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
@@ -75,7 +75,7 @@ def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
     monkeypatch.setenv("KINETOSTATICS_CACHE", "~/mine")
     monkeypatch.chdir(tmp_path)
-    load(TEXT, keep=True)
+    load_module(TEXT, keep=True)
     assert list((tmp_path / "mine").iterdir())
     assert not (tmp_path / "~").exists()
 
@@ -86,7 +86,7 @@ def test_one_warning_is_given_however_many_programs_cannot_be_kept(numba, folder
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         for number in range(3):
-            assert load(f"{TEXT}#{number}", keep=True).twice(2.0) == 4.0
+            assert load_module(f"{TEXT}#{number}", keep=True).twice(2.0) == 4.0
     assert [item.category for item in caught] == [CacheWarning]
     assert f"others may write to {folder}" in str(caught[0].message)
     assert not list(folder.iterdir())
@@ -95,7 +95,7 @@ def test_one_warning_is_given_however_many_programs_cannot_be_kept(numba, folder
 def test_numbas_own_folder_is_left_alone(numba, folder, monkeypatch, tmp_path):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "numba"))
     with pytest.warns(CacheWarning, match="NUMBA_CACHE_DIR is set"):
-        assert load(TEXT, keep=True).twice(2.0) == 4.0
+        assert load_module(TEXT, keep=True).twice(2.0) == 4.0
     assert not (tmp_path / "numba").exists()
 
 
@@ -106,7 +106,7 @@ def test_of_two_that_make_the_same_entry_the_first_has_its_way(tmp_path):
         with new_entry(entry) as other:
             (other / "text").write_text("other")
     assert (entry / "text").read_text() == "other"
-    assert sealed(entry)
+    assert is_intact(entry)
     assert [path.name for path in tmp_path.iterdir()] == ["entry"]
 
 
@@ -127,7 +127,7 @@ def test_processes_that_start_together_share_the_folder(numba, folder):
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     assert [(process.communicate()[0], process.returncode) for process in started] == [("4.2\n", 0)] * 2
-    assert [sealed(entry) for entry in folder.iterdir()] == [True]
+    assert [is_intact(entry) for entry in folder.iterdir()] == [True]
 
 
 # Nowhere to keep it
@@ -193,7 +193,7 @@ def test_without_a_folder_programs_are_compiled_in_memory(numba, folder, monkeyp
     message = NOWHERE[name](monkeypatch, tmp_path)
     present = set(tmp_path.iterdir())
     with pytest.warns(CacheWarning, match=f"made anew in each session.*{message}"):
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert set(tmp_path.iterdir()) == present
 
 
@@ -207,7 +207,7 @@ def test_on_a_full_disk_programs_are_compiled_in_memory(numba, folder, limit):
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
     try:
         with pytest.warns(CacheWarning, match=r"made anew in each session.*too large"):
-            module = load(TEXT, keep=True)
+            module = load_module(TEXT, keep=True)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert module.twice(2.1) == 4.2
@@ -224,6 +224,6 @@ def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
     folder.mkdir(parents=True, mode=0o700)
     (folder / "__pycache__").mkdir()
     (folder / "kinetostatics_0123456789abcdef.py").write_text("raise SystemExit")
-    load(TEXT, keep=True)
-    assert hits(load(TEXT, keep=True)) == 1
+    load_module(TEXT, keep=True)
+    assert hits(load_module(TEXT, keep=True)) == 1
     assert len(list(folder.rglob(CHECKSUMS))) == 1

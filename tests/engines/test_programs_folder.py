@@ -5,7 +5,7 @@ import os
 import pytest
 
 from kinetostatics.engines import programs_folder
-from kinetostatics.engines.programs_folder import UntrustedError, new_entry, require_private, sealed
+from kinetostatics.engines.programs_folder import UntrustedError, is_intact, new_entry, require_private
 
 
 def test_a_folder_that_is_named_is_made_for_the_user_alone(tmp_path, monkeypatch):
@@ -19,10 +19,10 @@ def test_an_entry_is_there_when_it_is_whole_and_sealed(tmp_path):
     with new_entry(tmp_path / "entry") as made:
         (made / "code").write_text("x")
         assert not (tmp_path / "entry").exists()
-    assert sealed(tmp_path / "entry")
+    assert is_intact(tmp_path / "entry")
     assert [path.name for path in tmp_path.iterdir()] == ["entry"]
     (tmp_path / "entry" / "more").write_text("y")
-    assert not sealed(tmp_path / "entry")
+    assert not is_intact(tmp_path / "entry")
 
 
 def test_an_entry_that_fails_leaves_nothing(tmp_path):

@@ -12,7 +12,7 @@ from kinetostatics.engines import recent
 def counted():
     calls = []
 
-    @recent.kept_for_same_angles
+    @recent.keep_for_same_angles
     def compute(angle):
         calls.append(angle.size)
         return np.sin(angle)
@@ -41,11 +41,11 @@ def test_the_same_numbers_in_another_shape_are_others(counted):
 def test_too_many_are_not_kept_each_thread_has_its_own_and_all_may_be_forgotten(counted):
     compute, calls = counted
     for _ in range(2):
-        compute(np.zeros(recent.MOST + 1))
+        compute(np.zeros(recent.MAX_KEPT_ANGLES + 1))
     compute(np.zeros(3))
     thread = threading.Thread(target=compute, args=(np.zeros(3),))
     thread.start()
     thread.join()
-    recent.forget()
+    recent.forget_angles()
     compute(np.zeros(3))
-    assert calls == [recent.MOST + 1] * 2 + [3] * 3
+    assert calls == [recent.MAX_KEPT_ANGLES + 1] * 2 + [3] * 3

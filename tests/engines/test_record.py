@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import machine_code, programs, record
+from kinetostatics.engines import machine_code, record
+from kinetostatics.engines.programs import program_of
 from kinetostatics.machine.loads import TURN
 from kinetostatics.mechanics.dynamics import Dynamics
 
@@ -40,7 +41,7 @@ def six_bar(size=1.0, speed=30.0):
 def counted(monkeypatch):
     """Counts recordings, and modules that are made of programs, which numba would compile."""
     found = {"recordings": 0, "compilations": 0}
-    recorded, load = record.record, machine_code.load
+    recorded, load = record.record, machine_code.load_module
 
     def record_(*given):
         found["recordings"] += 1
@@ -50,8 +51,8 @@ def counted(monkeypatch):
         found["compilations"] += 1
         return load(*given, **options)
 
-    monkeypatch.setattr(programs, "record", record_)
-    monkeypatch.setattr("kinetostatics.engines.machine_code.load", load_)
+    monkeypatch.setattr("kinetostatics.engines.programs.record", record_)
+    monkeypatch.setattr("kinetostatics.engines.machine_code.load_module", load_)
     return found
 
 
@@ -114,4 +115,4 @@ def test_what_is_zero_is_absent_and_makes_another_structure():
     one, other = (Dynamics(*_fields(plain())), Dynamics(*_fields(cam())))
     assert one.apart[0] != other.apart[0]
     without = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0)
-    assert programs.of(Dynamics(*_fields(without)))[0].recording.operations < programs.of(one)[0].recording.operations
+    assert program_of(Dynamics(*_fields(without)))[0].recording.operations < program_of(one)[0].recording.operations

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops, programs
+from kinetostatics.engines import loops
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.split import Split
+from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.split import MixedPrecision
 from support.elsewhere import ANGLES, PUMP, diverse
 from support.every import every
 from support.scenes import SCENES, solve
@@ -15,7 +16,7 @@ NUMPY, COMPILED = Backend("numpy", "single"), Backend("compiled", "single")
 
 
 def made(solution, names):
-    return *programs.of(solution.dynamics, names), solution.dynamics
+    return *program_of(solution.dynamics, names), solution.dynamics
 
 
 def rows(backend, solution, names=("balancing_torque", "O", "A", "slider_acceleration")):
@@ -39,8 +40,8 @@ def test_compiled_loops_give_the_bits_of_numpy_in_single_precision(monkeypatch):
     s = diverse()["designs"]
     expected = rows(NUMPY, s)
     assert np.array_equal(rows(COMPILED, s), expected)
-    monkeypatch.setattr(loops, "cores", lambda: 3)
-    monkeypatch.setattr(loops, "SHARE", 20)
+    monkeypatch.setattr(loops, "core_count", lambda: 3)
+    monkeypatch.setattr(loops, "VALUES_A_THREAD", 20)
     assert np.array_equal(rows(COMPILED, s), expected)
     turn = solve(SCENES["plain"], ANGLES)
     assert np.array_equal(rows(COMPILED, turn), rows(NUMPY, turn))
@@ -71,7 +72,7 @@ def test_what_a_design_fixes_is_computed_in_double():
 
 
 def test_all_constants_and_fixed_numbers_are_parameters_of_what_is_left():
-    split = Split(made(solve(SCENES["plain"], ANGLES), ("balancing_torque",))[0])
+    split = MixedPrecision(made(solve(SCENES["plain"], ANGLES), ("balancing_torque",))[0])
     graph = split.at_angles.outputs[0].graph
     assert all(node.varies or node.operation == "parameter" for node in graph)
     arguments = [part for node in graph if node.operation not in ("parameter", "table") for part in node.arguments]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
+from kinetostatics.engines.programs import program_of
 from kinetostatics.engines.trace import Node
 from kinetostatics.errors import NotGivenError
 from support.scenes import (
@@ -17,7 +17,7 @@ from support.scenes import (
 
 def program(solution, names, sizes=False):
     """Program of some quantities, and a function that runs it: by NumPy unless told."""
-    made, leaves = programs.of(solution.dynamics, tuple(names), sizes)
+    made, leaves = program_of(solution.dynamics, tuple(names), sizes)
     return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
 
 

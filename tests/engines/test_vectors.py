@@ -6,8 +6,9 @@ from operator import add, mul, neg, sub, truediv
 import numpy as np
 import pytest
 
-from kinetostatics.engines import loops, programs
+from kinetostatics.engines import loops
 from kinetostatics.engines.operations import BY_DESIGN
+from kinetostatics.engines.programs import Program
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers import elementary
@@ -16,7 +17,7 @@ SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.3, 5e-324, -5e-324, 1e-300, 1e300, math.inf, 
 
 
 def program(outputs, graph, parameters=()):
-    return programs.Program(Recording((), outputs, (), (), parameters, (), graph))
+    return Program(Recording((), outputs, (), (), parameters, (), graph))
 
 
 def of_rows(write, rows):
@@ -82,4 +83,4 @@ def test_angles_and_tables_of_each_design_are_its_own(numba):
     angles, rows = np.random.default_rng(0).random((3, 50)), np.random.default_rng(1).random((2, 3, 50))
     found = made.by_loop(angles, [1.0], list(rows), angles.shape)
     assert np.array_equal(found[0], angles + rows[1])
-    assert np.array_equal(found[1], rows[0] * loops.turn(angles)[1])
+    assert np.array_equal(found[1], rows[0] * loops.compiled_sines(angles)[1])

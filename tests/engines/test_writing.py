@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs, writing
+from kinetostatics.engines.programs import Program, program_of
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.writing import buffered_source, line_source, loop_source
 from kinetostatics.numbers import elementary
 
 ANGLE = np.linspace(0.0, 6.0, 9)
@@ -17,14 +18,14 @@ S = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), ANGLE, crank_speed=
 
 @pytest.fixture(scope="module")
 def recorded():
-    return programs.of(S.dynamics, ("balancing_torque", "guide_force"), False)
+    return program_of(S.dynamics, ("balancing_torque", "guide_force"), False)
 
 
 def test_a_line_of_plain_numbers_is_python_and_gives_the_solution(recorded):
     made, leaves = recorded
     scope = {name: getattr(math, name) for name in ("sin", "cos", "sqrt")}
     scope |= {"root": lambda square, unit: math.sqrt(square), "divisor": max}
-    exec(writing.line(made.outputs), scope)
+    exec(line_source(made.outputs), scope)
     for place, angle in enumerate(ANGLE):
         found = scope["line"](angle, math.sin(angle), math.cos(angle), leaves.numbers, ())
         assert found == pytest.approx((S.balancing_torque[place], S.guide_force[place]), rel=1e-13, abs=1e-12)
@@ -32,7 +33,7 @@ def test_a_line_of_plain_numbers_is_python_and_gives_the_solution(recorded):
 
 def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recorded):
     made, _ = recorded
-    loop, (line, buffers) = writing.loop(made.outputs), writing.buffered_line(made.outputs)
+    loop, (line, buffers) = loop_source(made.outputs), buffered_source(made.outputs)
     compile(loop, "loop", "exec")
     compile(line, "line", "exec")
     for place, output in enumerate(made.outputs):
@@ -46,7 +47,7 @@ def test_an_output_that_is_a_sine_of_the_crank_angle_itself_is_computed_too():
     graph = Graph()
     angle, radius = graph.angle(), graph.parameter(0)
     outputs = angle.sin(), radius * angle.cos(), angle.cos(), angle
-    program = programs.Program(Recording((), outputs, (), (), (radius,), (), graph))
+    program = Program(Recording((), outputs, (), (), (radius,), (), graph))
     angles = np.linspace(0.0, 6.0, 50)
     found = program.by_numpy(angles, [2.0], (), angles.shape)
     np.testing.assert_array_equal(found, [np.sin(angles), 2.0 * np.cos(angles), np.cos(angles), angles])
@@ -59,7 +60,7 @@ def test_a_total_loses_nothing_in_any_engine():
     parts = [graph.parameter(place) for place in range(4)]
     outputs = (elementary.total(*parts), elementary.total(parts[0], graph.angle(), -parts[3]))
     values, angles = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001], np.array([0.1, 0.7])
-    program = programs.Program(Recording((), outputs, (), (), tuple(parts), (), graph))
+    program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
     for compute in (program.by_numpy, program.by_loop):
         np.testing.assert_array_equal(compute(angles, values, (), angles.shape), wanted)
@@ -72,7 +73,7 @@ def test_a_rest_is_the_same_in_any_engine():
     x, y, length = parts = [graph.parameter(place) for place in range(3)]
     whole, values = (x * x + y * y).sqrt(), [0.3, 0.4, 0.5000000000000001]
     outputs = elementary.rest(whole, x, y), elementary.total(whole, -length, elementary.rest(whole, x, y))
-    program = programs.Program(Recording((), outputs, (), (), tuple(parts), (), graph))
+    program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     least = np.sqrt(0.3 * 0.3 + 0.4 * 0.4)
     lost = elementary.rest(least, 0.3, 0.4)
     for compute in (program.by_numpy, program.by_loop):

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from kinetostatics.engines import machine_code
-from kinetostatics.engines.machine_code import load
-from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, require_private, sealed
+from kinetostatics.engines.machine_code import load_module
+from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, is_intact, require_private
 from kinetostatics.errors import CacheWarning
 
 pytestmark = [
@@ -42,7 +42,7 @@ def pristine(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pristine")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("KINETOSTATICS_CACHE", str(folder))
-        load(TEXT, keep=True)
+        load_module(TEXT, keep=True)
     return folder
 
 
@@ -121,11 +121,11 @@ def test_damaged_machine_code_is_compiled_anew_with_one_warning(entry, file, dam
     DAMAGE[damage](next(entry.rglob(file)))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert [item.category for item in caught] == [CacheWarning]
     assert "was damaged, and is compiled anew" in str(caught[0].message)
-    assert sealed(entry)
-    again = load(TEXT, keep=True)
+    assert is_intact(entry)
+    again = load_module(TEXT, keep=True)
     assert (sum(again.twice.stats.cache_hits.values()), again.twice(2.1)) == (1, 4.2)
     assert not list(entry.parent.rglob("ran"))
 
@@ -134,7 +134,7 @@ def test_damaged_machine_code_is_compiled_anew_with_one_warning(entry, file, dam
 def test_files_that_were_not_there_make_it_damaged(entry, name):
     (entry / name.format(entry.name)).write_bytes(pickle.dumps(Planted(entry / "ran")))
     with pytest.warns(CacheWarning, match="was damaged"):
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
 
 
 def loosened(select, bits):
@@ -174,7 +174,7 @@ def assert_untrusted(entry, message):
     """Not even with a seal that fits is anything read; it stays as it is."""
     before = {path: path.stat().st_mtime_ns for path in entry.rglob("*")}
     with pytest.warns(CacheWarning, match=message) as caught:
-        module = load(TEXT, keep=True)
+        module = load_module(TEXT, keep=True)
     assert len(caught) == 1
     assert (sum(module.twice.stats.cache_hits.values()), module.twice(2.1)) == (0, 4.2)
     assert {path: path.stat().st_mtime_ns for path in entry.rglob("*")} == before
@@ -232,4 +232,4 @@ def test_code_planted_for_the_interpreter_never_runs(tmp_path, monkeypatch):
     folder.chmod(0o700)
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(folder))
     monkeypatch.syspath_prepend(tmp_path)
-    assert load(TEXT, keep=True).twice(2.1) == 4.2
+    assert load_module(TEXT, keep=True).twice(2.1) == 4.2

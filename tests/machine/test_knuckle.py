@@ -3,7 +3,7 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
+from kinetostatics.engines.programs import program_of
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import differences
@@ -101,7 +101,7 @@ def test_where_the_coupler_points_to_either_side_it_is_right_all_the_same():
 def test_it_costs_six_operations():
     mechanism = press()
     counts = [
-        programs.of(ks.Scene(made, 6.0).solve(TURN).dynamics, ("B", "balancing_torque"))[0].recording.operations
+        program_of(ks.Scene(made, 6.0).solve(TURN).dynamics, ("B", "balancing_torque"))[0].recording.operations
         for made in (mechanism, plainly(mechanism))
     ]
     assert counts[0] <= counts[1] + 6

@@ -13,7 +13,7 @@ from kinetostatics.results.reductions import parsed
 
 pytestmark = [
     pytest.mark.slow,  # all reductions as one compiled loop
-    pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)"),
+    pytest.mark.skipif(not compiled.numba_available(), reason="numba is not installed (extra: fast)"),
 ]
 OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
@@ -62,7 +62,7 @@ def loop(angle, sine, cosine, parameters, tables, results):
         for row in range(tables.shape[0]):
             results[design * tables.shape[0] + row] = tables[row, design]
 """
-    return compiled.loaded(text).loop
+    return compiled.load_compiled(text).loop
 
 
 def reduced(loop, values, closure=None, turns=1, block=7):

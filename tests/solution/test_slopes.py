@@ -3,8 +3,8 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.programs import program_of
 from kinetostatics.solution.parameters import leaves_of
 from kinetostatics.solution.slopes import slopes
 
@@ -14,7 +14,7 @@ TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
 def test_slopes_stand_by_quantity_and_path_and_are_missing_in_gaps():
     state = SCENE.unsolved(TURN).dynamics
-    program, leaves = programs.of(state, ("balancing_torque", "O"))
+    program, leaves = program_of(state, ("balancing_torque", "O"))
     places = leaves_of(SCENE.places, state)
     found = slopes(
         program, {path: places[path] for path in ("crank_length", "slider.mass")}, state, leaves, Backend("numpy")
