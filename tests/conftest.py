@@ -37,7 +37,7 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import compiled, loops, machine_code, split
+    from kinetostatics.engines import code_cache, compiled, numba_backend, split
     from kinetostatics.numbers import kinds
     from support import by_arrays
 
@@ -53,8 +53,8 @@ def interpreted(monkeypatch):
     for module in (numba, numba.extending, core):
         monkeypatch.setitem(sys.modules, module.__name__, module)
     by_arrays.stand_in(monkeypatch)
-    loaded = cache(machine_code.load_module)
-    for module in (compiled, loops, programs, split):
+    loaded = cache(code_cache.load_module)
+    for module in (compiled, numba_backend, programs, split):
         monkeypatch.setattr(module, "load_compiled", loaded)
     kinds.forget()
     yield

@@ -6,11 +6,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from . import accelerated, arithmetic
+from . import arithmetic, jax_backend
 from .arithmetic import BoundsElsewhere
 from .bounded import where_known, with_bounds
 from .bounds import CAP
-from .programs import Program
+from .program import Program
 from .split import MixedPrecision
 
 _splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()
@@ -40,7 +40,7 @@ class Backend:
     @property
     def device(self):
         """What computes: "cpu", or what JAX calls its device."""
-        return accelerated.device_name(accelerated.device_of(self.platform)) if self.engine == "jax" else "cpu"
+        return jax_backend.device_name(jax_backend.device_of(self.platform)) if self.engine == "jax" else "cpu"
 
     @property
     def is_own(self):
@@ -57,7 +57,7 @@ class Backend:
         given = split.given(state, leaves, arithmetic.OF[self.precision].dtype)
         if self.engine == "jax":
             if program not in self._on_device:
-                self._on_device[program] = accelerated.DeviceProgram(split, accelerated.device_of(self.platform))
+                self._on_device[program] = jax_backend.DeviceProgram(split, jax_backend.device_of(self.platform))
             rows = self._on_device[program].run(given)
         else:
             rows = split.by_loop(given) if self.engine == "compiled" else split.by_numpy(given)
@@ -74,7 +74,7 @@ class Backend:
             Code of the user's, or a device, rounds in a way that is not known.
         """
         if self.engine == "jax":
-            accelerated.require_known_rounding(accelerated.device_of(self.platform))
+            jax_backend.require_known_rounding(jax_backend.device_of(self.platform))
         compiled = self.engine == "compiled"
         if self.is_own:
             values, found = with_bounds(program, state, leaves, compiled, tight)

@@ -38,7 +38,7 @@ def require_numba():
 @cache
 def load_compiled(text):
     """Module of a source, its machine code kept on disk."""
-    from .machine_code import load_module
+    from .code_cache import load_module
 
     require_numba()
     return load_module(text, keep=True)

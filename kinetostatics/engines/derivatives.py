@@ -7,7 +7,7 @@ for each output; the shorter way is taken.
 
 from collections.abc import Callable
 
-from .trace import Node, needed
+from .graph import Node, needed
 
 
 def gradients(graph, outputs, parameters):

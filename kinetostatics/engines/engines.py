@@ -16,7 +16,7 @@ from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
 from .bounded import with_bounds
 from .bounds import CAP
-from .programs import program_of
+from .program import program_of
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 from ..machine import hints
 from ..machine.links import present
 from ..numbers.checks.usual import FAR
+from .codegen import line_source
+from .graph import needed
 from .operations import PLAIN, compile_line
 from .record import recorded_scene
-from .trace import needed
-from .writing import line_source
 
 
 def plausibility_test(kind, judged=()):

@@ -9,7 +9,7 @@ the last bit whatever else is computed.
 
 from typing import Any, NamedTuple
 
-from .trace import BY_ANGLE, Node
+from .graph import BY_ANGLE, Node
 
 NONE: frozenset[int] = frozenset()
 

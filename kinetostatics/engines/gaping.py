@@ -6,7 +6,7 @@ Such are the weight of the crank, moments that are zero, and energies beside a g
 import numpy as np
 
 from ..mechanics.gaps import groups_behind, places
-from .trace import Node
+from .graph import Node
 
 ROOTS = ("root", "sqrt")
 """Operations that have no value where a group cannot be assembled."""

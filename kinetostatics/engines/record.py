@@ -25,9 +25,9 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .bounds import Error
 from .gaping import Gaps
-from .lean import SimplifiedGraph
+from .graph import Graph, Node, needed, operations
+from .simplify import SimplifiedGraph
 from .steep import SteepTable, not_known, of_pieces
-from .trace import Graph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
 """Quantities that tell of gaps themselves."""

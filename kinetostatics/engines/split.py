@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers.lazy import cached_property
-from . import loops
+from . import numba_backend
+from .codegen import line_source, loop_source
 from .compiled import load_compiled
+from .graph import parted
 from .operations import BY_DESIGN, compile_line
-from .programs import BUFFER_VALUES, Program, numpy_sines
-from .trace import parted
-from .writing import line_source, loop_source
+from .program import BUFFER_VALUES, Program, numpy_sines
 
 
 class Given(NamedTuple):
@@ -88,16 +88,16 @@ class MixedPrecision:
     def by_loop(self, given):
         """The same by a loop compiled for single precision."""
         shape, dtype = given.shape, given.angle.dtype
-        parameters = loops.parameter_table(given.parameters, shape[:-1]).astype(dtype)
+        parameters = numba_backend.parameter_table(given.parameters, shape[:-1]).astype(dtype)
         own = given.angle.size > shape[-1]
         turn = [
             np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
             for array in given[:3]
         ]
-        rows = loops.row_table(given.rows, shape).astype(dtype)
+        rows = numba_backend.row_table(given.rows, shape).astype(dtype)
         results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
         angle, sine, cosine = turn
-        loops.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
+        numba_backend.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
     @cached_property

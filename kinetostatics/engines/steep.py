@@ -19,10 +19,10 @@ from ..numbers.planar import number, plus
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .arithmetic import BoundsOfLonger
 from .bounds import Error
+from .codegen import buffered_source, line_source
+from .graph import needed, parted
 from .operations import ARRAYS, BY_DESIGN, PLAIN, compile_line
 from .recent import keep_for_same_angles
-from .trace import needed, parted
-from .writing import buffered_source, line_source
 
 LONG = np.finfo(np.longdouble).nmant >= 63
 """Whether long numbers have more digits than a double."""

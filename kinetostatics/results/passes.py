@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 from ..engines import compiled
+from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
 from ..engines.scanning import COLUMNS, edition
-from ..engines.writing import ARGUMENTS, FILLED, GIVEN
 from ..numbers.elementary import ROUNDING
 from . import peaks
 from .peaks import REACH

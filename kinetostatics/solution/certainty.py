@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines.backends import Backend
 from ..engines.bounded import of_magnitude, where_known
-from ..engines.programs import program_of
+from ..engines.program import program_of
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks

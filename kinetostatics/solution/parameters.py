@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from ..engines.programs import numbered_scene
+from ..engines.program import numbered_scene
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.kinds import Numbered

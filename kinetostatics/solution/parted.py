@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.programs import program_of
+from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.friction import PASSES
 from ..machine.loads import STRAIGHT

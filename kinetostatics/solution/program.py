@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.programs import program_of
-from ..engines.trace import needed
+from ..engines.graph import needed
+from ..engines.program import program_of
 from ..errors import ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import by_sense, may_refuse, refusals

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines.compiled import numba_available, require_numba
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
-from ..engines.programs import program_of
+from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
 from ..machine import hints

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ..engines.programs import program_of
+from ..engines.program import program_of
 from ..errors import NotGivenError, ParameterError
 from ..mechanics.quantities import components, label_of
 from ..numbers import checks

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.programs import program_of
+from ..engines.program import program_of
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..machine.loads import STRAIGHT, TURN
 from ..mechanics.quantities import components

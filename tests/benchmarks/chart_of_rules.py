@@ -18,11 +18,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops, record
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.programs import Program
-from kinetostatics.engines.trace import Graph
-from kinetostatics.engines.writing import loop_source
+from kinetostatics.engines import compiled, numba_backend, record
+from kinetostatics.engines.codegen import loop_source
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.studies.methods.enclosures import enclosure
 
 STRUCTURES = (
@@ -59,10 +59,10 @@ def of_turn(made, scene):
     """Whether reciprocals are shared, and a function that runs designs with crank angles in common."""
     state = scene.solve(ANGLES).dynamics
     leaves, angle = state.apart[1], np.array(state.crank_angle, ndmin=2)
-    parameters = np.repeat(loops.parameter_table(leaves.numbers, ()), DESIGNS, axis=0)
-    rows = loops.row_table(made.rows(state, leaves), state.shape)
+    parameters = np.repeat(numba_backend.parameter_table(leaves.numbers, ()), DESIGNS, axis=0)
+    rows = numba_backend.row_table(made.rows(state, leaves), state.shape)
     results = np.empty((DESIGNS, len(made.outputs), ANGLES))
-    given = (angle, *loops.compiled_sines(angle), parameters, rows, results)
+    given = (angle, *numba_backend.compiled_sines(angle), parameters, rows, results)
     return isinstance(made.recording.graph, SimplifiedGraph), lambda: made.loop(*given)
 
 

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines import compiled, numba_backend
+from kinetostatics.engines.program import program_of
 from kinetostatics.studies.methods import kane
 from support.shipped import shipped
 from support.speed import (
@@ -59,8 +59,8 @@ pytestmark = pytest.mark.skipif(not compiled.numba_available(), reason="numba is
 @pytest.fixture
 def one_core(monkeypatch):
     """One core, and sines computed in each call, as C does, though the crank angles are those of the last."""
-    monkeypatch.setattr(loops, "core_count", lambda: 1)
-    monkeypatch.setattr(loops, "compiled_sines", loops.compiled_sines.__wrapped__)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
+    monkeypatch.setattr(numba_backend, "compiled_sines", numba_backend.compiled_sines.__wrapped__)
 
 
 @pytest.fixture(scope="module")
@@ -109,12 +109,12 @@ def one_design(angles):
 def shared(made, numbers, designs=BLOCK):
     """Function that computes designs with crank angles in common, and the sines and cosines it takes."""
     angle = turn(360)[None].copy()
-    sine, cosine = loops.compiled_sines(angle)
-    parameters = np.repeat(loops.parameter_table(numbers, ()), designs, axis=0)
+    sine, cosine = numba_backend.compiled_sines(angle)
+    parameters = np.repeat(numba_backend.parameter_table(numbers, ()), designs, axis=0)
 
     def run():
         results = np.empty((designs, len(made.outputs), 360))
-        loops.run_loop(made.loop, angle, sine, cosine, parameters, NONE, results)
+        numba_backend.run_loop(made.loop, angle, sine, cosine, parameters, NONE, results)
         return results.swapaxes(0, 1)
 
     return run, sine, cosine

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled, loops
-from kinetostatics.engines.programs import Program, program_of
+from kinetostatics.engines import compiled, numba_backend
+from kinetostatics.engines.program import Program, program_of
 from support.shipped import shipped
 from support.speed import seconds
 
@@ -44,7 +44,7 @@ def judged(benchmark, tell, what, found, most):
 def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, monkeypatch, engine, case, variant):
     if engine == "compiled" and not compiled.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
-    monkeypatch.setattr(loops, "core_count", lambda: 1)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene
     for kind in ("torque", "all"):
         for count in (360, 3600):
@@ -64,7 +64,7 @@ def test_tight_bounds_of_one_scalar_take_at_most_five_times_as_long_as_values(
 ):
     if not compiled.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
-    monkeypatch.setattr(loops, "core_count", lambda: 1)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene
     for name in ("balancing_torque", next(iter(scene.solve(0.1).reactions))):
         for count in (360, 3600):

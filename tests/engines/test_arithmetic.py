@@ -18,8 +18,8 @@ from kinetostatics.engines.arithmetic import (
     is_handed_over,
 )
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.programs import Program
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart
 from support.bounded import FAMILIES, over_worst, solution

@@ -6,7 +6,7 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from support.every import every
 
 PUMP = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))

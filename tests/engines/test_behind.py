@@ -5,11 +5,11 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.behind import Behind
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.running import RunningBounds
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import sign, total
 from support.every import every
 

@@ -9,9 +9,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
 from kinetostatics.engines import bounds
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, rest, total
 from kinetostatics.studies.methods.enclosures import enclosure
 from support import bounded as bounded_machines

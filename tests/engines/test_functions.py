@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.bounds import Bounds, Error
 from kinetostatics.engines.compiled import numba_available
 from kinetostatics.engines.functions import OTHER, SMALL, ULP
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart, sign, total
 from support import bounded
 from support.every import every
@@ -37,7 +37,7 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
     )
     found = [getattr(np, function)(angles)]
     if numba_available() and function != "arctan":
-        found.append(loops.compiled_sines(angles[None])[function == "cos"][0])
+        found.append(numba_backend.compiled_sines(angles[None])[function == "cos"][0])
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
@@ -52,7 +52,7 @@ def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
     angles = np.concatenate([*angles, 10.0 ** -np.arange(8.2, 320) if function == "cos" else []])
     turns = [(np.sin(angles), np.cos(angles))]
     if numba_available():
-        turns.append([part[0] for part in loops.compiled_sines(angles[None])])
+        turns.append([part[0] for part in numba_backend.compiled_sines(angles[None])])
     for turn in turns:
         own, other = turn if function == "sin" else turn[::-1]
         small = np.abs(other) < SMALL

@@ -5,9 +5,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.fusing import fused_sums
-from kinetostatics.engines.programs import Program, program_of
+from kinetostatics.engines.graph import Graph, needed
+from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Recording
-from kinetostatics.engines.trace import Graph, needed
 
 
 @pytest.fixture

@@ -4,10 +4,10 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines.gaping import Gaps
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.graph import needed
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recorder
-from kinetostatics.engines.trace import needed
+from kinetostatics.engines.simplify import SimplifiedGraph
 from support.every import every
 
 SHORT = ks.SliderGroup(0.04, ks.Guide.at(np.pi / 2), pin="C", label="2")

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from kinetostatics.engines.codegen import _OPERATIONS
 from kinetostatics.engines.operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS
-from kinetostatics.engines.writing import _OPERATIONS
 from kinetostatics.numbers.elementary import ROUNDING
 from support.every import every
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import machine_code, record
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines import code_cache, record
+from kinetostatics.engines.program import program_of
 from kinetostatics.machine.loads import TURN
 from kinetostatics.mechanics.dynamics import Dynamics
 
@@ -41,7 +41,7 @@ def six_bar(size=1.0, speed=30.0):
 def counted(monkeypatch):
     """Counts recordings, and modules that are made of programs, which numba would compile."""
     found = {"recordings": 0, "compilations": 0}
-    recorded, load = record.record, machine_code.load_module
+    recorded, load = record.record, code_cache.load_module
 
     def record_(*given):
         found["recordings"] += 1
@@ -51,8 +51,8 @@ def counted(monkeypatch):
         found["compilations"] += 1
         return load(*given, **options)
 
-    monkeypatch.setattr("kinetostatics.engines.programs.record", record_)
-    monkeypatch.setattr("kinetostatics.engines.machine_code.load_module", load_)
+    monkeypatch.setattr("kinetostatics.engines.program.record", record_)
+    monkeypatch.setattr("kinetostatics.engines.code_cache.load_module", load_)
     return found
 
 

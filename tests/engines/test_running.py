@@ -7,11 +7,11 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.bounds import DUST
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.programs import Program, operations, program_of
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
 from support.every import every
 from support.graphs import COMPILED, WAYS, Case

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.engines.split import MixedPrecision
 from support.elsewhere import ANGLES, PUMP, diverse
 from support.every import every
@@ -40,8 +40,8 @@ def test_compiled_loops_give_the_bits_of_numpy_in_single_precision(monkeypatch):
     s = diverse()["designs"]
     expected = rows(NUMPY, s)
     assert np.array_equal(rows(COMPILED, s), expected)
-    monkeypatch.setattr(loops, "core_count", lambda: 3)
-    monkeypatch.setattr(loops, "VALUES_A_THREAD", 20)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 3)
+    monkeypatch.setattr(numba_backend, "VALUES_A_THREAD", 20)
     assert np.array_equal(rows(COMPILED, s), expected)
     turn = solve(SCENES["plain"], ANGLES)
     assert np.array_equal(rows(COMPILED, turn), rows(NUMPY, turn))

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import steep
 from kinetostatics.engines.engines import COMPILED, NUMPY
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.machine.loads import tables
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import ordinary_angles, worst

@@ -9,9 +9,9 @@ import kinetostatics as ks
 from kinetostatics.engines import bounds
 from kinetostatics.engines.bounds import Error
 from kinetostatics.engines.engines import NUMPY
-from kinetostatics.engines.programs import Program, operations, program_of
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.tight import STRETCH, _Stretched, tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.places import PLACES
 from support.bounded import FAMILIES, errors, solution

@@ -6,11 +6,11 @@ from operator import add, mul, neg, sub, truediv
 import numpy as np
 import pytest
 
-from kinetostatics.engines import loops
+from kinetostatics.engines import numba_backend
+from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.operations import BY_DESIGN
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers import elementary
 
 SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.3, 5e-324, -5e-324, 1e-300, 1e300, math.inf, -math.inf, math.nan, -4e-15, -5e-15]
@@ -83,4 +83,4 @@ def test_angles_and_tables_of_each_design_are_its_own(numba):
     angles, rows = np.random.default_rng(0).random((3, 50)), np.random.default_rng(1).random((2, 3, 50))
     found = made.by_loop(angles, [1.0], list(rows), angles.shape)
     assert np.array_equal(found[0], angles + rows[1])
-    assert np.array_equal(found[1], rows[0] * loops.compiled_sines(angles)[1])
+    assert np.array_equal(found[1], rows[0] * numba_backend.compiled_sines(angles)[1])

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics.engines import machine_code
-from kinetostatics.engines.machine_code import load_module
+from kinetostatics.engines import code_cache
+from kinetostatics.engines.code_cache import load_module
 from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, is_intact, require_private
 from kinetostatics.errors import CacheWarning
 
@@ -30,9 +30,9 @@ FILES = ("*.py", "*.nbi", "*.nbc", CHECKSUMS)
 
 @pytest.fixture(autouse=True)
 def told_anew():
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
     yield
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -224,7 +224,7 @@ def test_code_planted_for_the_interpreter_never_runs(tmp_path, monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     folder = tmp_path / "programs"
     (folder / "__pycache__").mkdir(parents=True)
-    names = [machine_code._name(TEXT), machine_code._name(TEXT, *machine_code._machine())]
+    names = [code_cache._name(TEXT), code_cache._name(TEXT, *code_cache._machine())]
     for name in names:
         for place in (folder, folder / "__pycache__", tmp_path):
             (place / f"{name}.py").write_text("raise SystemExit")

@@ -3,7 +3,7 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import differences

@@ -8,8 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
+from kinetostatics.engines.graph import BY_ANGLE, needed
 from kinetostatics.engines.record import record
-from kinetostatics.engines.trace import BY_ANGLE, needed
 from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
 from kinetostatics.machine.guide import Line
 from kinetostatics.machine.placement import Throw

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.engines import NUMPY
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.leaves import with_fields

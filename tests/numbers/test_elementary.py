@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.graph import Graph
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.duals import Dual
 from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, rest, root, sign, stack, total

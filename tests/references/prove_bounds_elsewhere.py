@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import of_scene
 from support.bounded import FAMILIES, solution
 from support.elsewhere import errors, exact_values

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled, scanning
-from kinetostatics.engines.writing import ARGUMENTS
+from kinetostatics.engines.codegen import ARGUMENTS
 from kinetostatics.results import passes, peaks
 from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
 from support.needed import MECHANISMS, SPEED, TURN, alone, change, cranked, solved

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from kinetostatics.engines.bounds import Error
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.programs import Program
-from kinetostatics.engines.trace import INPUTS, Graph, Node, needed
+from kinetostatics.engines.graph import INPUTS, Graph, Node, needed
+from kinetostatics.engines.program import Program
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
 from kinetostatics.numbers.twofold import Twofold

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import sharing
-from kinetostatics.engines.sharing import shared_loop
+from kinetostatics.engines import shared_work
+from kinetostatics.engines.shared_work import shared_loop
 from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
 from kinetostatics.sweeps.job import LEAST
@@ -203,8 +203,8 @@ def test_what_designs_have_in_common_is_computed_once_to_the_same_bits(numba, mo
     outputs = ["largest O", "mean_absolute balancing_torque", "smallest balancing_torque", "harmonic_2 O"]
     asked = {"angles": 360, "engine": "compiled", "progress": False}
     whole = ks.sweep(scene, designs, outputs, **asked)
-    monkeypatch.setattr(sharing, "MIN_SHARED_VALUES", 1)
-    monkeypatch.setattr(sharing, "MIN_SHARE", 0.0)
+    monkeypatch.setattr(shared_work, "MIN_SHARED_VALUES", 1)
+    monkeypatch.setattr(shared_work, "MIN_SHARE", 0.0)
     made = []
     monkeypatch.setattr(together.sharing, "shared_loop", lambda *given: made.append(shared_loop(*given)) or made[-1])
     pd.testing.assert_frame_equal(ks.sweep(scene, designs, outputs, **asked), whole, check_exact=True)

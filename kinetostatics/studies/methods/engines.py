@@ -8,7 +8,7 @@ import numpy as np
 from ...engines.backends import Backend
 from ...engines.compiled import require_numba
 from ...engines.engines import COMPILED, NUMPY
-from ...engines.programs import program_of
+from ...engines.program import program_of
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked
 from .method import Method, NotGivenError

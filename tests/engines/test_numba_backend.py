@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines import numba_backend
+from kinetostatics.engines.program import program_of
 from support.both_engines import ULP, again, assert_same
 from support.scenes import (
     ANGLES,
@@ -23,8 +23,8 @@ def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeyp
     """Of many designs each thread takes some, of a single one some angles."""
     expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)
     alone = [again(s).reaction("O") for s in expected]
-    monkeypatch.setattr(loops, "core_count", lambda: 3)
-    monkeypatch.setattr(loops, "VALUES_A_THREAD", 20)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 3)
+    monkeypatch.setattr(numba_backend, "VALUES_A_THREAD", 20)
     for s, before in zip(expected, alone, strict=True):
         found = again(s).reaction("O")
         assert np.array_equal(found, before)
@@ -33,20 +33,23 @@ def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeyp
 
 def test_parameters_stand_in_a_row_for_each_design():
     numbers = 1.0, np.array([[2.0], [3.0]]), np.array([4.0]), 5
-    assert loops.parameter_table(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
-    assert loops.parameter_table((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
-    assert loops.parameter_table((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist() == [[1, 6]] * 3 + [[1, 7]] * 3
+    assert numba_backend.parameter_table(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
+    assert numba_backend.parameter_table((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
+    assert (
+        numba_backend.parameter_table((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist()
+        == [[1, 6]] * 3 + [[1, 7]] * 3
+    )
 
 
 def test_a_row_of_a_table_for_one_design_may_have_an_axis_of_designs():
     rows = [np.arange(3.0)[None], 7.0, np.arange(3.0)]
     expected = [[[0.0, 1.0, 2.0]], [[7.0] * 3], [[0.0, 1.0, 2.0]]]
     for shape in ((3,), (1, 3), (1, 1, 3), (5, 3)):
-        np.testing.assert_array_equal(loops.row_table(rows, shape), expected)
+        np.testing.assert_array_equal(numba_backend.row_table(rows, shape), expected)
 
 
 def test_memory_begins_where_vectors_are_loaded_at_once():
-    held = [loops.aligned_memory(count, 3, 8) for count in (1, 2, 5)]
+    held = [numba_backend.aligned_memory(count, 3, 8) for count in (1, 2, 5)]
     assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]
     assert [part.ctypes.data % 64 for part in held] == [0, 0, 0]
 

@@ -2,7 +2,7 @@
 
 from itertools import product
 
-from .trace import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number
+from .graph import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number
 
 MIN_DIVISOR = 2.0**-1022
 """What is smaller may have no reciprocal."""

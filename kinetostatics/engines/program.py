@@ -13,16 +13,16 @@ import numpy as np
 from ..errors import NotGivenError, QuantityError
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import FLOATS, Leaves
-from . import loops
+from . import numba_backend
+from .codegen import buffered_source, line_source, loop_source
 from .compiled import load_compiled, numba_available
 from .derivatives import gradients
+from .graph import needed, operations
 from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, compile_line
 from .recent import keep_for_same_angles
 from .record import record
 from .running import RunningBounds
 from .tight import tight_bound
-from .trace import needed, operations
-from .writing import buffered_source, line_source, loop_source
 
 MAX_PLAIN_ANGLES = 12
 """Crank angles, up to this many, that are computed one by one on plain numbers."""
@@ -182,9 +182,9 @@ class Program:
 
     def _of_one_design(self, loop, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
-        parameters = loops.parameter_table(_plain_numbers(numbers), ())
+        parameters = numba_backend.parameter_table(_plain_numbers(numbers), ())
         sine, cosine = turn(angle)
-        loops.run_loop(loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
+        numba_backend.run_loop(loop, angle, sine, cosine, parameters, numba_backend.NO_ROWS, results)
         return results.reshape(-1, *shape)
 
     def _by_numbers(self, angle, numbers, shape):
@@ -200,16 +200,16 @@ class Program:
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
         if len(shape) == 1 and not rows:
-            return self._of_one_design(self.loop, angle, numbers, shape, loops.compiled_sines)
-        parameters = loops.parameter_table(numbers, shape[:-1])
+            return self._of_one_design(self.loop, angle, numbers, shape, numba_backend.compiled_sines)
+        parameters = numba_backend.parameter_table(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
         angles = np.broadcast_to(angle, shape).reshape(designs, -1) if own else angle.reshape(1, -1)
         angles = np.ascontiguousarray(angles)
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
-        tables = loops.row_table(rows, shape or (1,))
-        sine, cosine = loops.compiled_sines(angles)
-        loops.run_loop(self.loop, angles, sine, cosine, parameters, tables, results)
+        tables = numba_backend.row_table(rows, shape or (1,))
+        sine, cosine = numba_backend.compiled_sines(angles)
+        numba_backend.run_loop(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 

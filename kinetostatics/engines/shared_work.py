@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from .codegen import is_of_angle, loop_source
 from .compiled import load_compiled
 from .fusing import drop_unused, fused_sums, operands_of
-from .programs import Program
-from .trace import BY_ANGLE, INPUTS, Graph, Node, needed, operations
-from .writing import is_of_angle, loop_source
+from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations
+from .program import Program
 
 MIN_SHARED_VALUES = 10_000_000
 """Values over designs and angles from which two loops are made in place of one."""

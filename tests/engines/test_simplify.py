@@ -2,8 +2,8 @@
 
 import pytest
 
-from kinetostatics.engines.lean import SimplifiedGraph
-from kinetostatics.engines.trace import needed
+from kinetostatics.engines.graph import needed
+from kinetostatics.engines.simplify import SimplifiedGraph
 
 
 @pytest.fixture

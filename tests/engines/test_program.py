@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops
+from kinetostatics.engines import compiled, numba_backend
 from kinetostatics.engines.engines import KERNELS
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers import kinds
@@ -174,7 +174,7 @@ def test_recorded_program_equals_solve(interpreted, name):
 @pytest.mark.slow
 def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba):
     assert_program_equals(solve(SCENES["circle cam, everything"], ANGLES))
-    sine, cosine = loops.compiled_sines(ANGLES[None])
+    sine, cosine = numba_backend.compiled_sines(ANGLES[None])
     assert largest(sine - np.sin(ANGLES)) <= 2**-52
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
 
@@ -195,7 +195,7 @@ def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
     """NumPy takes so many crank angles at once that its buffers stay in the cache."""
     s = solve(SCENES["six-bar"], np.linspace(0, 7, 5000))
     found = [program(s, everything(s))[1]()]
-    monkeypatch.setattr("kinetostatics.engines.programs.BUFFER_VALUES", 10_000)
+    monkeypatch.setattr("kinetostatics.engines.program.BUFFER_VALUES", 10_000)
     found.append(program(s, everything(s))[1]())
     assert np.array_equal(*found)
 
@@ -276,8 +276,8 @@ def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes)
     whole = run(compiled=True)
     expected = [magnitude(s.reaction("O"))] if sizes else s.reaction("O")
     assert largest(whole[:-1] - expected) <= 1e-13 * largest(expected)
-    monkeypatch.setattr(loops, "VALUES_A_THREAD", 20)
-    monkeypatch.setattr(loops, "core_count", lambda: 3)
+    monkeypatch.setattr(numba_backend, "VALUES_A_THREAD", 20)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 3)
     assert np.array_equal(run(compiled=True), whole)
 
 
@@ -372,8 +372,8 @@ def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monk
     angles = np.linspace(0.1, 6.0, 5)
     before = [program(angle)["friction_torque"] for angle in (0.3, angles)]
     assert "_short_loop" not in vars(program._program)
-    monkeypatch.setattr("kinetostatics.engines.programs.MIN_LONG_OPERATIONS", 0)
-    monkeypatch.setattr("kinetostatics.engines.programs.MIN_COMPILED_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_LONG_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_COMPILED_OPERATIONS", 0)
     after = [program(angle)["friction_torque"] for angle in (0.3, angles)]
     assert "_short_loop" in vars(program._program)
     assert all(np.array_equal(one, other) for one, other in zip(before, after, strict=True))
@@ -382,9 +382,9 @@ def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monk
 
 def test_few_angles_stay_on_plain_numbers_without_numba(monkeypatch):
     program = ks.compile(RUBBING, "friction_loss", engine="numpy")
-    monkeypatch.setattr("kinetostatics.engines.programs.MIN_LONG_OPERATIONS", 0)
-    monkeypatch.setattr("kinetostatics.engines.programs.MIN_COMPILED_OPERATIONS", 0)
-    monkeypatch.setattr("kinetostatics.engines.programs.numba_available", lambda: False)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_LONG_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_COMPILED_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.numba_available", lambda: False)
     expected = program(0.3)["friction_loss"]
     assert [program.unlooked(0.3, {}, True)["friction_loss"] for _ in range(3)] == [expected] * 3
     assert "_short_loop" not in vars(program._program)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics.engines import machine_code, programs_folder
-from kinetostatics.engines.machine_code import load_module
+from kinetostatics.engines import code_cache, programs_folder
+from kinetostatics.engines.code_cache import load_module
 from kinetostatics.engines.programs_folder import CHECKSUMS, is_intact, new_entry
 from kinetostatics.errors import CacheWarning
 
@@ -29,10 +29,10 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "new" / "programs"))
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
     yield tmp_path / "new" / "programs"
     assert not list((tmp_path / "temporary").iterdir())
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
 
 
 def hits(module):
@@ -123,7 +123,7 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
 
 @pytest.mark.slow
 def test_processes_that_start_together_share_the_folder(numba, folder):
-    code = f"from kinetostatics.engines.machine_code import load; print(load({TEXT!r}, keep=True).twice(2.1))"
+    code = f"from kinetostatics.engines.code_cache import load; print(load({TEXT!r}, keep=True).twice(2.1))"
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     assert [(process.communicate()[0], process.returncode) for process in started] == [("4.2\n", 0)] * 2

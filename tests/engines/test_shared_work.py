@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from kinetostatics.engines import sharing
-from kinetostatics.engines.lean import SimplifiedGraph
+from kinetostatics.engines import shared_work
+from kinetostatics.engines.codegen import line_source
+from kinetostatics.engines.graph import Graph, needed, operations
 from kinetostatics.engines.operations import BY_DESIGN, compile_line
-from kinetostatics.engines.programs import program_of
-from kinetostatics.engines.trace import Graph, needed, operations
-from kinetostatics.engines.writing import line_source
+from kinetostatics.engines.program import program_of
+from kinetostatics.engines.simplify import SimplifiedGraph
 from support import graphs
 from support.every import every
 from support.shipped import shipped
@@ -31,7 +31,7 @@ def test_random_programs_give_the_same_bits_in_two_parts(seed):
     values = graphs.recorded(graphs.recipe(random, 25), inputs)
     outputs = tuple(values[-6:])
     varied = set(random.integers(count, size=2).tolist())
-    common, rest = sharing.split_common(outputs, varied, first=1)
+    common, rest = shared_work.split_common(outputs, varied, first=1)
     parameters, row = list(map(np.float64, graphs.numbers(random, count))), graphs.numbers(random, ANGLE.size)
     expected = run(outputs, parameters, [row])
     found = run(rest, parameters, [row, *run(common, parameters, [row])])
@@ -48,7 +48,7 @@ def of_saw(varied):
     program, leaves = program_of(scene.solve(ANGLE).dynamics, ("O", "balancing_torque"), sizes=True)
     places = {place for place, number in enumerate(leaves.numbers) if np.ndim(number)}
     assert len(places) == len(varied)
-    return program.outputs, *sharing.split_common(program.outputs, places)
+    return program.outputs, *shared_work.split_common(program.outputs, places)
 
 
 def test_the_motion_is_common_where_a_spring_and_a_mass_vary():
@@ -59,7 +59,7 @@ def test_the_motion_is_common_where_a_spring_and_a_mass_vary():
 
 def test_little_is_common_where_lengths_vary():
     outputs, common, _ = of_saw(["coupler_length", "cam.mean"])
-    assert operations(common) < sharing.MIN_SHARE * operations(outputs)
+    assert operations(common) < shared_work.MIN_SHARE * operations(outputs)
 
 
 def test_two_loops_are_made_where_there_are_many_designs_only(numba, monkeypatch):
@@ -69,10 +69,10 @@ def test_two_loops_are_made_where_there_are_many_designs_only(numba, monkeypatch
     program, leaves = program_of(state, ("balancing_torque",))
     given = leaves.numbers, ANGLE[None], np.empty((0, 1, ANGLE.size))
     monkeypatch.setattr(program, "loop", "whole")
-    found = [sharing.shared_loop(program, *given, count) for count in (2, sharing.MIN_SHARED_VALUES)]
+    found = [shared_work.shared_loop(program, *given, count) for count in (2, shared_work.MIN_SHARED_VALUES)]
     assert found[0][0] == "whole"
     assert len(found[0][1]) == 0
     assert callable(found[1][0])
     assert len(found[1][1]) > 0
     own_angles = leaves.numbers, np.repeat(given[1], 2, axis=0), given[2]
-    assert sharing.shared_loop(program, *own_angles, sharing.MIN_SHARED_VALUES)[0] == "whole"
+    assert shared_work.shared_loop(program, *own_angles, shared_work.MIN_SHARED_VALUES)[0] == "whole"

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import accelerated
+from kinetostatics.engines import jax_backend
 from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.programs import program_of
+from kinetostatics.engines.program import program_of
 from support.elsewhere import diverse, errors, exact_values
 from support.every import every
 
@@ -61,7 +61,7 @@ def test_xla_writes_quotients_and_roots_as_they_are_recorded(jax):
 
     a, b, c = (np.random.default_rng(seed).uniform(0.5, 2.0, 500).astype(np.float32) for seed in range(3))
     with jax.default_device(jax.devices("cpu")[0]):
-        found = jax.jit(compute).lower(a, b, c).compile(compiler_options=accelerated.AS_WRITTEN)(a, b, c)
+        found = jax.jit(compute).lower(a, b, c).compile(compiler_options=jax_backend.AS_WRITTEN)(a, b, c)
     for own, exact in zip(found, ((a / b) / c, a / (b / c), a / np.sqrt(c)), strict=True):
         assert np.array_equal(own, exact)
 
@@ -76,21 +76,21 @@ def test_the_mode_of_jax_is_as_it_was(jax):
 
 
 def test_the_device_is_the_first_that_jax_has_or_the_one_asked_for(jax):
-    assert accelerated.device_of() is jax.devices()[0]
-    assert accelerated.device_name(accelerated.device_of("cpu")) == DOUBLE.device == "cpu"
-    assert accelerated.device_name(SimpleNamespace(platform="gpu", device_kind="NVIDIA X")) == "gpu: NVIDIA X"
+    assert jax_backend.device_of() is jax.devices()[0]
+    assert jax_backend.device_name(jax_backend.device_of("cpu")) == DOUBLE.device == "cpu"
+    assert jax_backend.device_name(SimpleNamespace(platform="gpu", device_kind="NVIDIA X")) == "gpu: NVIDIA X"
 
 
 def test_a_device_that_is_not_there_is_refused_with_those_that_are(jax):
     with pytest.raises(ks.ParameterError, match=r"device 'abacus': JAX finds none, only .*cpu"):
-        accelerated.device_of("abacus")
+        jax_backend.device_of("abacus")
 
 
 def test_no_bound_is_given_on_a_device_whose_functions_are_not_tested(jax, monkeypatch):
     s = diverse()["plain"]
     program, leaves = program_of(s.dynamics, ("slider_acceleration",))
     strange = SimpleNamespace(platform="gpu", device_kind="NVIDIA X")
-    monkeypatch.setattr(accelerated, "device_of", lambda platform: strange)
+    monkeypatch.setattr(jax_backend, "device_of", lambda platform: strange)
     with pytest.raises(ks.NotGivenError, match=r"no bound can be given on gpu: NVIDIA X.*device=.cpu"):
         Backend("jax", "single").bounds(program, s.dynamics, leaves)
 
@@ -98,4 +98,4 @@ def test_no_bound_is_given_on_a_device_whose_functions_are_not_tested(jax, monke
 def test_without_jax_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "jax", None)
     with pytest.raises(ks.MissingLibraryError, match=r"pip install .kinetostatics\[grad\]"):
-        accelerated.device_of()
+        jax_backend.device_of()

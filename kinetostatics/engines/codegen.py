@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from ..numbers.elementary import ROUNDING, SPLIT
 from .fusing import drop_unused, fused_sums
-from .trace import BY_ANGLE, Node, needed
+from .graph import BY_ANGLE, Node, needed
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.programs import Program, program_of
+from kinetostatics.engines.codegen import buffered_source, line_source, loop_source
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Recording
-from kinetostatics.engines.trace import Graph
-from kinetostatics.engines.writing import buffered_source, line_source, loop_source
 from kinetostatics.numbers import elementary
 
 ANGLE = np.linspace(0.0, 6.0, 9)

@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
+from .codegen import TURN
 from .compiled import core_count, load_compiled
 from .recent import keep_for_same_angles
-from .writing import TURN
 
 VALUES_A_THREAD = 100_000
 """Values over designs and angles that are worth a thread of their own."""

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.programs import program_of
-from kinetostatics.engines.trace import Node
+from kinetostatics.engines.graph import Node
+from kinetostatics.engines.program import program_of
 from kinetostatics.errors import NotGivenError
 from support.scenes import (
     SCENES,

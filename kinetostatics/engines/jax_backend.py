@@ -8,8 +8,8 @@ import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.elementary import ROUNDING, total
+from .codegen import line_source
 from .operations import compile_line
-from .writing import line_source
 
 PROVEN = "cpu"
 """Platform whose functions keep to the errors that bounds take for granted, as a test shows."""
