@@ -37,7 +37,7 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import code_cache, compiled, numba_backend, split
+    from kinetostatics.engines import code_cache, jax_backend, numba_backend, program
     from kinetostatics.numbers import kinds
     from support import by_arrays
 
@@ -54,7 +54,7 @@ def interpreted(monkeypatch):
         monkeypatch.setitem(sys.modules, module.__name__, module)
     by_arrays.stand_in(monkeypatch)
     loaded = cache(code_cache.load_module)
-    for module in (compiled, numba_backend, programs, split):
+    for module in (numba_backend, program, jax_backend):
         monkeypatch.setattr(module, "load_compiled", loaded)
     kinds.forget()
     yield

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.compiled import numba_available
+from ..engines.numba_backend import numba_available
 from ..errors import DriveError
 from ..machine.friction import PASSES
 from ..machine.loads import is_given

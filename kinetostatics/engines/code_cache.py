@@ -2,20 +2,142 @@
 
 What a module does comes from the text in hand, never from a file of Python's. Of numba's machine code on disk only what
 is sealed in a folder that others cannot write to is taken (`programs_folder`); failing that, it is compiled in memory.
+
+The folder of machine code: what is found there runs, so only what nobody else may write is trusted.
+
+A program has a folder of its own, whose name tells source, numba, Python and processor. It appears whole, under a list
+of checksums, and is never written again.
 """
 
 import hashlib
+import json
+import os
 import platform
 import shutil
+import stat
 import sys
 import tempfile
 import warnings
+from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 from types import ModuleType
 
 from ..errors import CacheWarning
 from ..signals import deferred
-from .programs_folder import is_intact, new_entry, programs_folder
+
+CHECKSUMS = "checksums.json"
+"""The file of a program's folder that lists the others."""
+
+
+class UntrustedError(OSError):
+    """Others than the user may change what is kept there."""
+
+
+def programs_folder() -> Path:
+    """Where programs are kept: KINETOSTATICS_CACHE, else the user's cache folder; made if it is not there.
+
+    Raises
+    ------
+    OSError
+        There is none, it cannot be made, or others may write to it.
+    """
+    folder = _named() or _usual()
+    for step in reversed([folder, *folder.parents]):
+        step.mkdir(mode=0o700, exist_ok=True)
+    require_private(folder)
+    return folder
+
+
+def _named():
+    given = os.environ.get("KINETOSTATICS_CACHE")
+    try:
+        return Path(given).expanduser().absolute() if given else None
+    except RuntimeError as error:
+        raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}") from error
+
+
+def _usual():
+    try:
+        from platformdirs import user_cache_path
+
+        home, folder = Path.home(), Path(user_cache_path("kinetostatics"))
+    except ImportError as error:
+        raise OSError('platformdirs, which finds it, is missing: pip install "kinetostatics[fast]"') from error
+    except RuntimeError as error:
+        raise OSError(str(error)) from error
+    if not folder.is_absolute() or (folder.is_relative_to(home) and not home.is_dir()):
+        raise FileNotFoundError(f"there is no home folder for {folder}")
+    return folder
+
+
+def require_private(path):
+    """Raise `UntrustedError` if others than the user and root may write to a file or folder, or put another there.
+
+    Where users have no numbers, as on Windows, nothing is asked.
+    """
+    if not hasattr(os, "getuid"):
+        return
+    for place in dict.fromkeys([path.absolute(), path.resolve()]):
+        for step in (place, *place.parents):
+            status = step.lstat()
+            if status.st_uid not in (0, os.getuid()):
+                raise UntrustedError(f"{step} belongs to another user")
+            shared = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH) and not stat.S_ISLNK(status.st_mode)
+            kept = step != place and status.st_mode & stat.S_ISVTX  # of a folder like /tmp others keep their own
+            if shared and not kept:
+                raise UntrustedError(f"others may write to {step}; give another folder, or chmod go-w {step}")
+
+
+def is_intact(entry) -> bool:
+    """Whether a program's folder holds what it was sealed with.
+
+    Raises
+    ------
+    UntrustedError
+        Others may write to it, or to a file of it.
+    """
+    files = _files(entry)
+    if any(path.is_symlink() or not (path.is_file() or path.is_dir()) for path in (entry, *files)):
+        return False
+    for path in (entry, *files):
+        require_private(path)
+    try:
+        expected = json.loads((entry / CHECKSUMS).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return expected == _checksums(entry)
+
+
+@contextmanager
+def new_entry(entry):
+    """Folder beside `entry`, for the user alone, that becomes it when the block ends without an error.
+
+    Of two processes that make the same entry the first has its way.
+    """
+    made = Path(tempfile.mkdtemp(prefix=f".{entry.name}-", dir=entry.parent))
+    try:
+        yield made
+        for path in _files(made):
+            path.chmod(0o700 if path.is_dir() else 0o600)
+        (made / CHECKSUMS).write_text(json.dumps(_checksums(made)), encoding="utf-8")
+        (made / CHECKSUMS).chmod(0o600)
+        try:
+            made.rename(entry)
+        except OSError:
+            if not entry.exists():
+                raise
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+
+
+def _files(entry):
+    return sorted(entry.rglob("*"))
+
+
+def _checksums(entry):
+    files = [path for path in _files(entry) if path.name != CHECKSUMS and not path.is_dir()]
+    return {path.relative_to(entry).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
 def load_module(text, keep=False) -> ModuleType:

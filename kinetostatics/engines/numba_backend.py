@@ -1,16 +1,88 @@
-"""Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
+"""Whether numba (extra `fast`) can be had, and generated source as its modules.
+
+Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
 
 Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs. Many values are
 shared out to threads.
+
+What was computed of the last crank angles: loops over designs ask for the sines of the same ones each time.
 """
 
+import importlib
 import math
+import os
+import sys
+import threading
+from functools import cache, wraps
 
 import numpy as np
 
+from ..errors import MissingLibraryError
 from .codegen import TURN
-from .compiled import core_count, load_compiled
-from .recent import keep_for_same_angles
+
+
+def core_count():
+    """Number of cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _problem():
+    """Why numba cannot be used and how to mend it, or None."""
+    numba = sys.modules.get("numba")
+    try:
+        numba = numba or importlib.import_module("numba")
+    except ImportError as error:  # not there, or installed beside a NumPy that it does not know, for instance
+        why = "is not installed" if error.name == "numba" else f"cannot be imported: {error}"
+        return f'{why}: pip install "kinetostatics[fast]"'
+    return "compiles nothing while NUMBA_DISABLE_JIT is set: unset it" if numba.config.DISABLE_JIT else None
+
+
+def numba_available():
+    """Whether numba is installed, can be imported, and compiles."""
+    return _problem() is None
+
+
+def require_numba():
+    """Raise `MissingLibraryError` unless numba is available."""
+    if problem := _problem():
+        raise MissingLibraryError(f'the compiled engine needs numba, which {problem}; engine="numpy" works without')
+
+
+@cache
+def load_compiled(text):
+    """Module of a source, its machine code kept on disk."""
+    from .code_cache import load_module
+
+    require_numba()
+    return load_module(text, keep=True)
+
+
+MAX_KEPT_ANGLES = 10_000
+"""Crank angles up to which they are kept."""
+_last = threading.local()
+
+
+def keep_for_same_angles(compute):
+    """Function of an array of crank angles that is not repeated, in each thread, for those of the last call."""
+
+    @wraps(compute)
+    def computed(angle):
+        if angle.size > MAX_KEPT_ANGLES:
+            return compute(angle)
+        key = angle.shape, angle.tobytes()
+        held = _last.__dict__
+        known = held.get(compute)
+        if known is None or known[0] != key:
+            known = held[compute] = key, compute(angle)
+        return known[1]
+
+    return computed
+
+
+def forget_angles():
+    """Compute anew at the next call in this thread: what is timed shall not gain by having been called before."""
+    _last.__dict__.clear()
+
 
 VALUES_A_THREAD = 100_000
 """Values over designs and angles that are worth a thread of their own."""

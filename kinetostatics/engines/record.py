@@ -2,6 +2,10 @@
 
 Which groups, loads and names a scene has, what is absent and which assembly it has, belongs to its structure; the
 recorded arithmetic holds for all scenes of that structure, whatever their numbers.
+
+Recorded outputs made NaN also where groups cannot be assembled on which they hang without being computed from them.
+
+Such are the weight of the crank, moments that are zero, and energies beside a group without mass.
 """
 
 from collections.abc import Callable
@@ -17,6 +21,7 @@ from ..machine.crank import ray
 from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
@@ -24,10 +29,49 @@ from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .bounds import Error
-from .gaping import Gaps
 from .graph import Graph, Node, needed, operations
 from .simplify import SimplifiedGraph
 from .steep import SteepTable, not_known, of_pieces
+
+ROOTS = ("root", "sqrt")
+"""Operations that have no value where a group cannot be assembled."""
+
+
+class Gaps:
+    """What outputs of a recorded scene lack to have the gaps of the groups behind them.
+
+    Roots are told as bits of a number, one for each in the graph as it is now.
+    """
+
+    def __init__(self, graph, scene):
+        self._placement, self._behind = scene.placement, groups_behind(scene.mechanism)
+        self._roots: list[Node] = []
+        self._bits: list[int] = []
+        for node in graph:
+            bits = self._of(node.arguments)
+            if node.operation in ROOTS:
+                bits |= 1 << len(self._roots)
+                self._roots.append(node)
+            self._bits.append(bits)
+
+    def added(self, output, name):
+        """An output of a quantity, with the roots that it lacks: the last ones, which have no value without others."""
+        parts = (np.ravel(part)[0] for part in places(self._placement, self._behind[name]))
+        missing = self._of(parts) & ~self._of([output])
+        for place, root in reversed([*enumerate(self._roots)]):
+            if missing >> place & 1:
+                missing &= ~self._of([root])
+                nothing = 0.0 * root.held()
+                output = output + nothing if isinstance(output, Node) or output else nothing
+        return output
+
+    def _of(self, parts):
+        bits = 0
+        for part in parts:
+            if isinstance(part, Node):
+                bits |= self._bits[part.index]
+        return bits
+
 
 WITHOUT_GAPS = ("closure", *CHECKS)
 """Quantities that tell of gaps themselves."""

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from .codegen import is_of_angle, loop_source
-from .compiled import load_compiled
-from .fusing import drop_unused, fused_sums, operands_of
 from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations
+from .numba_backend import load_compiled
 from .program import Program
+from .simplify import drop_unused, fused_sums, operands_of
 
 MIN_SHARED_VALUES = 10_000_000
 """Values over designs and angles from which two loops are made in place of one."""

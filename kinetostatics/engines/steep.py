@@ -19,10 +19,9 @@ from ..numbers.planar import number, plus
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .arithmetic import BoundsOfLonger
 from .bounds import Error
-from .codegen import buffered_source, line_source
+from .codegen import ARRAYS, BY_DESIGN, PLAIN, buffered_source, compile_line, line_source
 from .graph import needed, parted
-from .operations import ARRAYS, BY_DESIGN, PLAIN, compile_line
-from .recent import keep_for_same_angles
+from .numba_backend import keep_for_same_angles
 
 LONG = np.finfo(np.longdouble).nmant >= 63
 """Whether long numbers have more digits than a double."""

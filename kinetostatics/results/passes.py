@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from ..engines import compiled
+from ..engines import numba_backend
 from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
 from ..engines.scanning import COLUMNS, edition
 from ..numbers.elementary import ROUNDING
@@ -312,7 +312,7 @@ class Passes:
 
     def __init__(self, outputs, rows, first, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._passes, self._turns = compiled.load_compiled(_source()).passes, turns
+        self._passes, self._turns = numba_backend.load_compiled(_source()).passes, turns
         self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.backends import Backend
 from ..engines.bounded import of_magnitude, where_known
+from ..engines.jax_backend import Backend
 from ..engines.program import program_of
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..engines.arithmetic import OF as PRECISIONS
-from ..engines.backends import Backend
-from ..engines.compiled import numba_available, require_numba
+from ..engines.jax_backend import Backend
+from ..engines.numba_backend import numba_available, require_numba
 from ..machine.loads import is_given
 from ..mechanics.pure import require_pure
 from ..numbers import checks

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.compiled import numba_available, require_numba
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
+from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..engines.first_look import plausibility_test
+from ..engines.program import plausibility_test
 from ..machine import hints
 from ..numbers import paths
 from ..numbers.checks import Usual, usual_of

@@ -7,7 +7,7 @@ import time
 from importlib import metadata
 from pathlib import Path
 
-from ..engines.recent import forget_angles
+from ..engines.numba_backend import forget_angles
 
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 SHORTEST = 2e-3

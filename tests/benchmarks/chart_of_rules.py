@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, numba_backend, record
+from kinetostatics.engines import numba_backend, record
 from kinetostatics.engines.codegen import loop_source
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program
@@ -46,7 +46,7 @@ def main():
         for graph, fuse in product((Graph, SimplifiedGraph), (False, True)):
             record.LeanGraph = graph
             made = Program(record.record(few.dynamics.apart[0], names))
-            made.loop = compiled.load_compiled(loop_source(made.outputs, fuse)).loop
+            made.loop = numba_backend.load_compiled(loop_source(made.outputs, fuse)).loop
             rivals.append((made, fuse, *of_turn(made, scene)))
         times = least([run for *_, run in rivals]) / (DESIGNS * ANGLES) * 1e9
         for (made, fuse, lean, _), spent in zip(rivals, times, strict=True):

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, numba_backend
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.program import program_of
 from kinetostatics.studies.methods import kane
 from support.shipped import shipped
@@ -53,7 +53,7 @@ VARIED = {
 OUTPUTS = ("largest O", "mean_absolute balancing_torque", "range guide_force")
 MANY = 100_000
 
-pytestmark = pytest.mark.skipif(not compiled.numba_available(), reason="numba is not installed (extra: fast)")
+pytestmark = pytest.mark.skipif(not numba_backend.numba_available(), reason="numba is not installed (extra: fast)")
 
 
 @pytest.fixture

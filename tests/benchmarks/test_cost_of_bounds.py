@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled, numba_backend
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.program import Program, program_of
 from support.shipped import shipped
 from support.speed import seconds
@@ -42,7 +42,7 @@ def judged(benchmark, tell, what, found, most):
 @pytest.mark.parametrize("engine", MOST)
 @pytest.mark.parametrize(("case", "variant"), CASES)
 def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, monkeypatch, engine, case, variant):
-    if engine == "compiled" and not compiled.numba_available():
+    if engine == "compiled" and not numba_backend.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene
@@ -62,7 +62,7 @@ def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, mo
 def test_tight_bounds_of_one_scalar_take_at_most_five_times_as_long_as_values(
     benchmark, tell, monkeypatch, case, variant
 ):
-    if not compiled.numba_available():
+    if not numba_backend.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene

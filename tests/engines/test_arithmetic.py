@@ -17,8 +17,8 @@ from kinetostatics.engines.arithmetic import (
     BoundsOfLonger,
     is_handed_over,
 )
-from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart

@@ -1,4 +1,4 @@
-"""Machine code on disk: found again, whole, for its user alone; and nothing of it needed."""
+"""Generated modules: machine code kept on disk, sealed, private, and compiled anew where needed."""
 
 import os
 import subprocess
@@ -9,9 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics.engines import code_cache, programs_folder
-from kinetostatics.engines.code_cache import load_module
-from kinetostatics.engines.programs_folder import CHECKSUMS, is_intact, new_entry
+from kinetostatics.engines import code_cache
+from kinetostatics.engines.code_cache import (
+    CHECKSUMS,
+    UntrustedError,
+    is_intact,
+    load_module,
+    new_entry,
+    require_private,
+)
 from kinetostatics.errors import CacheWarning
 
 TEXT = """
@@ -217,7 +223,7 @@ def test_on_a_full_disk_programs_are_compiled_in_memory(numba, folder, limit):
 def test_where_users_have_no_numbers_nothing_is_asked(tmp_path, monkeypatch):
     monkeypatch.delattr(os, "getuid", raising=False)
     tmp_path.chmod(0o777)
-    programs_folder.require_private(tmp_path)
+    code_cache.require_private(tmp_path)
 
 
 def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
@@ -227,3 +233,35 @@ def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
     load_module(TEXT, keep=True)
     assert hits(load_module(TEXT, keep=True)) == 1
     assert len(list(folder.rglob(CHECKSUMS))) == 1
+
+
+def test_a_folder_that_is_named_is_made_for_the_user_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "deep" / "own"))
+    folder = code_cache.programs_folder()
+    assert folder == tmp_path / "deep" / "own"
+    assert folder.stat().st_mode & 0o077 == 0
+
+
+def test_an_entry_is_there_when_it_is_whole_and_sealed(tmp_path):
+    with new_entry(tmp_path / "entry") as made:
+        (made / "code").write_text("x")
+        assert not (tmp_path / "entry").exists()
+    assert is_intact(tmp_path / "entry")
+    assert [path.name for path in tmp_path.iterdir()] == ["entry"]
+    (tmp_path / "entry" / "more").write_text("y")
+    assert not is_intact(tmp_path / "entry")
+
+
+def test_an_entry_that_fails_leaves_nothing(tmp_path):
+    with pytest.raises(ZeroDivisionError), new_entry(tmp_path / "entry"):
+        raise ZeroDivisionError
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="users have no numbers here")
+def test_what_others_may_write_is_not_trusted(tmp_path):
+    require_private(tmp_path)
+    tmp_path.chmod(0o777)
+    with pytest.raises(UntrustedError, match=f"others may write to {tmp_path}"):
+        require_private(tmp_path)
+    assert issubclass(UntrustedError, OSError)

@@ -8,9 +8,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.bounds import Bounds, Error
-from kinetostatics.engines.compiled import numba_available
 from kinetostatics.engines.functions import OTHER, SMALL, ULP
 from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.numba_backend import numba_available
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound

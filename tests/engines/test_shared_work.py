@@ -3,9 +3,8 @@
 import numpy as np
 
 from kinetostatics.engines import shared_work
-from kinetostatics.engines.codegen import line_source
+from kinetostatics.engines.codegen import BY_DESIGN, compile_line, line_source
 from kinetostatics.engines.graph import Graph, needed, operations
-from kinetostatics.engines.operations import BY_DESIGN, compile_line
 from kinetostatics.engines.program import program_of
 from kinetostatics.engines.simplify import SimplifiedGraph
 from support import graphs

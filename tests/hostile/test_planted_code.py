@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from kinetostatics.engines import code_cache
-from kinetostatics.engines.code_cache import load_module
-from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, is_intact, require_private
+from kinetostatics.engines.code_cache import CHECKSUMS, UntrustedError, is_intact, load_module, require_private
 from kinetostatics.errors import CacheWarning
 
 pytestmark = [

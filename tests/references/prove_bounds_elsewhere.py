@@ -17,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
-from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import of_scene
 from support.bounded import FAMILIES, solution

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled, scanning
+from kinetostatics.engines import numba_backend, scanning
 from kinetostatics.engines.codegen import ARGUMENTS
 from kinetostatics.results import passes, peaks
 from kinetostatics.results.passes import KINDS, Passes
@@ -13,7 +13,7 @@ from kinetostatics.results.reductions import parsed
 
 pytestmark = [
     pytest.mark.slow,  # all reductions as one compiled loop
-    pytest.mark.skipif(not compiled.numba_available(), reason="numba is not installed (extra: fast)"),
+    pytest.mark.skipif(not numba_backend.numba_available(), reason="numba is not installed (extra: fast)"),
 ]
 OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
@@ -62,7 +62,7 @@ def loop(angle, sine, cosine, parameters, tables, results):
         for row in range(tables.shape[0]):
             results[design * tables.shape[0] + row] = tables[row, design]
 """
-    return compiled.load_compiled(text).loop
+    return numba_backend.load_compiled(text).loop
 
 
 def reduced(loop, values, closure=None, turns=1, block=7):

@@ -10,7 +10,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import errors
-from kinetostatics.engines import compiled
+from kinetostatics.engines import numba_backend
 from support.every import every
 
 WAYS = {
@@ -104,7 +104,7 @@ def test_solutions_come_back_with_what_they_have_found_and_may_find(way):
 
 HELD = [
     "extremes", "comparison", "needs", "tolerances", "principal points", "link", "guide", "loads", "sampled cam",
-    "swing", *(["compiled solution"] if compiled.numba_available() else []),
+    "swing", *(["compiled solution"] if numba_backend.numba_available() else []),
 ]  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import program_of
 from kinetostatics.solution.parameters import leaves_of
 from kinetostatics.solution.slopes import slopes

@@ -3,12 +3,11 @@
 import numpy as np
 
 from kinetostatics.engines.arithmetic import SINGLE, BoundsElsewhere, BoundsOfLonger
-from kinetostatics.engines.codegen import line_source
+from kinetostatics.engines.codegen import BY_DESIGN, compile_line, line_source
 from kinetostatics.engines.functions import OTHER
 from kinetostatics.engines.graph import needed
-from kinetostatics.engines.operations import BY_DESIGN, compile_line
+from kinetostatics.engines.jax_backend import Given, MixedPrecision
 from kinetostatics.engines.program import Program
-from kinetostatics.engines.split import Given, MixedPrecision
 from kinetostatics.engines.steep import _TWOFOLD, UNKNOWN, _long_rest, _long_total
 from kinetostatics.numbers.planar import number
 from kinetostatics.numbers.twofold import Twofold, sine_and_cosine

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...engines.backends import Backend
-from ...engines.compiled import require_numba
 from ...engines.engines import COMPILED, NUMPY
+from ...engines.jax_backend import Backend
+from ...engines.numba_backend import require_numba
 from ...engines.program import program_of
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked

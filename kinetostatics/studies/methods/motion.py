@@ -18,7 +18,7 @@ import numpy as np
 
 from ...drive.driven import Driven
 from ...drive.transient import coast
-from ...engines.compiled import numba_available
+from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from ...machine.builders import crank_slider
 from ...machine.crank import Crank

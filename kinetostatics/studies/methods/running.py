@@ -17,7 +17,7 @@ import numpy as np
 
 from ...drive.driven import Driven
 from ...drive.periodic import steady
-from ...engines.compiled import numba_available
+from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from .method import Method
 
