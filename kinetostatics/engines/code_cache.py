@@ -1,12 +1,8 @@
-"""Modules of generated source: Python's own, or numba's with machine code that outlives the process.
+"""Modules of generated source, with machine code of numba kept on disk.
 
-What a module does comes from the text in hand, never from a file of Python's. Of numba's machine code on disk only what
-is sealed in a folder that others cannot write to is taken (`programs_folder`); failing that, it is compiled in memory.
-
-The folder of machine code: what is found there runs, so only what nobody else may write is trusted.
-
-A program has a folder of its own, whose name tells source, numba, Python and processor. It appears whole, under a list
-of checksums, and is never written again.
+Code from disk is executed, so only files with correct checksums in a folder that no other user can write to are used;
+else the source is compiled in memory. The name of a program's folder is a hash of its source, numba, Python and the
+processor: programs of other versions are never found. A folder appears whole and is never changed.
 """
 
 import hashlib
@@ -27,20 +23,20 @@ from ..errors import CacheWarning
 from ..signals import deferred
 
 CHECKSUMS = "checksums.json"
-"""The file of a program's folder that lists the others."""
+"""The file with the checksums of all others in a program's folder."""
 
 
 class UntrustedError(OSError):
-    """Others than the user may change what is kept there."""
+    """Another user may change the kept files."""
 
 
 def programs_folder() -> Path:
-    """Where programs are kept: KINETOSTATICS_CACHE, else the user's cache folder; made if it is not there.
+    """Folder of kept programs: KINETOSTATICS_CACHE, else the user's cache folder; created if missing.
 
     Raises
     ------
     OSError
-        There is none, it cannot be made, or others may write to it.
+        There is none, it cannot be created, or other users may write to it.
     """
     folder = _named() or _usual()
     for step in reversed([folder, *folder.parents]):
@@ -72,9 +68,9 @@ def _usual():
 
 
 def require_private(path):
-    """Raise `UntrustedError` if others than the user and root may write to a file or folder, or put another there.
+    """Raise `UntrustedError` if users other than this one and root may write to a file or folder, or replace it.
 
-    Where users have no numbers, as on Windows, nothing is asked.
+    Not checked on systems without user numbers, such as Windows.
     """
     if not hasattr(os, "getuid"):
         return
@@ -90,12 +86,12 @@ def require_private(path):
 
 
 def is_intact(entry) -> bool:
-    """Whether a program's folder holds what it was sealed with.
+    """Whether the files of a program's folder have the kept checksums.
 
     Raises
     ------
     UntrustedError
-        Others may write to it, or to a file of it.
+        Other users may write to it, or to one of its files.
     """
     files = _files(entry)
     if any(path.is_symlink() or not (path.is_file() or path.is_dir()) for path in (entry, *files)):
@@ -111,9 +107,9 @@ def is_intact(entry) -> bool:
 
 @contextmanager
 def new_entry(entry):
-    """Folder beside `entry`, for the user alone, that becomes it when the block ends without an error.
+    """Private folder that is renamed to `entry` when the block ends without an error.
 
-    Of two processes that make the same entry the first has its way.
+    If two processes write the same entry, the first one wins.
     """
     made = Path(tempfile.mkdtemp(prefix=f".{entry.name}-", dir=entry.parent))
     try:
@@ -146,11 +142,10 @@ def load_module(text, keep=False) -> ModuleType:
     Parameters
     ----------
     text : str
-        It may ask for `KEEP`, whether machine code is to be kept, and hands it to numba: ``njit(signature,
-        cache=KEEP)``. Only functions with a signature are kept, for they are compiled while the module is loaded; what
-        other programs need of them must be called from there.
+        It may use `KEEP`, whether machine code is kept: ``njit(signature, cache=KEEP)``. Only functions with a
+        signature are kept, because they are compiled while the module is loaded.
     keep : bool
-        Whether machine code is looked for on disk, and left there. When that cannot be, the module is the same, with a
+        Read machine code from disk and write it there. If that fails, the module is compiled in memory, with a
         `CacheWarning` once.
     """
     with deferred():  # LLVM calls back into Python, where an interruption is lost
@@ -164,12 +159,12 @@ def load_module(text, keep=False) -> ModuleType:
 
 
 def _kept(text):
-    """The module with machine code from its folder, where it is put if it is not there.
+    """The module with machine code from its folder; compiled and written there if missing.
 
     Raises
     ------
     OSError
-        It can be neither found there nor put there.
+        It can be neither read nor written.
     """
     from numba import config
 
@@ -212,7 +207,7 @@ def _name(*parts):
 
 @cache
 def _machine():
-    """What machine code depends on besides its source."""
+    """Versions and processor on which machine code depends besides its source."""
     import numba
     from llvmlite import binding
 

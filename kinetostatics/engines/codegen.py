@@ -1,6 +1,7 @@
-"""Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers.
+"""Source code from recorded arithmetic: a compiled loop for numba, array operations for NumPy, plain Python numbers.
 
-What recorded operations do to plain numbers, to arrays with new memory, and to arrays with memory given.
+`line_source`, `buffered_source` and `loop_source` write it; `PLAIN`, `BY_DESIGN`, `SCALARS` and `ARRAYS` hold the
+functions that its operations call.
 """
 
 import math
@@ -13,9 +14,9 @@ from .graph import BY_ANGLE, Node, needed
 from .simplify import drop_unused, fused_sums
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
-"""Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
+"""Numba types of arrays with {} axes: read by a loop (possibly read-only), and written by it."""
 ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 1)})"
-"""What a loop takes: crank angles, their sines and cosines, parameters, tables, results."""
+"""Signature of a loop: crank angles, their sines and cosines, parameters, tables, results."""
 TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import cos, sin
@@ -49,7 +50,7 @@ class SeparateArrays(Compiler):
 
 
 '''
-"""Start of a loop's module. No two arrays of a loop share memory: LLVM need not check that before it uses vectors."""
+"""Start of a loop's module. `noalias`: no two arrays share memory, so vectors need no check at run time."""
 LOOP = f"""@njit("{ARGUMENTS}", cache=KEEP, pipeline_class=SeparateArrays, error_model="numpy", nogil=True, _nrt=False)
 def loop(angles, sines, cosines, parameters, tables, results):
     count = uint64(angles.shape[1]) & uint64({2**40 - 1})
@@ -57,7 +58,7 @@ def loop(angles, sines, cosines, parameters, tables, results):
         first = design * (angles.shape[0] > 1)
         table = design * (tables.shape[1] > 1)
         start = uint64(design) * uint64({{rows}}) * count"""
-"""Start of a loop. A count below 2^40 shows LLVM that no two rows of the results overlap, however many they are."""
+"""Start of a loop. The count below 2^40 lets LLVM prove that rows of the results do not overlap: else no vectors."""
 TWO_SUM = """@njit(error_model="numpy")
 def two_sum(a, b):
     whole = a + b
@@ -66,7 +67,7 @@ def two_sum(a, b):
 
 
 """
-"""What compensated sums need."""
+"""Helper of compensated sums."""
 SQUARES = f"""@njit(error_model="numpy")
 def squared(a):
     whole, spread = a * a, {SPLIT!r} * a
@@ -94,7 +95,7 @@ def lost_by_squares(length, x, y):
 
 
 """
-"""What the rounding of a vector's length needs."""
+"""Helpers for the rounding error of a vector's length."""
 
 FUSED = """from numba import types
 from numba.extending import intrinsic
@@ -113,15 +114,15 @@ def fma(typing, one, other, more):
 
 
 """
-"""What a loop with fused products and sums has before all else; two operations where the processor has not the one."""
+"""Fused multiply-add; two operations where the processor has none."""
 
 
 def loop_source(outputs, fuse=True, kind="float64") -> str:
     """Source of a module with ``loop(angles, sines, cosines, parameters, tables, results)``.
 
-    It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
-    designs, N), and fills results (designs, outputs, N), all of a kind of numbers. Sums are fused with products, see
-    `fusing`, unless told.
+    It reads angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
+    designs, N), and fills results, a flat array of (designs, outputs, N); all of one `kind`, "float64" or "float32".
+    `fuse` allows fused multiply-adds, see `simplify`.
     """
     nodes = needed(outputs)
     sums = fused_sums(nodes) if fuse else {}
@@ -143,7 +144,7 @@ def loop_source(outputs, fuse=True, kind="float64") -> str:
 
 
 def _helpers(nodes):
-    """Source of the compensated sums that nodes call."""
+    """Source of the compensated sums that nodes use."""
     calls = {(node.operation, len(node.arguments)) for node in nodes if node.operation in ("total", "lost")}
     squares = any(node.operation in ("rest", "lost_by_squares") for node in nodes)
     calls |= {("total", 6), ("lost", 6)} if squares else set()
@@ -151,7 +152,7 @@ def _helpers(nodes):
 
 
 def _sum_of(name, count):
-    """Source of a `total` of so many terms, or of what it has `lost`: see `elementary.total`."""
+    """Source of `total` or `lost` of `count` terms, see `elementary.total`."""
     terms = [f"t{k}" for k in range(count)]
     steps = [f"    {there}, {here} = two_sum({here}, {there})" for here, there in pairwise(terms)]
     found = (
@@ -176,9 +177,9 @@ def _fused(node, found):
 
 
 def line_source(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
-    """Source of ``line(angle, sine, cosine, parameters, tables)``, which returns the outputs as they come.
+    """Source of ``line(angle, sine, cosine, parameters, tables)``, which returns a tuple of outputs.
 
-    Of plain numbers; of arrays too, each operation with new memory.
+    For plain numbers, and for arrays with new memory for each operation.
     """
     lines = [f"def line({argument_names}):"]
     lines += [f"    {_defined(node)}" for node in needed(outputs) if node.operation != "angle"]
@@ -187,9 +188,9 @@ def line_source(outputs, argument_names="angle, sine, cosine, parameters, tables
 
 
 def buffered_source(outputs) -> tuple[str, int]:
-    """Source of ``line(angle, sine, cosine, parameters, tables, buffers, results)`` on arrays, and how many buffers.
+    """Source of ``line(angle, sine, cosine, parameters, tables, buffers, results)`` on arrays; count of buffers.
 
-    Each operation writes into a buffer whose value is needed no more, or into its row of the results.
+    Each operation writes into a buffer that is free again, or into its row of the results.
     """
     nodes = needed(outputs)
     rows: dict[Node, int] = {}
@@ -252,7 +253,7 @@ _OPERATIONS = {
     ("divisor", 2): "maximum",
     **{("total", count): "total_of" for count in range(2, 7)},
 }
-"""By operation and number of arguments: the array function that takes its result's place as last argument."""
+"""Array function of each operation and number of arguments; its last argument receives the result."""
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")
 
 
@@ -261,7 +262,7 @@ def _is_computed_by_angle(node):
 
 
 def _is_given(node):
-    """Whether a node's value is handed in."""
+    """Whether the caller passes a node's value."""
     return node.operation in ("angle", "table") or is_of_angle(node)
 
 
@@ -278,7 +279,7 @@ _IN_LINE = {
     "held": "{}",
     "sign": "copysign(1.0, {})",
 }
-"""Inputs, and operations that are no function of the same name, in a line."""
+"""Text of inputs, and of operations that are not functions of the same name, in a line."""
 _IN_LOOP = {
     "parameter": "parameters[design, {}]",
     "table": "tables[{}, table, i]",
@@ -291,7 +292,7 @@ _IN_LOOP = {
     "lost": "lost{count}({all})",
     "root": "sqrt(max(zero, {0})) if {0} > threshold * {1} else no_number",
 }
-"""Inputs, and operations that are no function of the same name, in a compiled loop."""
+"""The same in a compiled loop."""
 
 
 def _defined(node, words=_IN_LINE):
@@ -364,7 +365,7 @@ def _total_of(*terms_and_out):
 
 
 def compile_line(source, scope):
-    """Function `line` of a source, with what a scope holds as its operations."""
+    """Function `line` of a source, whose operations are looked up in a scope."""
     scope = dict(scope)
     exec(source, scope)
     return scope["line"]
@@ -416,7 +417,7 @@ SCALARS = BY_DESIGN | {
     "lost_by_squares": lambda length, x, y: _scalar_lost(*off_square(length, x, y)),
     "rest": lambda length, x, y: _scalar_total(*off_square(length, x, y)) / (2.0 * length),
 }
-"""On plain numbers of NumPy, which tell what is too small for a double: no sum is."""
+"""The same on NumPy scalars, which report underflow; sums never underflow."""
 ARRAYS = {
     "add": np.add,
     "subtract": np.subtract,

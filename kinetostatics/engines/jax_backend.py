@@ -1,11 +1,8 @@
-"""What runs a program: NumPy, a compiled loop or JAX, in single or double precision, on a device.
+"""Backends of a program: NumPy, compiled loop or JAX (extra `grad`), in double or single precision, on a device.
 
-Programs compiled by JAX (extra `grad`), on the accelerator that it finds or on the processor.
-
-A program in two parts: what a design fixes, and what is left at each crank angle, for another arithmetic.
-
-The first part is computed in double, as are sines and cosines of the crank angle and the rows of tables; all of it is
-rounded once when it is handed over, so that a crank angle may be a million turns and masses may nearly cancel.
+For JAX and single precision a program is split: values fixed by the design, sines and cosines of the crank angle and
+rows of tables are computed in double and rounded once; the operations at each crank angle follow in the precision
+asked for. So a crank angle may be a million turns, and masses may nearly cancel.
 """
 
 from contextlib import contextmanager
@@ -29,13 +26,13 @@ from .numba_backend import load_compiled
 from .program import BUFFER_VALUES, Program, numpy_sines
 
 PROVEN = "cpu"
-"""Platform whose functions keep to the errors that bounds take for granted, as a test shows."""
+"""Platform whose functions have the errors that bounds assume, as a test shows."""
 AS_WRITTEN = {
     "xla_disable_hlo_passes": "algsimp",
     "xla_cpu_enable_fast_math": False,
     "xla_cpu_enable_fast_min_max": False,
 }
-"""There, what keeps XLA from other quotients and roots, with other roundings; it may fuse products and sums still."""
+"""Options that keep XLA on that platform from changing quotients and roots; it may still fuse products and sums."""
 
 
 def _jax():
@@ -50,12 +47,12 @@ def _jax():
 
 
 def device_of(platform=None):
-    """The device that JAX takes first, an accelerator if there is one, or the first of a platform.
+    """The first device of JAX, an accelerator if there is one, or the first of a platform.
 
     Raises
     ------
     ParameterError
-        JAX finds no device of the platform; the message lists those that it finds.
+        JAX finds no device of the platform; the message lists the platforms it finds.
     """
     jax = _jax()
     if platform is None:
@@ -68,13 +65,13 @@ def device_of(platform=None):
 
 
 def device_name(device):
-    """What a device is called: "cpu", "gpu: NVIDIA H100"."""
+    """Name of a device: "cpu", "gpu: NVIDIA H100"."""
     kind = device.device_kind
     return device.platform if kind.lower() == device.platform else f"{device.platform}: {kind}"
 
 
 class DeviceProgram:
-    """The arithmetic of a `Split` as JAX runs it on a device, compiled for each shape that it meets."""
+    """A `MixedPrecision` run by JAX on a device, compiled once for each shape."""
 
     def __init__(self, split, device):
         jax = _jax()
@@ -96,7 +93,7 @@ class DeviceProgram:
         self._traced = jax.jit(computed, static_argnums=5)
 
     def run(self, given):
-        """Outputs (outputs, *shape) of what is handed over."""
+        """Outputs (outputs, *shape) for given inputs."""
         jax = _jax()
         with jax.default_device(self._device), _width(jax, given.angle.dtype):
             dtype = given.angle.dtype
@@ -108,20 +105,20 @@ class DeviceProgram:
 
 
 def _stacked(parts, dtype):
-    """Numbers or arrays of shapes that fit as one array: a transfer for each would take longer than computing."""
+    """One array of numbers and arrays: a transfer for each would take longer than computing."""
     return np.array(np.broadcast_arrays(*parts), dtype)
 
 
 @contextmanager
 def _width(jax, dtype):
-    """JAX with numbers in double precision if these are."""
+    """JAX in the precision of a dtype."""
     home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
     with home.enable_x64(dtype == np.float64):
         yield
 
 
 def require_known_rounding(device):
-    """Refuse a bound for a device whose functions have not been held to their errors."""
+    """Raise `NotGivenError` for a device on which the rounding of functions has not been tested."""
     if device.platform != PROVEN:
         raise NotGivenError(
             f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile the "
@@ -130,7 +127,7 @@ def require_known_rounding(device):
 
 
 class Given(NamedTuple):
-    """What is handed over: arrays of one dtype, and numbers that NumPy takes to be of the same.
+    """Inputs of the operations at each crank angle: arrays of one dtype, and numbers that NumPy converts to it.
 
     Attributes
     ----------
@@ -138,7 +135,7 @@ class Given(NamedTuple):
     parameters : list of number or array (..., 1)
     rows : list of number or array (..., N)
     shape : tuple of int
-        Of results, without that of outputs.
+        Shape of the results, without the axis of outputs.
     """
 
     angle: Any
@@ -150,12 +147,12 @@ class Given(NamedTuple):
 
 
 class MixedPrecision:
-    """A program whose arithmetic at each crank angle is apart from what a design fixes.
+    """A program split into values fixed by the design and operations at each crank angle.
 
     Attributes
     ----------
     at_angles : Program
-        Its parameters are what the design fixes; it has no other constants.
+        Its parameters are the values fixed by the design; it has no other constants.
     """
 
     def __init__(self, program):
@@ -165,7 +162,7 @@ class MixedPrecision:
         self.at_angles = Program(program.recording, outputs)
 
     def given(self, state, leaves, dtype):
-        """What is handed over of a `Dynamics` whose leaves are at hand."""
+        """Inputs, in a dtype, for a `Dynamics` with its leaves."""
         shape = state.shape or (1,)
         angle = state.crank_angle.reshape(state.crank_angle.shape or (1,))
         if angle.shape[-1:] != shape[-1:]:
@@ -198,7 +195,7 @@ class MixedPrecision:
         return results
 
     def by_loop(self, given):
-        """The same by a loop compiled for single precision."""
+        """Outputs (outputs, *shape) by a loop compiled for single precision."""
         shape, dtype = given.shape, given.angle.dtype
         parameters = numba_backend.parameter_table(given.parameters, shape[:-1]).astype(dtype)
         own = given.angle.size > shape[-1]
@@ -227,14 +224,14 @@ _splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()
 
 @dataclass(frozen=True)
 class Backend:
-    """An engine, in a precision, on a device.
+    """An engine with its precision and device.
 
     Attributes
     ----------
     engine : "numpy", "compiled" or "jax"
     precision : "double" or "single"
     platform : str or None
-        Of the device that is asked of JAX; None for the first that it has.
+        Platform of the device for JAX; None for its first device.
     """
 
     engine: str
@@ -248,16 +245,16 @@ class Backend:
 
     @property
     def device(self):
-        """What computes: "cpu", or what JAX calls its device."""
+        """Name of the device: "cpu", or the name that JAX uses."""
         return device_name(device_of(self.platform)) if self.engine == "jax" else "cpu"
 
     @property
     def is_own(self):
-        """Whether programs run as they are, by NumPy or compiled, in double precision."""
+        """Whether programs run without a split: by NumPy or compiled, in double precision."""
         return self.engine != "jax" and self.precision == "double"
 
     def run(self, program, state, leaves):
-        """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
+        """Outputs (outputs, *shape) of a `Dynamics` with its leaves."""
         if self.is_own:
             return program.run(state, leaves, self.engine == "compiled")
         if program not in _splits:
@@ -273,14 +270,14 @@ class Backend:
         return rows if state.shape else rows[:, 0]
 
     def bounds(self, program, state, leaves, tight=False):
-        """Bounds (outputs, *shape), in double, on the errors of what `run` gives; infinite where there is none.
+        """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without one.
 
-        Tight ones there are of what `is_own`.
+        `tight` needs `is_own`.
 
         Raises
         ------
         NotGivenError
-            Code of the user's, or a device, rounds in a way that is not known.
+            The rounding of user code, or of a device, is not known.
         """
         if self.engine == "jax":
             require_known_rounding(device_of(self.platform))

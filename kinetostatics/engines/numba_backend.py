@@ -1,11 +1,7 @@
-"""Whether numba (extra `fast`) can be had, and generated source as its modules.
+"""Compiled loops over designs and crank angles, by numba (extra `fast`).
 
-Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
-
-Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs. Many values are
-shared out to threads.
-
-What was computed of the last crank angles: loops over designs ask for the sines of the same ones each time.
+Sines and cosines of the crank angle are computed first, in a loop of their own, and shared by all designs; those of the
+last crank angles are kept. Large tasks run in threads.
 """
 
 import importlib
@@ -27,7 +23,7 @@ def core_count():
 
 
 def _problem():
-    """Why numba cannot be used and how to mend it, or None."""
+    """Reason why numba cannot be used, with its remedy, or None."""
     numba = sys.modules.get("numba")
     try:
         numba = numba or importlib.import_module("numba")
@@ -50,7 +46,7 @@ def require_numba():
 
 @cache
 def load_compiled(text):
-    """Module of a source, its machine code kept on disk."""
+    """Module of a source, with machine code kept on disk."""
     from .code_cache import load_module
 
     require_numba()
@@ -58,12 +54,12 @@ def load_compiled(text):
 
 
 MAX_KEPT_ANGLES = 10_000
-"""Crank angles up to which they are kept."""
+"""Largest number of crank angles whose values are kept."""
 _last = threading.local()
 
 
 def keep_for_same_angles(compute):
-    """Function of an array of crank angles that is not repeated, in each thread, for those of the last call."""
+    """Decorate a function of an array of crank angles: each thread keeps the result of its last call."""
 
     @wraps(compute)
     def computed(angle):
@@ -80,28 +76,28 @@ def keep_for_same_angles(compute):
 
 
 def forget_angles():
-    """Compute anew at the next call in this thread: what is timed shall not gain by having been called before."""
+    """Drop the kept results of this thread, so that the next timed call computes them."""
     _last.__dict__.clear()
 
 
 VALUES_A_THREAD = 100_000
-"""Values over designs and angles that are worth a thread of their own."""
+"""Values (designs * angles) that justify a thread of their own."""
 VECTOR_NUMBERS = 8
-"""Numbers in the largest vector of a processor."""
+"""Doubles in the largest vector register."""
 NO_ROWS = np.empty((0, 1, 0))
-"""Tables of a loop that needs none."""
+"""Tables of a loop without any."""
 
 
 @keep_for_same_angles
 def compiled_sines(angle):
-    """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
+    """Sines and cosines, each (1 or designs, N), of crank angles, rad."""
     sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
     load_compiled(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
     return sine, cosine
 
 
 def parameter_table(numbers, shape):
-    """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
+    """Parameters (designs, P) from numbers, each a float or an array (..., 1), for a batch shape."""
     if not shape:
         return np.array([numbers], dtype=float)
     table = np.empty((math.prod(shape), len(numbers)))
@@ -113,7 +109,7 @@ def parameter_table(numbers, shape):
 
 
 def row_table(rows, shape):
-    """Tables (T, 1 or designs, N) from rows, each a number or an array (..., N), of results of a shape."""
+    """Tables (T, 1 or designs, N) from rows, each a number or an array (..., N), for results of a shape."""
     if not rows:
         return NO_ROWS
     one_row = all(math.prod(np.shape(row)[:-1]) == 1 for row in rows)
@@ -124,7 +120,7 @@ def row_table(rows, shape):
 
 
 def aligned_memory(*shape):
-    """Memory for numbers, which begins where vectors of every processor are loaded at once."""
+    """Uninitialised array of doubles, aligned for the largest vector register."""
     size = math.prod(shape)
     held = np.empty(size + VECTOR_NUMBERS)
     first = -held.ctypes.data // held.itemsize % VECTOR_NUMBERS
@@ -132,7 +128,7 @@ def aligned_memory(*shape):
 
 
 def run_loop(loop, angle, sine, cosine, parameters, tables, results):
-    """Fill results (designs, outputs, N), in threads if there is much to do.
+    """Fill results (designs, outputs, N); large tasks run in threads.
 
     Angles with their sines and cosines are (1 or designs, N), tables (T, 1 or designs, N), parameters (designs, P).
     """
@@ -161,7 +157,7 @@ def run_loop(loop, angle, sine, cosine, parameters, tables, results):
 
 
 def _part(array, start, stop, designs):
-    """Columns of an array (..., designs, N) for some designs, or for some angles of a single one."""
+    """Part of an array (..., designs, N): some designs, or some angles of a single one."""
     if designs == 1:
         return np.ascontiguousarray(array[..., start:stop])
     return array if array.shape[-2] == 1 else np.ascontiguousarray(array[..., start:stop, :])

@@ -1,8 +1,7 @@
-"""Programs by structure: what a scene computes, recorded once for all scenes alike but for their numbers.
+"""Programs: one recording for all scenes of a structure, run on plain numbers, by NumPy, or as a compiled loop.
 
-A program runs in three ways, all from one recording: on plain numbers, on arrays by NumPy, and as a compiled loop.
-
-A first look at the plain numbers of a scene, recorded once for all of its kind: most need no closer one.
+`program_of` keeps programs by structure; `plausibility_test` is a fast test of a scene's numbers, compiled once per
+structure: only scenes that fail it get the full test.
 """
 
 import math
@@ -28,15 +27,15 @@ from .running import RunningBounds
 from .tight import tight_bound
 
 MAX_PLAIN_ANGLES = 12
-"""Crank angles, up to this many, that are computed one by one on plain numbers."""
+"""Largest number of crank angles that are computed one by one on plain numbers."""
 MIN_LONG_OPERATIONS, MIN_COMPILED_OPERATIONS = 300, 20_000_000
-"""Operations from which few angles take longer on plain numbers than by a loop; after how many this is compiled."""
+"""Operations of a program that is compiled even for few angles, once it has computed so many operations in all."""
 BUFFER_VALUES = 2048
-"""Values over designs and angles that one buffer holds."""
+"""Values in one buffer of array operations."""
 
 
 class Program:
-    """The arithmetic of one recording, ready to run.
+    """A recording ready to run.
 
     Attributes
     ----------
@@ -55,12 +54,12 @@ class Program:
         self._computed = 0.0
 
     def by_parameters(self, places):
-        """Program of all outputs and, one after the other, their derivatives by each of the parameters at some places.
+        """Program of all outputs, followed by their derivatives by the parameters at some places.
 
         Raises
         ------
         NotGivenError
-            Code of the user's that could not be recorded is behind the outputs.
+            An output depends on code of the user that could not be recorded.
         """
         if places not in self._slopes:
             recording = self.recording
@@ -89,7 +88,7 @@ class Program:
 
     @cached_property
     def unrecorded(self):
-        """Names of code of the user's behind the outputs that could not be recorded."""
+        """Names of the user's code that outputs depend on and that could not be recorded."""
         tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
         return tuple(table.moved_by for table in tables if table.moved_by)
 
@@ -99,22 +98,22 @@ class Program:
 
     @cached_property
     def buffered(self):
-        """Lines of arrays for one design and for a batch, and how many buffers they take."""
+        """Array functions for one design and for a batch, and their count of buffers."""
         source, count = buffered_source(self.outputs)
         return [compile_line(source, ARRAYS | by_design) for by_design in self.scopes], count
 
     @cached_property
     def loop(self):
-        """The compiled loop; see `writing.loop`."""
+        """The compiled loop, see `codegen.loop_source`."""
         return load_compiled(loop_source(self.outputs)).loop
 
     @cached_property
     def _short_loop(self):
-        """One with every operation rounded, as plain numbers have it."""
+        """A compiled loop that rounds every operation, as plain numbers do."""
         return load_compiled(loop_source(self.outputs, fuse=False)).loop
 
     def rows(self, state, leaves):
-        """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
+        """Rows of the tables at the crank angles of a `Dynamics` with its leaves; 0 where no output needs them."""
         rows: list[Any] = []
         for table in self.recording.tables:
             rows += table.filled(state, leaves, self._rows_needed)
@@ -125,7 +124,7 @@ class Program:
         return {node.arguments[0] for node in needed(self.outputs) if node.operation == "table"}
 
     def run(self, state, leaves, compiled=False):
-        """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
+        """Outputs (outputs, *shape) of a `Dynamics` with its leaves."""
         angle, shape = state.crank_angle, state.shape
         count = math.prod(shape)
         if len(shape) < 2 and count <= MAX_PLAIN_ANGLES and not self.recording.tables:
@@ -162,9 +161,9 @@ class Program:
         return operations(self.outputs)
 
     def _has_paid(self, count):
-        """Whether these and all earlier computations of few angles on plain numbers took longer than compiling does.
+        """Whether all computations of few angles so far took longer than compiling.
 
-        For ever after the loop computes them, to the same bits but of the arc tangent.
+        From then on the loop computes them, with the same bits except for the arc tangent.
         """
         if self._operations < MIN_LONG_OPERATIONS:
             return False
@@ -174,13 +173,13 @@ class Program:
         return self._computed > MIN_COMPILED_OPERATIONS
 
     def at_one(self, angle, numbers, compiled):
-        """Outputs at one crank angle, all floats; of a program without tables."""
+        """Outputs at one crank angle, a list of floats; for programs without tables."""
         if compiled and self._has_paid(1):
             return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
         return self._by_numbers(np.array([angle]), numbers, (1,))[:, 0].tolist()
 
     def _by_short_loop(self, angle, numbers, shape):
-        """The same by the loop, with the sines that plain numbers have."""
+        """Outputs by the loop, with NumPy's sines, as on plain numbers."""
         return self._of_one_design(self._short_loop, angle, numbers, shape, _sines)
 
     def _of_one_design(self, loop, angle, numbers, shape, turn):
@@ -201,7 +200,7 @@ class Program:
         return np.array(found).T.reshape(-1, *shape)
 
     def by_loop(self, angle, numbers, rows, shape):
-        """The same by the compiled loop."""
+        """Outputs (outputs, *shape) by the compiled loop."""
         if len(shape) == 1 and not rows:
             return self._of_one_design(self.loop, angle, numbers, shape, numba_backend.compiled_sines)
         parameters = numba_backend.parameter_table(numbers, shape[:-1])
@@ -274,7 +273,7 @@ _memory = threading.local()
 
 
 def _buffers(count, shape):
-    """Memory for values on the way, the same again in each thread."""
+    """Scratch buffers, reused in each thread; allocating costs more than the computation."""
     size = count * math.prod(shape)
     held = getattr(_memory, "held", None)
     if held is None or held.size < size:
@@ -286,17 +285,17 @@ def _buffers(count, shape):
 
 
 def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
-    """Program for some quantities of a `Dynamics` and of all others of its structure, and its own leaves.
+    """Program of some quantities for the structure of a `Dynamics`, and the leaves of that `Dynamics`.
 
-    Recorded the first time it is asked for; each time for what may change unseen.
+    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen.
 
     Parameters
     ----------
     state : Dynamics
     quantities, sizes
-        As for `record.record`.
+        As in `record.record`.
     lasting : bool
-        Whether what would have to be recorded each time is refused.
+        Refuse scenes that must be recorded at every call.
 
     Raises
     ------
@@ -322,7 +321,7 @@ def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Prog
 
 
 def numbered_scene(state):
-    """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
+    """The scene of a `Dynamics`, with a `Numbered` (the place among its leaves) in place of each number."""
     parts: list[Any] = list(state.kind.numbered)
     mechanism, speed, acceleration, loads, friction, sense = parts + [None, None][len(parts) - 4 :]
     return SimpleNamespace(
@@ -348,9 +347,9 @@ def _recorded(state, structure, quantities, sizes):
 
 
 def plausibility_test(kind, judged=()):
-    """Function of the numbers of a scene: all lengths over the shortest, and whether hints may be due.
+    """Function of a scene's numbers that returns its extent over its shortest length, and whether hints may be due.
 
-    None if it cannot be recorded. What is usual of some of its numbers is `judged`, pairs of leaf and `checks.Usual`.
+    None if the scene cannot be recorded. `judged` holds pairs of a leaf and its usual range, a `checks.Usual`.
     """
     outputs = []
 
@@ -384,7 +383,7 @@ def plausibility_test(kind, judged=()):
 
 
 def _unusual(number, usual):
-    """Condition, as a source, under which a number is none that is usual."""
+    """Source of the condition that a number is outside its usual range."""
     most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
     too_large = f"not -{most} <= {number} <= {most}"
     return f"{too_large} or abs({number}) < {least}" if usual.least else too_large

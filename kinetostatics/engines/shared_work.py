@@ -1,8 +1,7 @@
-"""What the designs of a sweep have in common, computed once: values at crank angles behind which no varied number is.
+"""Values at crank angles that all designs of a sweep share, computed once.
 
-Where masses, springs or loads vary the motion does not. A program is parted in two: one of what is common, whose
-results are rows of tables to the other. Sums are fused with products as in the whole, so all results are the same to
-the last bit.
+Where masses, springs or loads vary, the motion does not. A program is split in two: the shared part, whose results are
+rows of tables for the other part. Sums are fused with products as in the whole, so all results keep their bits.
 """
 
 from typing import Any
@@ -16,23 +15,23 @@ from .program import Program
 from .simplify import drop_unused, fused_sums, operands_of
 
 MIN_SHARED_VALUES = 10_000_000
-"""Values over designs and angles from which two loops are made in place of one."""
+"""Values (designs * angles) from which two loops replace one."""
 MIN_SHARE = 0.25
-"""Least share of operations that is common."""
+"""Least share of operations that the designs have in common."""
 
 
 def shared_loop(program, numbers, angle, tables, count):
-    """A compiled loop for designs alike but for some numbers, and the tables it takes.
+    """Compiled loop for designs that differ in some numbers, and its tables.
 
     Parameters
     ----------
     program : Program
     numbers : sequence of float or array (designs, 1)
-        Those of its recording.
+        Numbers of its recording; arrays vary.
     angle : array (1 or designs, N)
     tables : array (T, 1 or designs, N)
     count : int
-        How many designs there are.
+        Number of designs.
     """
     if count * angle.shape[1] < MIN_SHARED_VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables
@@ -48,13 +47,13 @@ def shared_loop(program, numbers, angle, tables, count):
 
 
 def split_common(outputs, varied, first=0):
-    """Nodes that designs have in common, and outputs in a graph that has them as rows of tables.
+    """Shared nodes, and outputs in a graph that reads them as rows of tables.
 
     Parameters
     ----------
     outputs : sequence of Node or float
     varied : set of int
-        Places of the parameters in which designs differ.
+        Places of the parameters that vary.
     first : int
         Number of the first of these rows.
     """
