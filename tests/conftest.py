@@ -7,6 +7,7 @@ from functools import cache
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 
 gc.set_threshold(20_000, 20, 20)  # modules and thousands of tests live to the end: seldom look for garbage among them
@@ -36,23 +37,25 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import compiled, loops, machine_code, programs, split
+    from kinetostatics.engines import code_cache, jax_backend, numba_backend, program
     from kinetostatics.numbers import kinds
     from support import by_arrays
 
     numba = ModuleType("numba")
-    numba.njit = lambda *signature, **options: lambda function: function
+    numba.njit = lambda *signature, **options: np.errstate(all="ignore")
     numba.types = None
     numba.config = SimpleNamespace(DISABLE_JIT=0)
     numba.__spec__ = ModuleSpec("numba", None)
     numba.extending = ModuleType("numba.extending")
     numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
-    monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
+    core = ModuleType("numba.core.compiler")
+    core.Compiler = object
+    for module in (numba, numba.extending, core):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
     by_arrays.stand_in(monkeypatch)
-    loaded = cache(machine_code.load)
-    for module in (compiled, loops, programs, split):
-        monkeypatch.setattr(module, "loaded", loaded)
+    loaded = cache(code_cache.load_module)
+    for module in (numba_backend, program, jax_backend):
+        monkeypatch.setattr(module, "load_compiled", loaded)
     kinds.forget()
     yield
     kinds.forget()

@@ -6,9 +6,9 @@ down every operation, so that what it derives is known for all values, and exact
 
 import numpy as np
 
-from ..engines.programs import Program
+from ..engines.graph import Graph, Node
+from ..engines.program import Program
 from ..engines.record import Recording
-from ..engines.trace import Graph, Node
 from ..errors import KinetostaticsError, NotGivenError
 from ..numbers import paths
 

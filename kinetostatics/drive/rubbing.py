@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.compiled import available
+from ..engines.numba_backend import numba_available
 from ..errors import DriveError
 from ..machine.loads import is_given
 from ..machine.pairs import Rolling, Sliding
@@ -61,7 +61,7 @@ class RubbingDriven(Driven):
         rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
         self._solved = with_fields(self.scene, friction=with_fields(self.scene.friction, rubs=rubs))
         self._asks_for_speed = not all(map(is_given, self.scene.loads))
-        self._single_by_loop = engine == "compiled" or (engine is None and available())
+        self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 

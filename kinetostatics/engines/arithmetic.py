@@ -20,7 +20,7 @@ from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import EXACT, SAFE, Bounds, Error, is_zero, size
 from .functions import ULP, beside_one, moved_apart
-from .trace import BY_ANGLE, INPUTS, Node, needed
+from .graph import BY_ANGLE, INPUTS, Node, needed
 
 
 class Arithmetic(NamedTuple):

@@ -9,7 +9,7 @@ from functools import reduce
 from operator import or_
 
 from .bounds import is_zero
-from .trace import Node
+from .graph import Node
 
 
 class Behind:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .functions import ULP, beside_length, beside_one, lost_by_total, moved_apart
-from .trace import INPUTS, Node, is_negative, needed
+from .graph import INPUTS, Node, is_negative, needed
 
 SAFE = 1.0 + 1e-9
 """What a bound is enlarged by for the rounding of its own arithmetic, each time by a few `UNIT` of it."""

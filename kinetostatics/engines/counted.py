@@ -14,7 +14,7 @@ from ..numbers.planar import plus
 from .behind import Behind
 from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
 from .functions import ULP, is_over_root, moved_apart
-from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number, varies
+from .graph import BY_ANGLE, INPUTS, Graph, Node, is_number, varies
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""

@@ -5,9 +5,14 @@ Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). Forward costs a 
 for each output; the shorter way is taken.
 """
 
+import operator
 from collections.abc import Callable
+from typing import Any
 
-from .trace import Node, needed
+import numpy as np
+
+from .codegen import BY_DESIGN
+from .graph import INPUTS, Node, needed
 
 
 def gradients(graph, outputs, parameters):
@@ -100,3 +105,39 @@ _RULES: dict[str, Callable[..., tuple]] = {
     "divisor": lambda graph, node, root, unit: (1.0, 0.0),
 }
 """By operation: its derivatives by its arguments. Guards against rounding act only where there is no digit left."""
+
+
+_FUNCTIONS: dict[str, Any] = BY_DESIGN | {
+    "+": operator.add,
+    "-": lambda *parts: parts[0] - parts[1] if len(parts) == 2 else -parts[0],
+    "*": operator.mul,
+    "/": np.divide,
+    "sign": lambda value: np.copysign(1.0, value),
+    "held": lambda value: value,
+}
+
+
+class Evaluation:
+    """Outputs of a graph on arrays that broadcast, operation by operation: for few calls, which repay no source.
+
+    Each array is let go after its last use, so that the next one finds its memory in the cache.
+    """
+
+    def __init__(self, outputs):
+        self._outputs = outputs
+        nodes, kept = needed(outputs), set(outputs)
+        last = {part: node for node in nodes for part in node.arguments if isinstance(part, Node) and part not in kept}
+        spent: dict[Node, list[Node]] = {node: [] for node in nodes}
+        for part, node in last.items():
+            spent[node].append(part)
+        computed = [node for node in nodes if node.operation not in INPUTS]
+        self._steps = [(node, _FUNCTIONS[node.operation], node.arguments, spent[node]) for node in computed]
+
+    def __call__(self, inputs):
+        """Values of the outputs, a list of numbers and arrays, from those of all inputs, a mapping by node."""
+        values = dict(inputs)
+        for node, function, arguments, spent in self._steps:
+            values[node] = function(*[values[part] if part.__class__ is Node else part for part in arguments])
+            for part in spent:
+                del values[part]
+        return [values[part] if part.__class__ is Node else part for part in self._outputs]

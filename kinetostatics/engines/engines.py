@@ -1,7 +1,7 @@
-"""Engines: ways to values of a scene at crank angles. Each takes a `Dynamics` and names, and returns values by name.
+"""Engines: each takes a `Dynamics` and names of quantities, and returns values by name.
 
-`KERNELS` runs the kernels as they are, on whatever numbers: JAX, enclosures, single precision, a user's own groups that
-cannot be recorded. `NUMPY` runs what they recorded as one line of array operations, `COMPILED` as a loop made by numba.
+`KERNELS` runs the kernels directly, on any numbers: JAX, enclosures, single precision, a user's own groups that cannot
+be recorded. `NUMPY` runs the recorded program by array operations, `COMPILED` as a loop compiled by numba.
 """
 
 from dataclasses import dataclass, replace
@@ -14,19 +14,19 @@ from ..mechanics.gaps import gap, groups_behind
 from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
-from . import programs
 from .bounded import with_bounds
 from .bounds import CAP
+from .program import program_of
 
 
 @dataclass(frozen=True)
 class Kernels:
-    """The kernels themselves; with another `way` to the placement, as `Dynamics` takes it."""
+    """The kernels run directly; `way`: another method for the positions, see `Dynamics`."""
 
     way: Any = None
 
     def values(self, state, names=None):
-        """Values by name; None for closure and all that the groups find."""
+        """Values by name; None: closure and all results of the groups."""
         state = state if self.way is None else replace(state, way=self.way)
         names = all_found(state) if names is None else names
         behind = groups_behind(state.mechanism)
@@ -50,9 +50,9 @@ KERNELS = Kernels()
 
 @dataclass(frozen=True)
 class Recorded:
-    """What the kernels recorded, run by NumPy or, `compiled`, as a loop made by numba.
+    """The recorded program, run by NumPy or, if `compiled`, as a loop compiled by numba.
 
-    Where that is not possible, or by NumPy would take a recording each time, the kernels run as they are; `strict`
+    The kernels run directly where a scene cannot be recorded, or would be recorded at every call by NumPy; `strict`
     raises `NotGivenError` instead.
     """
 
@@ -60,11 +60,11 @@ class Recorded:
     strict: bool = False
 
     def values(self, state, names=None):
-        """Values by name; None for closure and all that the groups find."""
+        """Values by name; None: closure and all results of the groups."""
         if not is_plain(state.crank_angle):
             return KERNELS.values(state, names)
         try:
-            program, leaves = programs.of(state, names, lasting=not self.compiled)
+            program, leaves = program_of(state, names, lasting=not self.compiled)
         except NotGivenError:
             if self.strict:
                 raise
@@ -84,7 +84,7 @@ class Recorded:
         """
         if not is_plain(state.crank_angle):
             return KERNELS.with_bounds(state, names, tight)
-        program, leaves = programs.of(state, names)
+        program, leaves = program_of(state, names)
         values, bounds = with_bounds(program, state, leaves, self.compiled, tight)
         named = program.recording.named
         small = all(map(_is_small, leaves.numbers))

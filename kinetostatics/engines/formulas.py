@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..numbers.elementary import APART
-from .trace import Node
+from .graph import Node
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
 """Functions by recorded operation; the second argument of a root only says what rounding is."""

@@ -5,7 +5,7 @@ from operator import add
 
 from ..numbers.elementary import APART, UNIT, UNSEEN
 from ..numbers.planar import plus
-from .trace import BY_DESIGN, Node
+from .graph import BY_DESIGN, Node
 
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
 """Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""

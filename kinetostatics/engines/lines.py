@@ -12,10 +12,10 @@ import numpy as np
 
 from ..numbers.dimensions import NONE, dimension, spelled
 from .formulas import formula, names_in
+from .graph import INPUTS, Node, is_negative, needed
 from .naming import Named, Symbol
-from .programs import Program
+from .program import Program
 from .record import Recording
-from .trace import INPUTS, Node, is_negative, needed
 
 LONGEST = 12
 """Named numbers and constants in one formula; with more it is parted."""

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .graph import INPUTS, Node
 from .symbols import Symbol
-from .trace import INPUTS, Node
 
 KERNELS = ("kinetostatics.machine", "kinetostatics.mechanics.energy", "kinetostatics.mechanics.principal_points")
 """Modules whose local variables are names."""

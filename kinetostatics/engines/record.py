@@ -1,7 +1,8 @@
-"""The kernels run once on numbers that write down every operation: what a structure of scenes computes.
+"""Recording: the kernels run once on numbers that write down every operation.
 
-Which groups, loads and names a scene has, what is absent and which assembly it has, belongs to its structure; the
-recorded arithmetic holds for all scenes of that structure, whatever their numbers.
+Groups, loads, names, absent parts and the assembly mode of a scene form its structure; the recorded arithmetic is valid
+for all scenes of that structure, whatever their numbers. Outputs become NaN where a group they depend on is open, even
+if no arithmetic links them, as for the weight of the crank, zero moments, or energies beside a massless group.
 """
 
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from ..machine import loads
 from ..machine.crank import ray
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
@@ -23,32 +25,71 @@ from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .bounds import Error
-from .gaping import Gaps
-from .lean import LeanGraph
+from .graph import Graph, Node, needed, operations
+from .simplify import SimplifiedGraph
 from .steep import SteepTable, not_known, of_pieces
-from .trace import Graph, Node, needed, operations
+
+ROOTS = ("root", "sqrt")
+"""Operations that are NaN where a group is open."""
+
+
+class Gaps:
+    """Makes outputs NaN where a group they depend on is open.
+
+    The roots below a node are bits of an integer, one for each root of the graph.
+    """
+
+    def __init__(self, graph, scene):
+        self._placement, self._behind = scene.placement, groups_behind(scene.mechanism)
+        self._roots: list[Node] = []
+        self._bits: list[int] = []
+        for node in graph:
+            bits = self._of(node.arguments)
+            if node.operation in ROOTS:
+                bits |= 1 << len(self._roots)
+                self._roots.append(node)
+            self._bits.append(bits)
+
+    def added(self, output, name):
+        """An output plus 0 times each root that it lacks; roots that lie below another are left out."""
+        parts = (np.ravel(part)[0] for part in places(self._placement, self._behind[name]))
+        missing = self._of(parts) & ~self._of([output])
+        for place, root in reversed([*enumerate(self._roots)]):
+            if missing >> place & 1:
+                missing &= ~self._of([root])
+                nothing = 0.0 * root.held()
+                output = output + nothing if isinstance(output, Node) or output else nothing
+        return output
+
+    def _of(self, parts):
+        bits = 0
+        for part in parts:
+            if isinstance(part, Node):
+                bits |= self._bits[part.index]
+        return bits
+
 
 WITHOUT_GAPS = ("closure", *CHECKS)
-"""Quantities that tell of gaps themselves."""
+"""Quantities that report gaps themselves, and so stay numbers there."""
 
 
 class Table(NamedTuple):
-    """What is computed beforehand at the crank angles.
+    """Rows of values that are computed at the crank angles before the program runs.
 
     Attributes
     ----------
     rows : range
-        Rows it fills.
+        Numbers of its rows.
     compute : function
-        ``compute(motion, leaves) -> rows``, from the scene's motion and leaves, which may be others of its structure.
+        ``compute(motion, leaves) -> rows`` for the motion and leaves of any scene of the structure.
     moved_by : str
-        Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
+        User code whose dependence on parameters is not recorded; "" without.
     names : tuple of (str, int, str)
-        What each row is: its name, how many times it is differentiated by the crank angle, its unit.
+        Name of each row, its order of derivative by the crank angle, its unit.
     of : str or int
-        The cam, or which of the loads, that it is read for.
+        The cam, or the number of the load, that uses it.
     bounded : function or None
-        As `compute`, of all rows where the last ones, `ERRORS`, are only for bounds; `compute` then leaves these out.
+        Computes all rows, the last of which, `ERRORS`, only bounds use; `compute` then leaves these out.
     """
 
     rows: range
@@ -59,7 +100,7 @@ class Table(NamedTuple):
     bounded: Callable[[Any, Any], Any] | None = None
 
     def filled(self, motion, leaves, wanted):
-        """The rows, those that are not among the wanted ones with zero."""
+        """The rows; 0 for those that are not wanted."""
         if wanted.isdisjoint(self.rows):
             return [0.0] * len(self.rows)
         if self.bounded is None or not wanted.isdisjoint(self.rows[-len(ERRORS) :]):
@@ -69,15 +110,15 @@ class Table(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """The arithmetic behind some quantities of all scenes of one structure.
+    """The arithmetic of some quantities for all scenes of one structure.
 
     Attributes
     ----------
     quantities : tuple of str
     outputs : tuple of Node or float
-        What is computed, components one after the other.
+        Results, components of a vector one after the other.
     widths : tuple of int
-        How many rows each quantity has: 1, 2 for a vector, one for each group for the closure.
+        Rows of each quantity: 1 of a scalar, 2 of a vector, one for each group of the closure.
     vectors : tuple of bool
     parameters : tuple of Node
         One for each number of a scene, in the order of its leaves.
@@ -97,7 +138,7 @@ class Recording:
     inputs: dict[Node, Callable[[Any], Error]] = field(default_factory=dict)
 
     def named(self, rows):
-        """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
+        """Results by name from rows (outputs, ...): (...) of a scalar, (rows, ...) of a vector and the closure."""
         return dict(zip(self.quantities, map(rows.__getitem__, self._places), strict=True))
 
     @cached_property
@@ -121,20 +162,20 @@ class Recording:
 
 
 def record(structure, quantities, sizes=False, way=None) -> Recording:
-    """Arithmetic of some quantities.
+    """Record the arithmetic of some quantities.
 
     Parameters
     ----------
     structure : tuple
-        Of a mechanism, its crank speed and acceleration, and its loads, as `structures.taken_apart` gives it.
+        Structure of a mechanism, crank speed, crank acceleration and loads, see `structures.taken_apart`.
     quantities : sequence of str or None
-        Names as for `quantities.components`; None: closure, and all that the groups find.
+        Names, see `quantities.components`; None: closure and all results of the groups.
     sizes : bool
-        Whether the magnitude of a vector is wanted, not its components.
+        Record the magnitude of a vector in place of its components.
     way : function, optional
-        Other way to the placement, as `Dynamics` takes it.
+        Other method for the positions, see `Dynamics`.
     """
-    recorder = Recorder(structure, way, LeanGraph(), steeply=True)
+    recorder = Recorder(structure, way, SimplifiedGraph(), steeply=True)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -158,8 +199,8 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     )
 
 
-def recorded(structure):
-    """The scene of a structure with a `Node` for each of its numbers."""
+def recorded_scene(structure):
+    """The scene of a structure, with a `Node` for each of its numbers."""
     return Recorder(structure).recorded
 
 
@@ -208,7 +249,7 @@ class Recorder:
         return np.array(nodes, dtype=object)
 
     def _with_cam(self, group, place):
-        """The group with values of its cam from a table if that takes plain numbers only."""
+        """The group, with its cam's values from a table if the cam takes plain numbers only."""
         if not hasattr(group, "cam") or self._is_elementwise(
             group.cam, lambda angle: group.cam.polar(angle, ray(angle))
         ):
@@ -223,7 +264,7 @@ class Recorder:
         return group
 
     def _load(self, load, place, idle):
-        """The load, with values from a table if it takes plain numbers only."""
+        """The load, with its values from a table if it takes plain numbers only."""
         if not isinstance(load, Load):
             if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
                 return load
@@ -238,7 +279,7 @@ class Recorder:
         return with_fields(load, **{load.VALUE: self._given(load, place)})
 
     def _given(self, load, place):
-        """What code of the user's gives for a load, from a table."""
+        """Values of a load given by user code, from a table."""
         names = (("value", 0, getattr(load, "UNIT", "N")),)
         (values,) = self._tabled(
             names, lambda motion, leaves: [given(motion.loads[place], motion)], title_of(load), place
@@ -284,7 +325,7 @@ class Recorder:
         return read
 
     def _is_elementwise(self, part, compute):
-        """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
+        """Whether a part computes with recorded numbers, and each result depends on its own crank angle alone."""
         try:
             given = compute(self.angle)
             if not all(isinstance(found, float | np.ndarray | Node) for found in given):
@@ -304,7 +345,7 @@ class Recorder:
 
 @dataclass(frozen=True, eq=False)
 class _Tabled:
-    """A cam whose radius and derivatives are handed in."""
+    """A cam with given radius and derivatives."""
 
     values: tuple
 
@@ -312,10 +353,10 @@ class _Tabled:
         return self.values
 
 
-# What is known of inputs that are not exact
+# Errors of inputs that are not exact
 
 ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""), ("error", 4, ""))
-"""Names of rows that only bounds need."""
+"""Names of rows that only bounds use."""
 
 
 def _rounded_once(bounds):

@@ -41,7 +41,7 @@ from ..numbers.planar import minus
 from .bounds import DUST, SAFE, is_scaling, is_zero
 from .counted import ROUNDED, Counted
 from .functions import ULP, beside_one, moved_apart
-from .trace import BY_DESIGN, Node, needed, varies
+from .graph import BY_DESIGN, Node, needed, varies
 
 KNOWN = 2.0**-4
 """Relative errors of pivots stay below it."""

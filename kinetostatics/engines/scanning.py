@@ -1,11 +1,30 @@
 """Rows of numbers looked through in vectors, for numba: where something holds, a bit for each place, and sums."""
 
-from .vectors import Writer
+import inspect
+import sys
+from functools import cache
+from hashlib import sha256
+
+from ..version import __version__
 
 AT_ONCE = 64
 """Numbers that are compared, or added to as many sums, at once."""
 COLUMNS = 8
 """Columns of a table that are computed at once."""
+
+
+@cache
+def edition(*others) -> str:
+    """What tells machine code written by this version of the module, and of others that it is made by, from another's.
+
+    Numba knows the text that it compiles, not the modules that it is written by.
+    """
+    modules = sys.modules[__name__], *others
+    try:
+        text = "".join(map(inspect.getsource, modules))
+    except OSError:
+        text = __version__
+    return sha256(text.encode()).hexdigest()[:8]
 
 
 def rising(writer, here, after):
@@ -45,7 +64,7 @@ def bits_of_steps(*conditions):
             last, whole = builder.sub(size, word(1)), word(AT_ONCE)
 
             def found(lanes, *places):
-                writer = Writer(builder, context.get_data_type(results.dtype), lanes)
+                writer = Writer(builder, lanes)
                 step = [writer.loaded(builder.gep(first, [place])) for place in places]
                 return [condition(writer, *step) for condition in conditions]
 
@@ -111,7 +130,7 @@ def over_columns(function, rows):
             array = context.make_array(table)(context, builder, given[0])
             size = cgutils.unpack_tuple(builder, array.shape)[1]
             word = size.type
-            writer = Writer(builder, context.get_data_type(table.dtype), COLUMNS)
+            writer = Writer(builder, COLUMNS)
             wanted = context.cast(builder, given[1], count, types.intp)
             times = builder.sdiv(builder.add(wanted, word(COLUMNS - 1)), word(COLUMNS))
             with cgutils.for_range(builder, times) as each:
@@ -119,7 +138,7 @@ def over_columns(function, rows):
                 places = [
                     builder.gep(array.data, [builder.add(builder.mul(size, word(row)), start)]) for row in range(rows)
                 ]
-                found = function([writer.loaded(place) for place in places], writer.chosen, writer.scope["sqrt"])
+                found = function([writer.loaded(place) for place in places], writer.chosen, writer.sqrt)
                 for part, place in zip(found, places, strict=False):
                     writer.store(part, place)
             return context.get_dummy_value()
@@ -146,8 +165,8 @@ def summing(term):
 
         def written(context, builder, signature, given):
             values, size = _row(context, builder, kinds, given)
-            word, one = size.type, context.get_data_type(results.dtype)
-            vectors, numbers = Writer(builder, one, AT_ONCE), Writer(builder, one, 1)
+            word = size.type
+            vectors, numbers = Writer(builder, AT_ONCE), Writer(builder, 1)
             sides = cgutils.alloca_once_value(builder, vectors.held(0.0))
             blocks = builder.sdiv(size, word(AT_ONCE))
             with cgutils.for_range(builder, blocks) as each:
@@ -189,3 +208,93 @@ def lowest_bit():
         return types.int64(types.uint64), written
 
     return place
+
+
+class Writer:
+    """LLVM instructions on doubles, as many at once as told."""
+
+    def __init__(self, builder, count):
+        from llvmlite import ir
+
+        self.builder, self._one = builder, ir.DoubleType()
+        self._kind = self._one if count == 1 else ir.VectorType(self._one, count)
+        self._count = count
+
+    def loaded(self, place):
+        return _Lanes(self, self.builder.load(self._in_memory(place), align=8))
+
+    def store(self, part, place):
+        self.builder.store(self.held(part), self._in_memory(place), align=8)
+
+    def held(self, part):
+        """Value of an operand, or a plain number."""
+        if isinstance(part, _Lanes):
+            return part.value
+        return self._kind(float(part)) if self._count == 1 else self._kind([float(part)] * self._count)
+
+    def written(self, operation, *parts):
+        return _Lanes(self, getattr(self.builder, operation)(*map(self.held, parts)))
+
+    def called(self, name, part):
+        """Function of LLVM's own of all lanes together."""
+        from llvmlite import ir
+        from numba.core import cgutils
+
+        lanes = "" if self._count == 1 else f"v{self._count}"
+        kind = ir.FunctionType(self._kind, [self._kind])
+        function = cgutils.get_or_insert_function(self.builder.module, kind, f"llvm.{name}.{lanes}f64")
+        return _Lanes(self, self.builder.call(function, [self.held(part)]))
+
+    def sqrt(self, part):
+        return self.called("sqrt", part)
+
+    def holds(self, sign, one, other):
+        """Whether operands compare so, a bit for each lane; not if one is no number."""
+        return self.builder.fcmp_ordered(sign, self.held(one), self.held(other))
+
+    def chosen(self, sign, one, other, here, there):
+        """The one operand where two others compare so, else the other."""
+        holds = self.holds(sign, one, other)
+        return _Lanes(self, self.builder.select(holds, self.held(here), self.held(there)))
+
+    def _in_memory(self, place):
+        return place if self._count == 1 else self.builder.bitcast(place, self._kind.as_pointer())
+
+
+class _Lanes:
+    """An operand: what is done to it is written down."""
+
+    __slots__ = ("_writer", "value")
+
+    def __init__(self, writer, value):
+        self._writer, self.value = writer, value
+
+    def __add__(self, other):
+        return self._writer.written("fadd", self, other)
+
+    def __radd__(self, other):
+        return self._writer.written("fadd", other, self)
+
+    def __sub__(self, other):
+        return self._writer.written("fsub", self, other)
+
+    def __rsub__(self, other):
+        return self._writer.written("fsub", other, self)
+
+    def __mul__(self, other):
+        return self._writer.written("fmul", self, other)
+
+    def __rmul__(self, other):
+        return self._writer.written("fmul", other, self)
+
+    def __truediv__(self, other):
+        return self._writer.written("fdiv", self, other)
+
+    def __rtruediv__(self, other):
+        return self._writer.written("fdiv", other, self)
+
+    def __neg__(self):
+        return self._writer.written("fneg", self)
+
+    def __abs__(self):
+        return self._writer.called("fabs", self)

@@ -19,10 +19,9 @@ from ..numbers.planar import number, plus
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .arithmetic import BoundsOfLonger
 from .bounds import Error
-from .operations import ARRAYS, BY_DESIGN, PLAIN, made
-from .recent import kept_for_same_angles
-from .trace import needed, parted
-from .writing import buffered_line, line
+from .codegen import ARRAYS, BY_DESIGN, PLAIN, buffered_source, compile_line, line_source
+from .graph import needed, parted
+from .numba_backend import keep_for_same_angles
 
 LONG = np.finfo(np.longdouble).nmant >= 63
 """Whether long numbers have more digits than a double."""
@@ -141,28 +140,28 @@ class SteepTable:
     @cached_property
     def _double(self):
         fixed, outputs = parted(self._outputs)
-        source, count = buffered_line(outputs)
-        return _by_design(fixed), made(source, ARRAYS | BY_DESIGN), count
+        source, count = buffered_source(outputs)
+        return _by_design(fixed), compile_line(source, ARRAYS | BY_DESIGN), count
 
     @cached_property
     def _longer(self):
         travel = self._outputs[0]
         fixed, outputs = parted(BoundsOfLonger(travel.graph, self._inputs).of([travel]))
-        return _by_design(fixed), made(line(outputs), BY_DESIGN)
+        return _by_design(fixed), compile_line(line_source(outputs), BY_DESIGN)
 
     @cached_property
     def _long(self):
         operations = BY_DESIGN | {"total": _long_total, "rest": _long_rest}
-        return [made(line(outputs), operations) for outputs in parted(self._outputs[:1])]
+        return [compile_line(line_source(outputs), operations) for outputs in parted(self._outputs[:1])]
 
     @cached_property
     def _twofold(self):
-        return made(line(self._outputs[:1]), _TWOFOLD)
+        return compile_line(line_source(self._outputs[:1]), _TWOFOLD)
 
 
 def _by_design(fixed):
     """Lines of what a design fixes, for plain numbers and others."""
-    return [made(line(fixed), scope) for scope in (PLAIN, BY_DESIGN)]
+    return [compile_line(line_source(fixed), scope) for scope in (PLAIN, BY_DESIGN)]
 
 
 def _of_design(fixed, leaves):
@@ -212,7 +211,7 @@ def not_known(beyond, known):
     return error
 
 
-@kept_for_same_angles
+@keep_for_same_angles
 def _turn(angle):
     return np.sin(angle), np.cos(angle)
 

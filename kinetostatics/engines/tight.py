@@ -20,8 +20,8 @@ from typing import Any
 from .bounds import DUST
 from .counted import EXACT
 from .functions import moved_apart
+from .graph import BY_ANGLE, INPUTS, Node, needed
 from .running import KNOWN, Absolute, RunningBounds
-from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
 SEED = 2.0**900

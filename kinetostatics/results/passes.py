@@ -8,10 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from ..engines import compiled, scanning
-from ..engines.scanning import COLUMNS
-from ..engines.vectors import edition
-from ..engines.writing import ARGUMENTS, FILLED, GIVEN
+from ..engines import numba_backend
+from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
+from ..engines.scanning import COLUMNS, edition
 from ..numbers.elementary import ROUNDING
 from . import peaks
 from .peaks import REACH
@@ -282,9 +281,9 @@ def passes(
         end = min(start + step, stop)
         results = held[: end - start]
         if tables.shape[1] > 1:
-            loop(angle, sine, cosine, parameters[start:end], tables[:, start:end].copy(), results)
+            loop(angle, sine, cosine, parameters[start:end], tables[:, start:end].copy(), results.ravel())
         else:
-            loop(angle, sine, cosine, parameters[start:end], tables, results)
+            loop(angle, sine, cosine, parameters[start:end], tables, results.ravel())
         reduced(results, rows, kinds, turns, memory, numbers, rough, start)
         closed(results, first, angle[0], gaps, nearest, start)
         start = end
@@ -294,7 +293,7 @@ def passes(
 @cache
 def _source():
     """The source with the edition of what writes it, so that machine code of another is not taken for its own."""
-    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(scanning, peaks)};", 1)
+    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(peaks)};", 1)
 
 
 class Passes:
@@ -313,7 +312,7 @@ class Passes:
 
     def __init__(self, outputs, rows, first, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._passes, self._turns = compiled.loaded(_source()).passes, turns
+        self._passes, self._turns = numba_backend.load_compiled(_source()).passes, turns
         self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
@@ -323,7 +322,7 @@ class Passes:
         Parameters
         ----------
         loop, given
-            A program's loop (`engines.loops`), and what it takes for all designs: crank angles with their sines and
+            A program's loop (`engines.numba_backend`), and what it takes for all designs: crank angles with their sines and
             cosines, parameters, tables.
         held : array (designs, rows, N)
             Memory for the values of a block.

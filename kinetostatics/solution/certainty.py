@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..engines import programs
-from ..engines.backends import Backend
 from ..engines.bounded import of_magnitude, where_known
+from ..engines.jax_backend import Backend
+from ..engines.program import program_of
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks
@@ -189,7 +189,7 @@ class Certainty(Parameters):
     def _slopes(self, name, inputs, values, rounding):
         """Derivatives of a quantity by numbers of the scene, by path; and a doubt where they change with the inputs."""
         state = keeping(self, self.places, inputs).dynamics
-        program, leaves = programs.of(state, (name,))
+        program, leaves = program_of(state, (name,))
         known = leaves_of(self.places, state)
         by = {path: known[path] for path in inputs}
         backend = Backend("compiled" if self.engine.compiled else "numpy")

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..engines.arithmetic import OF as PRECISIONS
-from ..engines.backends import Backend
-from ..engines.compiled import available, require
+from ..engines.jax_backend import Backend
+from ..engines.numba_backend import numba_available, require_numba
 from ..machine.loads import is_given
 from ..mechanics.pure import require_pure
 from ..numbers import checks
@@ -75,11 +75,11 @@ def compile(  # noqa: A001 - the contract's name
         None if device is None else _device_problem(device, engine),
     )
     if engine == "compiled":
-        require()
+        require_numba()
     if not all(map(is_given, scene.loads)) and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1:
         require_pure(unchecked(scene, ANGLES))
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
-    backend = Backend(engine or ("compiled" if available() else "numpy"), precision, device)
+    backend = Backend(engine or ("compiled" if numba_available() else "numpy"), precision, device)
     backend.device  # noqa: B018  refuses one that is not there
     return Program(scene, names, kept, backend)
 

@@ -21,10 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.derivatives import tangents
-from ..engines.operations import Evaluation
+from ..engines.derivatives import Evaluation, tangents
+from ..engines.graph import Node, needed
 from ..engines.record import Recorder
-from ..engines.trace import Node, needed
 from ..errors import ConditionWarning, NotGivenError
 from ..machine.crank import ray
 from ..machine.guide import Guide

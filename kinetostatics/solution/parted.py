@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines import programs
+from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import STRAIGHT
 from ..mechanics.jamming import solve_friction
@@ -122,7 +122,7 @@ def _sizes(solution, names, engine):
     """Values of quantities, of vectors their magnitudes."""
     state, compiled = solution.dynamics, engine == "compiled"
     try:
-        program, leaves = programs.of(state, tuple(names), sizes=True, lasting=not compiled)
+        program, leaves = program_of(state, tuple(names), sizes=True, lasting=not compiled)
     except NotGivenError:
         with np.errstate(all="ignore"):
             return [sizes(solution, name)[0] for name in names]

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..engines import programs
-from ..engines.trace import needed
+from ..engines.graph import needed
+from ..engines.program import program_of
 from ..errors import ParameterError
 from ..machine.loads import by_sense, may_refuse, refusals
 from ..mechanics import jamming
@@ -59,8 +59,8 @@ class Program:
         scene = keeping(scene, places, kept)
         state = scene.dynamics(np.zeros(1))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
-        self._program, self._leaves = programs.of(state, quantities)
-        self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
+        self._program, self._leaves = program_of(state, quantities)
+        self._friction: Any = program_of(state, CHECKS)[0] if scene.friction.acting else None
         self._numbers = {
             path: (number, _of_designs(places[path].rule)) for path, number in leaves_of(places, state).items()
         }

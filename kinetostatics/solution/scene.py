@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..engines import programs
-from ..engines.compiled import available, require
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
+from ..engines.numba_backend import numba_available, require_numba
+from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
 from ..machine import hints
@@ -285,7 +285,7 @@ def _begun(scene, crank_angle, on_gap, engine):
     for text in (*odd(solution), *hints.of_given_angles(crank_angle, solution.crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
-        programs.of(solution.dynamics)  # refuses what cannot be recorded
+        program_of(solution.dynamics)  # refuses what cannot be recorded
     return solution
 
 
@@ -321,9 +321,9 @@ def _engine(name, angle, solution):
     if name == "compiled":
         if not is_plain(angle):
             raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
-        require()
+        require_numba()
         return COMPILED
-    if name is None and is_plain(angle) and math.prod(solution.shape) >= WORTH_COMPILING and available():
+    if name is None and is_plain(angle) and math.prod(solution.shape) >= WORTH_COMPILING and numba_available():
         return FASTEST
     return NUMPY
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..engines.first_look import first_look
+from ..engines.program import plausibility_test
 from ..machine import hints
 from ..numbers import paths
 from ..numbers.checks import Usual, usual_of
@@ -26,7 +26,7 @@ class Judged(NamedTuple):
 def look(kind):
     """A first look at the numbers of a kind, see `first_look`: all lengths of its mechanism are looked at together."""
     apart = (item for item in kind.answer(judged) if not (item.is_own and item.usual.unit == "m"))
-    return first_look(kind, [(item.leaf, item.usual) for item in apart])
+    return plausibility_test(kind, [(item.leaf, item.usual) for item in apart])
 
 
 def judged(kind):

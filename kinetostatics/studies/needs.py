@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ..engines import programs
+from ..engines.program import program_of
 from ..errors import NotGivenError, ParameterError
 from ..mechanics.quantities import components, label_of
 from ..numbers import checks
@@ -222,7 +222,7 @@ class _Runs:
             self.left_out[" with ".join(names)] = str(why)
             return None
         error = float(change) if math.isfinite(change) else math.inf
-        program, _ = programs.of(simplified.dynamics, (self._quantity,))
+        program, _ = program_of(simplified.dynamics, (self._quantity,))
         return Model(names, error, program.recording.operations, simplified)
 
     def _simplified(self, choices):

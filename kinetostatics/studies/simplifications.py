@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..engines.engines import Kernels
-from ..engines.series import harmonic_series
 from ..errors import NotGivenError
 from ..machine.friction import KINDS as FRICTIONS
 from ..machine.friction import kind_for
@@ -18,6 +17,7 @@ from ..machine.loads import KINDS
 from ..numbers import checks
 from ..numbers.leaves import mapped
 from ..solution.solution import Solution
+from .series import harmonic_series
 
 
 @dataclass(frozen=True)

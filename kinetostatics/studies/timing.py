@@ -7,7 +7,7 @@ import time
 from importlib import metadata
 from pathlib import Path
 
-from ..engines.recent import forget
+from ..engines.numba_backend import forget_angles
 
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 SHORTEST = 2e-3
@@ -51,7 +51,7 @@ def _stretch(run, calls):
         run()
     start = time.perf_counter()
     for _ in range(calls):
-        forget()
+        forget_angles()
         run()
     return max(time.perf_counter() - start, 1e-9) / calls
 

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from ..engines import compiled
+from ..engines import numba_backend
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.formatting import parted, si_columns
@@ -50,7 +50,7 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
         wanted = tuple(item.of(compared[0]) for item in wanted)
 
     engines = _engines(engine, len(designs) * max(angles, LEAST))
-    threads = compiled.cores() if executor is None and workers is None else 1
+    threads = numba_backend.core_count() if executor is None and workers is None else 1
     make, make_reference = _makers(known, *compared)
     job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
     _require_portable(job, executor, workers)
@@ -85,10 +85,10 @@ def _only_of_cases(source, variant, reference):
 def _engines(engine, values):
     """Engines to try for so many values, in turn."""
     if engine == "compiled":
-        compiled.require()
+        numba_backend.require_numba()
     if engine:
         return [engine]
-    return ["compiled", "numpy"] if values >= WORTH_COMPILING and compiled.available() else ["numpy"]
+    return ["compiled", "numpy"] if values >= WORTH_COMPILING and numba_backend.numba_available() else ["numpy"]
 
 
 def is_case(source):
@@ -192,7 +192,7 @@ def _executor_problem(executor):
 
 def _workers_problem(workers, executor):
     """What is wrong with the number of workers; many more than cores only cost memory, some 100 MB each."""
-    most = max(64, 4 * compiled.cores())
+    most = max(64, 4 * numba_backend.core_count())
     if workers is None:
         return None
     if isinstance(workers, bool) or not isinstance(workers, int | np.integer) or not 1 <= workers <= most:

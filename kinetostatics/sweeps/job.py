@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines import programs
+from ..engines.program import program_of
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..machine.loads import STRAIGHT, TURN
 from ..mechanics.quantities import components
@@ -152,6 +152,6 @@ def _engine(job, solutions, engines):
 def _programs(job, solutions):
     """What a compiled loop of each side computes."""
     return [
-        programs.of(solution.dynamics, (*together.quantities(outputs), "closure"), sizes=True)[0]
+        program_of(solution.dynamics, (*together.quantities(outputs), "closure"), sizes=True)[0]
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True)
     ]

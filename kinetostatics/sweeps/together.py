@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..engines import loops, programs, sharing
+from ..engines import numba_backend, shared_work
+from ..engines.program import program_of
 from ..errors import ParameterError
 from ..machine.loads import TURN, refusals
 from ..mechanics import contact
@@ -79,12 +80,12 @@ def _by_loop(solution, outputs, count, found, threads):
     Values are computed and reduced by machine code, block by block in the same memory.
     """
     state, names = solution.dynamics, quantities(outputs)
-    program, leaves = programs.of(state, (*names, "closure"), sizes=True)
+    program, leaves = program_of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
-    tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
-    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
-    loop, tables = sharing.shared(program, leaves.numbers, angle, tables, count)
-    given = angle, *loops.turn(angle), parameters, tables
+    tables = numba_backend.row_table(program.rows(state, leaves), solution.shape)
+    parameters = numba_backend.parameter_table(leaves.numbers, solution.shape[:-1])
+    loop, tables = shared_work.shared_loop(program, leaves.numbers, angle, tables, count)
+    given = angle, *numba_backend.compiled_sines(angle), parameters, tables
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
     passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
@@ -93,7 +94,7 @@ def _by_loop(solution, outputs, count, found, threads):
     step = max(block, -(-count // (SHARES * threads)))
 
     def fill(start):
-        passes(loop, given, loops.memory(block, *size), found, start, min(start + step, count))
+        passes(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
 
     return fill, step
 

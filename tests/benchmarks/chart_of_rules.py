@@ -18,10 +18,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops, record, writing
-from kinetostatics.engines.lean import LeanGraph
-from kinetostatics.engines.programs import Program
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines import numba_backend, record
+from kinetostatics.engines.codegen import loop_source
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.studies.methods.enclosures import enclosure
 
 STRUCTURES = (
@@ -42,10 +43,10 @@ def main():
         names = "balancing_torque", *few.reactions
         exact = [row for name in names for row in enclosure(few, name).exact]
         rivals = []
-        for graph, fuse in product((Graph, LeanGraph), (False, True)):
+        for graph, fuse in product((Graph, SimplifiedGraph), (False, True)):
             record.LeanGraph = graph
             made = Program(record.record(few.dynamics.apart[0], names))
-            made.loop = compiled.loaded(writing.loop(made.outputs, fuse)).loop
+            made.loop = numba_backend.load_compiled(loop_source(made.outputs, fuse)).loop
             rivals.append((made, fuse, *of_turn(made, scene)))
         times = least([run for *_, run in rivals]) / (DESIGNS * ANGLES) * 1e9
         for (made, fuse, lean, _), spent in zip(rivals, times, strict=True):
@@ -58,11 +59,11 @@ def of_turn(made, scene):
     """Whether reciprocals are shared, and a function that runs designs with crank angles in common."""
     state = scene.solve(ANGLES).dynamics
     leaves, angle = state.apart[1], np.array(state.crank_angle, ndmin=2)
-    parameters = np.repeat(loops.table_of_parameters(leaves.numbers, ()), DESIGNS, axis=0)
-    rows = loops.table_of_rows(made.rows(state, leaves), state.shape)
+    parameters = np.repeat(numba_backend.parameter_table(leaves.numbers, ()), DESIGNS, axis=0)
+    rows = numba_backend.row_table(made.rows(state, leaves), state.shape)
     results = np.empty((DESIGNS, len(made.outputs), ANGLES))
-    given = (angle, *loops.turn(angle), parameters, rows, results)
-    return isinstance(made.recording.graph, LeanGraph), lambda: made.loop(*given)
+    given = (angle, *numba_backend.compiled_sines(angle), parameters, rows, results)
+    return isinstance(made.recording.graph, SimplifiedGraph), lambda: made.loop(*given)
 
 
 def least(rivals):

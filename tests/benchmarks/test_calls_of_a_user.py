@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled
+from kinetostatics.engines import numba_backend
 from kinetostatics.studies.methods import kane
 from support.speed import COUPLER, COUPLER_INERTIA, COUPLER_MASS, CRANK, SLIDER_MASS, SPEED, seconds, turn
 
 QUANTITIES = ("O", "A", "B", "guide_force", "balancing_torque")
 LIMITS = {360: {"numpy": 1.5, "compiled": 0.9, "program": 0.3}, 3600: {"numpy": 1.0, "compiled": 0.5, "program": 0.35}}
 
-needs_numba = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
+needs_numba = pytest.mark.skipif(not numba_backend.numba_available(), reason="numba is not installed (extra: fast)")
 
 
 def saw(mass=SLIDER_MASS):

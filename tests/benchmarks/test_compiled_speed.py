@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops, programs
+from kinetostatics.engines import numba_backend
+from kinetostatics.engines.program import program_of
 from kinetostatics.studies.methods import kane
 from support.case_files import shipped
 from support.speed import (
@@ -52,14 +53,14 @@ VARIED = {
 OUTPUTS = ("largest O", "mean_absolute balancing_torque", "range guide_force")
 MANY = 100_000
 
-pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
+pytestmark = pytest.mark.skipif(not numba_backend.numba_available(), reason="numba is not installed (extra: fast)")
 
 
 @pytest.fixture
 def one_core(monkeypatch):
     """One core, and sines computed in each call, as C does, though the crank angles are those of the last."""
-    monkeypatch.setattr(loops, "cores", lambda: 1)
-    monkeypatch.setattr(loops, "turn", loops.turn.__wrapped__)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
+    monkeypatch.setattr(numba_backend, "compiled_sines", numba_backend.compiled_sines.__wrapped__)
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +96,7 @@ def of_cam(numbers):
 
 def program(variant, forces=FORCES):
     """Program of a variant, and its numbers."""
-    made, leaves = programs.of(SAW.solve(variant, 8).dynamics, tuple(forces))
+    made, leaves = program_of(SAW.solve(variant, 8).dynamics, tuple(forces))
     return made, leaves.numbers
 
 
@@ -108,12 +109,12 @@ def one_design(angles):
 def shared(made, numbers, designs=BLOCK):
     """Function that computes designs with crank angles in common, and the sines and cosines it takes."""
     angle = turn(360)[None].copy()
-    sine, cosine = loops.turn(angle)
-    parameters = np.repeat(loops.table_of_parameters(numbers, ()), designs, axis=0)
+    sine, cosine = numba_backend.compiled_sines(angle)
+    parameters = np.repeat(numba_backend.parameter_table(numbers, ()), designs, axis=0)
 
     def run():
         results = np.empty((designs, len(made.outputs), 360))
-        loops.run(made.loop, angle, sine, cosine, parameters, NONE, results)
+        numba_backend.run_loop(made.loop, angle, sine, cosine, parameters, NONE, results)
         return results.swapaxes(0, 1)
 
     return run, sine, cosine

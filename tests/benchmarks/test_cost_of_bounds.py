@@ -8,7 +8,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled, loops, programs
+from kinetostatics.engines import numba_backend
+from kinetostatics.engines.program import Program, program_of
 from support.case_files import shipped
 from support.speed import seconds
 
@@ -41,15 +42,15 @@ def judged(benchmark, tell, what, found, most):
 @pytest.mark.parametrize("engine", MOST)
 @pytest.mark.parametrize(("case", "variant"), CASES)
 def test_values_with_bounds_take_few_times_values(benchmark, tell, monkeypatch, engine, case, variant):
-    if engine == "compiled" and not compiled.available():
+    if engine == "compiled" and not numba_backend.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
-    monkeypatch.setattr(loops, "cores", lambda: 1)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene
     for kind in ("torque", "all"):
         for count in (360, 3600):
             s = scene.solve(np.linspace(0.0, 2 * np.pi, count))
             names = ("balancing_torque",) if kind == "torque" else (*s.reactions, "balancing_torque")
-            program, leaves = programs.of(s.dynamics, names)
+            program, leaves = program_of(s.dynamics, names)
             ways = [partial(way.run, s.dynamics, leaves, engine == "compiled") for way in (program, program.bounded())]
             alone, bounded = seconds(*ways)
             found[f"{kind}, {count}"] = bounded / alone
@@ -59,15 +60,15 @@ def test_values_with_bounds_take_few_times_values(benchmark, tell, monkeypatch, 
 
 @pytest.mark.parametrize(("case", "variant"), CASES)
 def test_tight_bounds_take_five_times_values(benchmark, tell, monkeypatch, case, variant):
-    if not compiled.available():
+    if not numba_backend.numba_available():
         pytest.skip("numba is not installed (extra: fast)")
-    monkeypatch.setattr(loops, "cores", lambda: 1)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 1)
     found, scene = {}, shipped(case).variants[variant].scene
     for name in ("balancing_torque", next(iter(scene.solve(0.1).reactions))):
         for count in (360, 3600):
             s = scene.solve(np.linspace(0.0, 2 * np.pi, count))
-            program, leaves = programs.of(s.dynamics, (name,))
-            scalar = programs.Program(program.recording, program.outputs[-1:])
+            program, leaves = program_of(s.dynamics, (name,))
+            scalar = Program(program.recording, program.outputs[-1:])
             ways = [partial(way.run, s.dynamics, leaves, True) for way in (scalar, scalar.bounded(tight=True))]
             alone, bounded = seconds(*ways)
             found[f"{name}, {count}"] = bounded / alone

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs, steep
+from kinetostatics.engines import steep
 from kinetostatics.engines.arithmetic import (
     DOUBLE,
     LONGER,
@@ -17,8 +17,9 @@ from kinetostatics.engines.arithmetic import (
     BoundsOfLonger,
     is_handed_over,
 )
-from kinetostatics.engines.backends import Backend
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.jax_backend import Backend
+from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart
 from support.bounded import FAMILIES, over_worst, solution
@@ -79,7 +80,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, 
 
 def bounds_of(outputs, values, arithmetic=SINGLE):
     found = BoundsElsewhere(outputs[0].graph, {}, arithmetic).of(outputs)
-    return programs.Program(None, found)._by_numbers(np.array([0.5]), values, (1,))[:, 0]
+    return Program(None, found)._by_numbers(np.array([0.5]), values, (1,))[:, 0]
 
 
 def test_what_is_handed_over_is_rounded_once_and_each_operation_once_more():
@@ -109,7 +110,7 @@ def test_a_total_is_within_its_bound_by_every_engine(numba, jax):
     leaves = SimpleNamespace(numbers=[0.7, 1.3], tables=())
     exact = 0.7 * np.sin(state.crank_angle.astype(np.longdouble)) - 1.3 + 1.0
     for engine, precision in (("numpy", "single"), ("compiled", "single"), ("jax", "single"), ("jax", "double")):
-        program, backend = programs.Program(recording, outputs), Backend(engine, precision, "cpu")
+        program, backend = Program(recording, outputs), Backend(engine, precision, "cpu")
         error = np.abs(backend.run(program, state, leaves)[0] - exact)
         bound = backend.bounds(program, state, leaves)[0]
         assert np.all(error <= bound)
@@ -228,7 +229,7 @@ def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
     half, sizes = 0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1)
     for moved, least in ((apart(half, sizes), APART * 7.0), (apart(half, UNSEEN), APART * UNSEEN)):
         (bound,) = BoundsElsewhere(graph, {}, arithmetic).of([moved])
-        assert programs.Program(None, [bound])._by_numbers(np.array([0.0]), [3.0, 4.0], (1,))[0, 0] >= least
+        assert Program(None, [bound])._by_numbers(np.array([0.0]), [3.0, 4.0], (1,))[0, 0] >= least
 
 
 @pytest.mark.slow
@@ -273,7 +274,7 @@ def test_numbers_of_more_digits_are_within_their_bound_by_either_kind(name, flin
     graph, numbers, angle = Graph(), [0.7, 3.3], np.linspace(0.1, 6.2, 300)
     turn, everywhere = graph.angle().sin(), np.ones(300, dtype=bool)
     output = SUMS[name](graph, turn, graph.parameter(0), graph.parameter(1))
-    (bound,) = programs.Program(None, BoundsOfLonger(graph, {}).of([output])).by_numpy(angle, numbers, (), angle.shape)
+    (bound,) = Program(None, BoundsOfLonger(graph, {}).of([output])).by_numpy(angle, numbers, (), angle.shape)
     reader = steep.SteepTable({})
     reader.follow(output, turn)
     state, leaves = SimpleNamespace(crank_angle=angle), SimpleNamespace(numbers=numbers)

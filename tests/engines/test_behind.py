@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.behind import Behind
-from kinetostatics.engines.lean import LeanGraph
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.running import RunningBounds
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import sign, total
 from support.every import every
 
 
-@every("kind", [Graph, LeanGraph])
+@every("kind", [Graph, SimplifiedGraph])
 @every(
     "made",
     [
@@ -34,17 +34,17 @@ def test_a_product_of_zero_with_a_root_that_may_not_be_there_has_no_bound(kind, 
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     output = made(root, one)
     found = *RunningBounds(graph).of([output]), tight_bound(graph, {}, output)
-    line = programs.Program(None, found)._by_numbers
+    line = Program(None, found)._by_numbers
     for rest, known in ((0.5, True), (2.0**-52, False)):  # that of the root is found nearly zero
         bounds = line(np.array([0.0]), [1.0, 1.0 - rest, 1e-3], (1,))[:, 0]
         assert (np.isfinite(bounds) == known).all()
 
 
 def test_a_constant_is_exact_where_what_is_behind_it_is_known():
-    graph = LeanGraph()
+    graph = SimplifiedGraph()
     one, other, unit = map(graph.parameter, range(3))
     output = one + 0.0 * (graph.angle().cos() * one - other).forgiving_root(unit).held()
-    line = programs.Program(None, RunningBounds(graph).of([output]))._by_numbers
+    line = Program(None, RunningBounds(graph).of([output]))._by_numbers
     assert line(np.array([0.0]), [1.0, 0.5, 1e-3], (1,)) == 0.0
 
 

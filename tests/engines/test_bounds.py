@@ -8,9 +8,10 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.engines import bounds, programs
+from kinetostatics.engines import bounds
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, rest, total
 from kinetostatics.studies.methods.enclosures import enclosure
 from support import bounded as bounded_machines
@@ -52,7 +53,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
 def bounds_of(graph, outputs, values, tight=False):
     """Bounds of outputs at some values of the parameters of a graph."""
     found = [tight_bound(graph, {}, part) for part in outputs] if tight else bounds.Bounds(graph).of(outputs)
-    return programs.Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
+    return Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
 
 
 def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
@@ -114,7 +115,7 @@ def test_rows_of_tables_may_be_of_any_size():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     found = bounds.Bounds(graph).of([one * other * graph.row(0)])
-    (bound,) = programs.Program(None, found)._plain(0.0, 0.0, 1.0, [1e-170, 1e-170], [1e200])
+    (bound,) = Program(None, found)._plain(0.0, 0.0, 1.0, [1e-170, 1e-170], [1e200])
     assert bound >= 1e-140  # computed 0
 
 

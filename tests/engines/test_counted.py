@@ -1,7 +1,7 @@
 """Errors of products are counts of roundings: nothing is computed for them."""
 
 from kinetostatics.engines.counted import EXACT, NO_POWER, Counted, Relative
-from kinetostatics.engines.trace import Graph, needed
+from kinetostatics.engines.graph import Graph, needed
 
 
 def counted(output, dust=0.0):

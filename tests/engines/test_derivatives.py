@@ -5,9 +5,8 @@ import pytest
 import sympy as sp
 
 import kinetostatics as ks
-from kinetostatics.engines.derivatives import tangents
-from kinetostatics.engines.operations import Evaluation
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.derivatives import Evaluation, tangents
+from kinetostatics.engines.graph import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers import elementary

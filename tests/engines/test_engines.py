@@ -189,7 +189,7 @@ def test_other_kinds_of_numbers_stay_with_numpy(threshold):
 
 
 def test_without_numba_many_crank_angles_stay_with_numpy(threshold, monkeypatch):
-    monkeypatch.setattr(scenes, "available", lambda: False)
+    monkeypatch.setattr(scenes, "numba_available", lambda: False)
     assert engine(SAMPLES) is NUMPY
 
 

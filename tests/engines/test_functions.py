@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops, programs
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.bounds import Bounds, Error
-from kinetostatics.engines.compiled import available
 from kinetostatics.engines.functions import OTHER, SMALL, ULP
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.numba_backend import numba_available
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart, sign, total
 from support import bounded
 from support.every import every
@@ -25,7 +26,7 @@ WAYS = {
 
 
 def bound_of(way, graph, output, angle, *values):
-    return programs.Program(None, [WAYS[way](graph, output)])._by_numbers(np.array([angle]), values, (1,))[0, 0]
+    return Program(None, [WAYS[way](graph, output)])._by_numbers(np.array([angle]), values, (1,))[0, 0]
 
 
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
@@ -35,8 +36,8 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
         [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
     )
     found = [getattr(np, function)(angles)]
-    if available() and function != "arctan":
-        found.append(loops.turn(angles[None])[function == "cos"][0])
+    if numba_available() and function != "arctan":
+        found.append(numba_backend.compiled_sines(angles[None])[function == "cos"][0])
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
@@ -50,8 +51,8 @@ def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
     angles = [folds, folds + random.choice([-1, 1], 6000) * 10.0 ** -random.uniform(8, 17, 6000)]
     angles = np.concatenate([*angles, 10.0 ** -np.arange(8.2, 320) if function == "cos" else []])
     turns = [(np.sin(angles), np.cos(angles))]
-    if available():
-        turns.append([part[0] for part in loops.turn(angles[None])])
+    if numba_available():
+        turns.append([part[0] for part in numba_backend.compiled_sines(angles[None])])
     for turn in turns:
         own, other = turn if function == "sin" else turn[::-1]
         small = np.abs(other) < SMALL
@@ -144,5 +145,5 @@ def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_
     }[way]
     folded = sign(given - 0.3) * graph.angle().cos() - 1.0
     for value, is_known in ((0.3 + 2.0**-54, False), (0.3 + 1e-9, True)):
-        found = programs.Program(None, [bound(folded)])._by_numbers(np.array([1e-9]), [value], (1,))[0, 0]
+        found = Program(None, [bound(folded)])._by_numbers(np.array([1e-9]), [value], (1,))[0, 0]
         assert (found < 1e-17) == is_known

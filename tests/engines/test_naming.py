@@ -7,9 +7,9 @@ import pkgutil
 import numpy as np
 
 from kinetostatics import machine
+from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.naming import Names
 from kinetostatics.engines.symbols import Symbol
-from kinetostatics.engines.trace import Graph
 
 TERMS = {"wide": ("W", "a wide line"), "explained.given": ("G", "an argument that is explained")}
 

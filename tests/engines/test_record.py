@@ -1,12 +1,17 @@
-"""Programs by structure: recorded once for all numbers, with exact derivatives."""
+"""Recordings: which structures share one, and outputs that are NaN where groups are open."""
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import machine_code, programs, record
+from kinetostatics.engines import code_cache, record
+from kinetostatics.engines.graph import needed
+from kinetostatics.engines.program import Program, program_of
+from kinetostatics.engines.record import Gaps, Recorder
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.machine.loads import TURN
 from kinetostatics.mechanics.dynamics import Dynamics
+from support.every import every
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 SIZES = np.array([[0.9], [1.0], [1.1]])
@@ -40,7 +45,7 @@ def six_bar(size=1.0, speed=30.0):
 def counted(monkeypatch):
     """Counts recordings, and modules that are made of programs, which numba would compile."""
     found = {"recordings": 0, "compilations": 0}
-    recorded, load = record.record, machine_code.load
+    recorded, load = record.record, code_cache.load_module
 
     def record_(*given):
         found["recordings"] += 1
@@ -50,8 +55,8 @@ def counted(monkeypatch):
         found["compilations"] += 1
         return load(*given, **options)
 
-    monkeypatch.setattr(programs, "record", record_)
-    monkeypatch.setattr("kinetostatics.engines.machine_code.load", load_)
+    monkeypatch.setattr("kinetostatics.engines.program.record", record_)
+    monkeypatch.setattr("kinetostatics.engines.code_cache.load_module", load_)
     return found
 
 
@@ -114,4 +119,41 @@ def test_what_is_zero_is_absent_and_makes_another_structure():
     one, other = (Dynamics(*_fields(plain())), Dynamics(*_fields(cam())))
     assert one.apart[0] != other.apart[0]
     without = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0)
-    assert programs.of(Dynamics(*_fields(without)))[0].recording.operations < programs.of(one)[0].recording.operations
+    assert program_of(Dynamics(*_fields(without)))[0].recording.operations < program_of(one)[0].recording.operations
+
+
+SHORT = ks.SliderGroup(0.04, ks.Guide.at(np.pi / 2), pin="C", label="2")
+VEE = ks.Mechanism("vee", ks.Crank(0.05), (ks.SliderGroup(0.2), SHORT))
+
+
+def recorder():
+    return Recorder(ks.Scene(VEE, 7.0).solve([0.1, 1.5], on_gap="nan").apart[0], None, SimplifiedGraph())
+
+
+def values(recorder, output):
+    """At a crank angle where both close, and at one where the second does not."""
+    s = ks.Scene(VEE, 7.0).solve([1.0, 0.1], on_gap="nan")
+    assert s.closed.tolist() == [True, False]
+    numbers = s.apart[1].numbers
+    return Program(None, (output,))._by_numbers(s.crank_angle, numbers, (2,))[0]
+
+
+@every("output", [0.0, 2.5])
+@every(
+    "name, open_", [("balancing_torque", True), ("guide_force2", True), ("crank_rate", True), ("guide_force", False)]
+)
+def test_a_constant_is_missing_where_a_group_behind_its_quantity_is_open(output, name, open_):
+    found = recorder()
+    first, second = values(found, Gaps(found.graph, found.recorded).added(output, name))
+    assert first == output
+    assert np.isnan(second) == open_
+
+
+def test_an_output_that_is_computed_from_all_behind_it_stays_as_it_is():
+    found = recorder()
+    (x, *_), *_ = (joint.position for joint in (found.recorded.placement.joints["C"],))
+    gaps, node, count = Gaps(found.graph, found.recorded), np.ravel(x)[0], len(found.graph)
+    assert gaps.added(node, "slider2_position") is node
+    assert len(found.graph) == count
+    whole = gaps.added(node, "balancing_torque")
+    assert [part.operation for part in needed([whole])].count("root") == 2

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.bounds import DUST
-from kinetostatics.engines.lean import LeanGraph
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.engines.tight import tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
 from support.case_files import shipped
 from support.every import every
@@ -20,7 +20,7 @@ from support.graphs import COMPILED, WAYS, Case
 
 def bounds_of(graph, outputs, values, angle=0.0):
     found = RunningBounds(graph).of(outputs)
-    return programs.Program(None, found)._by_numbers(np.array([angle]), values, (1,))[:, 0]
+    return Program(None, found)._by_numbers(np.array([angle]), values, (1,))[:, 0]
 
 
 def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
@@ -60,7 +60,7 @@ def test_a_root_over_itself_kept_off_zero_has_no_bound_where_that_acts(form):
 
 
 @every("form", [lambda root: root / root, lambda root: root * (1.0 / root)])
-@every("graph", [Graph, LeanGraph])
+@every("graph", [Graph, SimplifiedGraph])
 def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
     recorded = graph()
     one, other, unit = map(recorded.parameter, range(3))
@@ -96,7 +96,7 @@ def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
     tiny, small = map(graph.parameter, range(2))
     product = (graph.angle().cos() / small) * tiny
     found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
-    bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
+    bounds = Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
     assert np.all(bounds >= UNIT * (5e-324 / 4.1e-193) * np.cos(1.0))
 
 
@@ -206,14 +206,14 @@ def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
     product = apart(one, UNSEEN) * other
     for dust in (DUST, None):
         (bound,) = RunningBounds(graph, dust=dust).of([product])
-        values = programs.Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
+        values = Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
         assert values[1] >= values[0] > 0.0
 
 
 def test_a_bound_does_not_hang_on_what_else_is_asked_for():
     s = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene.solve(np.linspace(0.1, 6.0, 5))
     alone, together = (
-        programs.of(s.dynamics, names)[0].bounded().run(s.dynamics, s.dynamics.apart[1])
+        program_of(s.dynamics, names)[0].bounded().run(s.dynamics, s.dynamics.apart[1])
         for names in (("O",), ("slider_velocity", "B", "O"))
     )
     np.testing.assert_allclose(alone[2:], together[-2:], rtol=1e-12)
@@ -225,14 +225,14 @@ def test_a_bound_does_not_hang_on_what_else_is_asked_for():
 )
 def test_values_with_bounds_take_few_times_the_operations(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
-    program, _ = programs.of(s.dynamics, ("balancing_torque",))
-    assert programs.operations(program.bounded().outputs) <= 3.1 * programs.operations(program.outputs)
+    program, _ = program_of(s.dynamics, ("balancing_torque",))
+    assert operations(program.bounded().outputs) <= 3.1 * operations(program.outputs)
 
 
 @every("case, variant", [("chain_unit", "rho-0.5"), ("toggle_press", "idle")])
 def test_values_with_bounds_are_those_alone_to_the_last_bit(case, variant):
     s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 20))
-    program, leaves = programs.of(s.dynamics, ("balancing_torque", *s.reactions))
+    program, leaves = program_of(s.dynamics, ("balancing_torque", *s.reactions))
     alone = program.run(s.dynamics, leaves)
     np.testing.assert_array_equal(program.bounded().run(s.dynamics, leaves)[: len(alone)], alone)
 
@@ -262,7 +262,7 @@ def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound(
     part = one / tiny / tiny / tiny * graph.angle()
     share = huge / (part + part * 1.0000001).sqrt()
     found = share, *RunningBounds(graph).of([share]), tight_bound(graph, {}, share)
-    line = programs.Program(None, found)._by_numbers
+    line = Program(None, found)._by_numbers
     value, *bounds = line(np.array([1.0]), [1.2e30, 2.0e-93, 1e30], (1,))[:, 0]
     assert value == 0.0
     assert not np.isfinite(bounds).any()
@@ -279,7 +279,7 @@ def test_what_a_root_lost_counts_times_what_a_sum_lost_that_is_zero(first):
     product = zero * root * huge
     found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
     values = [1.0, 2.0**-60, 1e-170, 1e30]
-    bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), values, (1,))[:, 0]
+    bounds = Program(None, found)._by_numbers(np.array([1.0]), values, (1,))[:, 0]
     assert np.all(bounds >= 2.0**-60 * 1e-170 * 1e30 * np.sin(1.0))
 
 
@@ -318,6 +318,6 @@ def test_an_output_that_is_a_plain_number_is_exact():
 def test_nothing_is_too_small_in_ordinary_machines_so_that_numpy_takes_the_shorter_bounds(case, variant):
     """Where anything were, all would be computed again with what may be lost."""
     s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 30))
-    program, leaves = programs.of(s.dynamics, (*s.reactions, "balancing_torque"))
+    program, leaves = program_of(s.dynamics, (*s.reactions, "balancing_torque"))
     bounded = program.bounded()
     assert np.array_equal(bounded.run(s.dynamics, leaves), bounded._without_dust.run(s.dynamics, leaves))

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs, steep
+from kinetostatics.engines import steep
 from kinetostatics.engines.engines import COMPILED, NUMPY
+from kinetostatics.engines.program import program_of
 from kinetostatics.machine.loads import tables
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import ordinary_angles, worst
@@ -60,7 +61,7 @@ def test_numpy_and_loop_read_it_alike(numba):
 def known(scene, angles):
     """Where the program reads the table by a travel of more digits."""
     state = scene.solve(angles).dynamics
-    program, leaves = programs.of(state, ("B",))
+    program, leaves = program_of(state, ("B",))
     return program.rows(state, leaves)[3]
 
 
@@ -92,7 +93,7 @@ def test_derivatives_are_those_of_the_force():
     scene, step = pump(), 1e-9
     angles = ordinary_angles(scene, 36, 5)[36:]
     program = scene.solve(angles).dynamics
-    found, leaves = programs.of(program, ("guide_force",))
+    found, leaves = program_of(program, ("guide_force",))
     place = list(leaves.numbers).index(0.19)
     slope = found.by_parameters((place,)).run(program, leaves)[1]
 
@@ -157,7 +158,7 @@ def test_a_travel_of_more_digits_is_within_its_bound_and_that_is_small(name, way
     """Where it is steep or not; a rounded direction of a guide is rounded as doubles are."""
     scene = pump(name)
     solved = scene.solve(ordinary_angles(scene, 36, 2))
-    program, leaves = programs.of(solved.dynamics, ("B",))
+    program, leaves = program_of(solved.dynamics, ("B",))
     (made,) = (table.compute for table in program.recording.tables)
     (read,) = (cell.cell_contents for cell in made.__closure__ if isinstance(cell.cell_contents, steep.SteepTable))
     everywhere = np.ones(solved.shape, dtype=bool)

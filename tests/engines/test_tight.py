@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import bounds, programs
+from kinetostatics.engines import bounds
 from kinetostatics.engines.bounds import Error
 from kinetostatics.engines.engines import NUMPY
+from kinetostatics.engines.graph import Graph
+from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.tight import STRETCH, _Stretched, tight_bound
-from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.places import PLACES
 from support.bounded import FAMILIES, errors, solution
@@ -24,7 +25,7 @@ MORE = 1.0 + 1e-12
 def found(graph, output, angle, *values):
     """Forward and tight bound of an output at a crank angle and some values of the parameters of a graph."""
     both = (*bounds.Bounds(graph).of([output]), tight_bound(graph, {}, output))
-    return programs.Program(None, both)._by_numbers(np.array([angle]), values, (1,))[:, 0]
+    return Program(None, both)._by_numbers(np.array([angle]), values, (1,))[:, 0]
 
 
 @every("family", FAMILIES)
@@ -49,7 +50,7 @@ def test_an_adjoint_is_not_lost_by_numbers_of_a_design_that_are_tiny():
     row, tiny, unit = graph.row(0), *map(graph.parameter, range(2))
     root = (row.kept_off_zero(unit) * tiny).forgiving_root(unit)
     bound = tight_bound(graph, {row: lambda bounds: Error(0.0, 1.0)}, root)
-    (least,) = programs.Program(None, (bound,)).by_numpy(np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5)], (1,))
+    (least,) = Program(None, (bound,)).by_numpy(np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5)], (1,))
     assert least >= 0.5 * UNIT * (4e-164 / 3e-5) ** 0.5
 
 
@@ -85,7 +86,7 @@ def test_functions_have_terms_of_second_order():
     graph, error = Graph(), 2.0**-23
     row = graph.row(0)
     found = _Stretched(graph, {row: lambda bounds: Error(0.0, error / UNIT)}, None).of([row.sin()])
-    (bound,) = programs.Program(None, found)._plain(0.0, 0.0, 1.0, [], [1.0])
+    (bound,) = Program(None, found)._plain(0.0, 0.0, 1.0, [], [1.0])
     assert bound >= error + 0.5 * STRETCH * error**2
 
 
@@ -149,7 +150,7 @@ def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
     graph = Graph()
     one = graph.parameter(0)
     recording = SimpleNamespace(graph=graph, inputs={})
-    program = programs.Program(recording, (one * one * graph.angle(),)).bounded(tight=True)
+    program = Program(recording, (one * one * graph.angle(),)).bounded(tight=True)
     found = program.by_numpy(np.zeros(3), [1.7], [], (3,))
     assert found.tolist() == [[0.0] * 3] * 2
 
@@ -160,8 +161,8 @@ def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
 )
 def test_tight_bounds_take_at_most_six_times_the_operations_of_values(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
-    program, _ = programs.of(s.dynamics, ("balancing_torque",))
-    values, forward, tight = (programs.operations(of.outputs) for of in _ways(program))
+    program, _ = program_of(s.dynamics, ("balancing_torque",))
+    values, forward, tight = (operations(of.outputs) for of in _ways(program))
     assert forward <= 3.5 * values
     assert tight <= 6.0 * values
 

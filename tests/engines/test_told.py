@@ -4,7 +4,7 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines.naming import node_of
-from kinetostatics.engines.programs import Program
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.told import result, told
 from kinetostatics.mechanics.quantities import of_scene

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics.engines import machine_code
-from kinetostatics.engines.machine_code import load
-from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, require_private, sealed
+from kinetostatics.engines import code_cache
+from kinetostatics.engines.code_cache import CHECKSUMS, UntrustedError, is_intact, load_module, require_private
 from kinetostatics.errors import CacheWarning
 
 pytestmark = [
@@ -30,9 +29,9 @@ FILES = ("*.py", "*.nbi", "*.nbc", CHECKSUMS)
 
 @pytest.fixture(autouse=True)
 def told_anew():
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
     yield
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +41,7 @@ def pristine(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pristine")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("KINETOSTATICS_CACHE", str(folder))
-        load(TEXT, keep=True)
+        load_module(TEXT, keep=True)
     return folder
 
 
@@ -121,11 +120,11 @@ def test_damaged_machine_code_is_recompiled(entry, file, damage):
     DAMAGE[damage](next(entry.rglob(file)))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert [item.category for item in caught] == [CacheWarning]
     assert "was damaged, and is compiled anew" in str(caught[0].message)
-    assert sealed(entry)
-    again = load(TEXT, keep=True)
+    assert is_intact(entry)
+    again = load_module(TEXT, keep=True)
     assert (sum(again.twice.stats.cache_hits.values()), again.twice(2.1)) == (1, 4.2)
     assert not list(entry.parent.rglob("ran"))
 
@@ -134,7 +133,7 @@ def test_damaged_machine_code_is_recompiled(entry, file, damage):
 def test_files_that_were_not_there_make_it_damaged(entry, name):
     (entry / name.format(entry.name)).write_bytes(pickle.dumps(Planted(entry / "ran")))
     with pytest.warns(CacheWarning, match="was damaged"):
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
 
 
 def loosened(select, bits):
@@ -174,7 +173,7 @@ def assert_untrusted(entry, message):
     """Not even with a seal that fits is anything read; it stays as it is."""
     before = {path: path.stat().st_mtime_ns for path in entry.rglob("*")}
     with pytest.warns(CacheWarning, match=message) as caught:
-        module = load(TEXT, keep=True)
+        module = load_module(TEXT, keep=True)
     assert len(caught) == 1
     assert (sum(module.twice.stats.cache_hits.values()), module.twice(2.1)) == (0, 4.2)
     assert {path: path.stat().st_mtime_ns for path in entry.rglob("*")} == before
@@ -224,7 +223,7 @@ def test_code_planted_for_the_interpreter_never_runs(tmp_path, monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     folder = tmp_path / "programs"
     (folder / "__pycache__").mkdir(parents=True)
-    names = [machine_code._name(TEXT), machine_code._name(TEXT, *machine_code._machine())]
+    names = [code_cache._name(TEXT), code_cache._name(TEXT, *code_cache._machine())]
     for name in names:
         for place in (folder, folder / "__pycache__", tmp_path):
             (place / f"{name}.py").write_text("raise SystemExit")
@@ -232,4 +231,4 @@ def test_code_planted_for_the_interpreter_never_runs(tmp_path, monkeypatch):
     folder.chmod(0o700)
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(folder))
     monkeypatch.syspath_prepend(tmp_path)
-    assert load(TEXT, keep=True).twice(2.1) == 4.2
+    assert load_module(TEXT, keep=True).twice(2.1) == 4.2

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
 from kinetostatics.engines.engines import NUMPY
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.leaves import with_fields
@@ -123,7 +123,7 @@ def test_together_they_take_hardly_more_operations_than_apart(name, guide):
     counts = []
     for kind in (ks.SliderGroup, Apart):
         run = ks.Scene(saw(*CAMS[name], guide, kind), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN).dynamics
-        program, _ = programs.of(run, ("B", "balancing_torque"))
+        program, _ = program_of(run, ("B", "balancing_torque"))
         counts.append(program.recording.operations)
     assert counts[0] <= counts[1] + 4
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.trace import Graph
+from kinetostatics.engines.graph import Graph
 from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, rest, root, sign, total
 from support.every import every
 

@@ -17,8 +17,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
-from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.jax_backend import Backend
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import of_scene
 from support.bounded import FAMILIES, solution
 from support.elsewhere import errors, exact_values
@@ -57,7 +57,7 @@ def shipped():
     for name in ks.shipped_cases():
         for variant, made in ks.load_case(name).variants.items():
             s = made.scene.solve(angles, on_gap="nan")
-            program, leaves = programs.of(s.dynamics, tuple(of_scene(s)))
+            program, leaves = program_of(s.dynamics, tuple(of_scene(s)))
             exact, own = (backend.run(program, s.dynamics, leaves) for backend in (DOUBLE, NUMPY))
             finer, bound = (backend.bounds(program, s.dynamics, leaves) for backend in (DOUBLE, NUMPY))
             given, error = np.isfinite(exact), np.abs(own - exact)

@@ -5,14 +5,14 @@ import itertools
 import numpy as np
 import pytest
 
-from kinetostatics.engines import compiled
-from kinetostatics.engines.writing import ARGUMENTS
+from kinetostatics.engines import numba_backend
+from kinetostatics.engines.codegen import ARGUMENTS
 from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed
 
 pytestmark = [
     pytest.mark.slow,  # all reductions as one compiled loop
-    pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)"),
+    pytest.mark.skipif(not numba_backend.numba_available(), reason="numba is not installed (extra: fast)"),
 ]
 OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
@@ -56,11 +56,12 @@ def handed_on():
 
 @njit("{ARGUMENTS}", nogil=True)
 def loop(angle, sine, cosine, parameters, tables, results):
-    for design in range(results.shape[0]):
-        for row in range(results.shape[1]):
-            results[design, row] = tables[row, design]
+    results = results.reshape((-1, tables.shape[2]))
+    for design in range(tables.shape[1]):
+        for row in range(tables.shape[0]):
+            results[design * tables.shape[0] + row] = tables[row, design]
 """
-    return compiled.loaded(text).loop
+    return numba_backend.load_compiled(text).loop
 
 
 def reduced(loop, values, closure=None, turns=1, block=7):

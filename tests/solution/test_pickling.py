@@ -10,7 +10,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import errors
-from kinetostatics.engines import compiled
+from kinetostatics.engines import numba_backend
 from support.every import every
 
 WAYS = {
@@ -105,7 +105,7 @@ def test_solutions_are_pickled_with_results(way):
 
 HELD = [
     "extremes", "comparison", "needs", "tolerances", "principal points", "link", "guide", "loads", "sampled cam",
-    "swing", *(["compiled solution"] if compiled.available() else []),
+    "swing", *(["compiled solution"] if numba_backend.numba_available() else []),
 ]  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
+from kinetostatics.engines.program import program_of
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
 from support.case_files import shipped
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 def operations(solution, quantity):
     """Number of operations of a quantity at each crank angle, as recorded."""
-    program, _ = programs.of(solution.dynamics, (quantity,))
+    program, _ = program_of(solution.dynamics, (quantity,))
     return program.recording.operations
 
 

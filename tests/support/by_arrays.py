@@ -1,29 +1,15 @@
-"""What numba is given by `engines.vectors` and `engines.scanning`, done by NumPy: for programs run without numba."""
+"""What numba is given by `engines.scanning`, done by NumPy: for programs run without numba."""
 
 import operator
-from types import FunctionType, SimpleNamespace
+from types import SimpleNamespace
 
 import numpy as np
-
-from kinetostatics.engines.operations import BY_DESIGN
 
 COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
 WRITER = SimpleNamespace(
     holds=lambda sign, one, other: COMPARED[sign](one, other),
     builder=SimpleNamespace(not_=operator.invert),
 )
-
-
-def over_angles(line):
-    computed = FunctionType(line.__code__, BY_DESIGN)
-
-    def at_angles(angle, sine, cosine, tables, results, first, table, design, numbers):
-        with np.errstate(all="ignore"):
-            found = computed(angle[first], sine[first], cosine[first], tables[:, table], numbers)
-        for place, output in enumerate(found):
-            results[design, place] = output
-
-    return at_angles
 
 
 def bits_of_steps(*conditions):
@@ -63,8 +49,7 @@ def lowest_bit():
 
 def stand_in(patch):
     """Put these in place of what is written for numba."""
-    from kinetostatics.engines import scanning, vectors
+    from kinetostatics.engines import scanning
 
-    patch.setattr(vectors, "over_angles", over_angles)
     for own in (bits_of_steps, over_columns, summing, lowest_bit):
         patch.setattr(scanning, own.__name__, own)

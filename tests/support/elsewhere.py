@@ -3,7 +3,7 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
+from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
@@ -46,7 +46,7 @@ def errors(solution, exact, backends):
     """By backend: values beside exact ones, as of `exact_values`."""
     from flint import ctx
 
-    made, leaves = programs.of(solution.dynamics, tuple(exact))
+    made, leaves = program_of(solution.dynamics, tuple(exact))
     rows = [row for name in exact for row in exact[name]]
     with ctx.workprec(BITS):
         return {

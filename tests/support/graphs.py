@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from kinetostatics.engines import programs
 from kinetostatics.engines.bounds import Error
-from kinetostatics.engines.lean import LeanGraph
-from kinetostatics.engines.trace import INPUTS, Graph, Node, needed
+from kinetostatics.engines.graph import INPUTS, Graph, Node, needed
+from kinetostatics.engines.program import Program
+from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
 from kinetostatics.numbers.twofold import Twofold
@@ -162,7 +162,7 @@ class Case:
 
     def __init__(self, seed, most=16):
         self._random = random = np.random.default_rng(seed)
-        graph = (LeanGraph if random.random() < 0.7 else Graph)()
+        graph = (SimplifiedGraph if random.random() < 0.7 else Graph)()
         self.steps = recipe(random, int(random.integers(3, most)))
         angle = graph.angle()
         parameters = [graph.parameter(place) for place in range(PARAMETERS + UNITS)]
@@ -172,7 +172,7 @@ class Case:
         values = recorded(self.steps, [*parameters, angle, angle.sin(), angle.cos(), row])
         self.places = sorted({len(values) - 1, *random.integers(len(values) - len(self.steps), len(values), size=2)})
         recording = SimpleNamespace(graph=graph, inputs=inputs, tables=(), parameters=parameters)
-        self.program = programs.Program(recording, tuple(values[place] for place in self.places))
+        self.program = Program(recording, tuple(values[place] for place in self.places))
 
     def wrong(self, ways):
         """By way, program and how it is run: every value that is off by more than its bound."""

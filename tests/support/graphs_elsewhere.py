@@ -2,26 +2,25 @@
 
 import numpy as np
 
-from kinetostatics.engines import programs
 from kinetostatics.engines.arithmetic import SINGLE, BoundsElsewhere, BoundsOfLonger
+from kinetostatics.engines.codegen import BY_DESIGN, compile_line, line_source
 from kinetostatics.engines.functions import OTHER
-from kinetostatics.engines.operations import BY_DESIGN, made
-from kinetostatics.engines.split import Given, Split
+from kinetostatics.engines.graph import needed
+from kinetostatics.engines.jax_backend import Given, MixedPrecision
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.steep import _TWOFOLD, UNKNOWN, _long_rest, _long_total
-from kinetostatics.engines.trace import needed
-from kinetostatics.engines.writing import line
 from kinetostatics.numbers.planar import number
 from kinetostatics.numbers.twofold import Twofold, sine_and_cosine
 
 
 def _single(program, angle, given, rows):
     """Values in single precision, of what a design fixes in double."""
-    recording, split = program.recording, Split(program)
+    recording, split = program.recording, MixedPrecision(program)
     bounds = BoundsElsewhere(recording.graph, recording.inputs, SINGLE).of(program.outputs)
     fixed = [np.asarray(part, np.float32) for part in split._fixed_by(given)]
     turn = [np.asarray(part, np.float32) for part in (angle, np.sin(angle), np.cos(angle))]
     handed = Given(*turn, fixed, [row.astype(np.float32) for row in rows], angle.shape)
-    return *split.by_numpy(handed), *programs.Program(recording, bounds).by_numpy(angle, given, rows, angle.shape)
+    return *split.by_numpy(handed), *Program(recording, bounds).by_numpy(angle, given, rows, angle.shape)
 
 
 def _of_more_digits(made_of, number, turn):
@@ -30,7 +29,7 @@ def _of_more_digits(made_of, number, turn):
         bounds = BoundsOfLonger(recording.graph, recording.inputs).of(outputs)
         numbers = [number(part) for part in given]
         values = made_of(outputs)(number(angle), *turn(number(angle)), numbers, [number(row) for row in rows])
-        found = programs.Program(recording, bounds).by_numpy(angle, given, rows, angle.shape)
+        found = Program(recording, bounds).by_numpy(angle, given, rows, angle.shape)
         return *(_spread(value, angle.shape) for value in values), *found
 
     return way
@@ -49,11 +48,13 @@ def _spread(value, shape):
 SINGLE_PRECISION = {"single": _single}
 MORE_DIGITS = {
     "long": _of_more_digits(
-        lambda outputs: made(line(outputs), BY_DESIGN | {"total": _long_total, "rest": _long_rest}),
+        lambda outputs: compile_line(line_source(outputs), BY_DESIGN | {"total": _long_total, "rest": _long_rest}),
         np.longdouble,
         lambda angle: (np.sin(angle), np.cos(angle)),
     ),
-    "two parts": _of_more_digits(lambda outputs: made(line(outputs), _TWOFOLD), Twofold, sine_and_cosine),
+    "two parts": _of_more_digits(
+        lambda outputs: compile_line(line_source(outputs), _TWOFOLD), Twofold, sine_and_cosine
+    ),
 }
 """Of programs without what `steep` does not run so."""
 

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled
+from kinetostatics.engines import numba_backend
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
 from kinetostatics.sweeps import together
@@ -109,7 +109,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     expected = sweep(SAW, rising(30), engine="numpy", **options)
     found = sweep(SAW, rising(30), engine="compiled", **options)
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
-    monkeypatch.setattr(compiled, "cores", lambda: 2)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 2)
     monkeypatch.setattr(together, "VALUES", 50)
     monkeypatch.setattr(together, "BLOCK", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)

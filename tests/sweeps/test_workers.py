@@ -18,7 +18,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled
+from kinetostatics.engines import numba_backend
 from kinetostatics.sweeps import chunks, sweeps, together
 from kinetostatics.sweeps import workers as dispatch
 from kinetostatics.sweeps.sweeps import FAILED
@@ -68,7 +68,7 @@ def test_dask_gives_the_same_table(cluster, expected):
 
 def test_each_worker_computes_on_one_core(monkeypatch):
     taken = []
-    monkeypatch.setattr(compiled, "cores", lambda: 5)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 5)
     monkeypatch.setattr(sweeps, "computed", lambda job, *rest: taken.append(job.threads) or (_ for _ in ()))
     with ThreadPoolExecutor(2) as executor, pytest.raises(KeyError):
         sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...engines import programs
-from ...engines.backends import Backend
-from ...engines.compiled import require
 from ...engines.engines import COMPILED, NUMPY
+from ...engines.jax_backend import Backend
+from ...engines.numba_backend import require_numba
+from ...engines.program import program_of
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked
 from .method import Method, NotGivenError
@@ -24,9 +24,9 @@ def _numpy(solution, quantity, setting):
 
 def compiled_run(solution, quantity):
     """Function that computes a quantity by a compiled loop."""
-    require()
+    require_numba()
     state = solution.dynamics
-    made, leaves = programs.of(state, (quantity,))
+    made, leaves = program_of(state, (quantity,))
     return lambda: tuple(made.run(state, leaves, compiled=True))
 
 
@@ -39,7 +39,7 @@ def _numpy_with_bounds(solution, quantity, setting):
 
 
 def _compiled_with_bounds(solution, quantity, setting):
-    require()
+    require_numba()
     return lambda: _with_bounds(solution, quantity, COMPILED)
 
 
@@ -60,14 +60,14 @@ def _elsewhere(engine, precision):
 
     def prepare(solution, quantity, setting):
         if engine == "compiled":
-            require()
+            require_numba()
         state = solution.dynamics
-        made, leaves = programs.of(state, (quantity,))
+        made, leaves = program_of(state, (quantity,))
         backend.run(made, state, leaves)
         return lambda: tuple(backend.run(made, state, leaves))
 
     def bound(solution, quantity):
-        made, leaves = programs.of(solution.dynamics, (quantity,))
+        made, leaves = program_of(solution.dynamics, (quantity,))
         return np.linalg.norm(bounding.bounds(made, solution.dynamics, leaves), axis=0)
 
     name = {"numpy": "NumPy", "jax": "JAX"}.get(engine, engine)

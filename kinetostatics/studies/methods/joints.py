@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...engines.engines import Kernels
-from ...engines.series import assembled, closed_paths, harmonic_series, joints_of, positions
 from ...errors import NotGivenError, ParameterError
 from ...mechanics.quantities import components
+from ..series import assembled, closed_paths, harmonic_series, joints_of, positions
 from ..simplifications import two_mass_coupler
 from .engines import compiled_run
 from .method import Method, require_one_design

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...drive.driven import Driven
 from ...drive.transient import coast
-from ...engines.compiled import available
+from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from ...machine.builders import crank_slider
 from ...machine.crank import Crank
@@ -85,7 +85,7 @@ BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N
 
 def _ours(engine):
     def prepare(problem, quantity, setting):
-        if engine == "compiled" and not available():
+        if engine == "compiled" and not numba_available():
             raise NotGivenError("numba is not installed")
 
         def run():
@@ -99,7 +99,7 @@ def _ours(engine):
 
 def _acceleration(problem):
     """Crank acceleration at a crank angle and speed, by the library's compiled program where numba is there."""
-    driven = Driven("study", problem.scene, None, 0.0, "compiled" if available() else "numpy")
+    driven = Driven("study", problem.scene, None, 0.0, "compiled" if numba_available() else "numpy")
 
     def acceleration(angle, speed):
         inertia, slope, spare = driven.here(angle, speed)

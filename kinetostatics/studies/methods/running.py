@@ -17,7 +17,7 @@ import numpy as np
 
 from ...drive.driven import Driven
 from ...drive.periodic import steady
-from ...engines.compiled import available
+from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from .method import Method
 
@@ -31,7 +31,7 @@ class Problem:
 
     def __init__(self, scene, motor, flywheel, angles):
         self.machine, self.angles = (scene, motor, flywheel), np.asarray(angles, dtype=float)
-        self.driven = Driven("study", *self.machine, "compiled" if available() else "numpy")
+        self.driven = Driven("study", *self.machine, "compiled" if numba_available() else "numpy")
         if self.driven.by_speed:
             raise NotGivenError("rivals are for loads that do not depend on the speed")
         self.motor, self.period, self.direction = motor, self.driven.period, self.driven.direction
@@ -72,7 +72,7 @@ class Problem:
 
 def _ours(engine):
     def prepare(problem, quantity, setting):
-        if engine == "compiled" and not available():
+        if engine == "compiled" and not numba_available():
             raise NotGivenError("numba is not installed")
         return lambda: steady(*problem.machine, angles=problem.angles, engine=engine).speed
 

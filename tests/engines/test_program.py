@@ -1,16 +1,20 @@
-"""One source of physics on every engine: JAX, arb, dask, and programs recorded from the kernels, compiled by numba."""
+"""Programs: one recording for each structure; the plausibility test never misses a hint."""
 
 import json
+import math
 import subprocess
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, loops, programs
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.engines import KERNELS
+from kinetostatics.engines.program import plausibility_test, program_of
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers import kinds
@@ -145,7 +149,7 @@ def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
 
 def program(solution, names, sizes=False):
     """Program of some quantities, and a function that runs it: by NumPy unless told."""
-    made, leaves = programs.of(solution.dynamics, tuple(names), sizes)
+    made, leaves = program_of(solution.dynamics, tuple(names), sizes)
     return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
 
 
@@ -173,7 +177,7 @@ def test_recorded_program_equals_solve(interpreted, name):
 @pytest.mark.slow
 def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba):
     assert_program_equals(solve(SCENES["circle cam, everything"], ANGLES))
-    sine, cosine = loops.turn(ANGLES[None])
+    sine, cosine = numba_backend.compiled_sines(ANGLES[None])
     assert largest(sine - np.sin(ANGLES)) <= 2**-52
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
 
@@ -194,7 +198,7 @@ def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
     """NumPy takes so many crank angles at once that its buffers stay in the cache."""
     s = solve(SCENES["six-bar"], np.linspace(0, 7, 5000))
     found = [program(s, everything(s))[1]()]
-    monkeypatch.setattr(programs, "BLOCK", 10_000)
+    monkeypatch.setattr("kinetostatics.engines.program.BUFFER_VALUES", 10_000)
     found.append(program(s, everything(s))[1]())
     assert np.array_equal(*found)
 
@@ -204,7 +208,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
     """By NumPy and by the loop, against central differences of the kernels on arb numbers."""
     s = solve(SCENES[name], ANGLES[5::45])
     names, state = ("balancing_torque", *s.reactions), s.dynamics
-    made, leaves = programs.of(state, names)
+    made, leaves = program_of(state, names)
     places = tuple(range(len(leaves.numbers)))
     assert len(places) > 4
     angles = np.array([flint.arb(angle) for angle in s.crank_angle.tolist()])
@@ -275,8 +279,8 @@ def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes)
     whole = run(compiled=True)
     expected = [magnitude(s.reaction("O"))] if sizes else s.reaction("O")
     assert largest(whole[:-1] - expected) <= 1e-13 * largest(expected)
-    monkeypatch.setattr(loops, "SHARE", 20)
-    monkeypatch.setattr(loops, "cores", lambda: 3)
+    monkeypatch.setattr(numba_backend, "VALUES_A_THREAD", 20)
+    monkeypatch.setattr(numba_backend, "core_count", lambda: 3)
     assert np.array_equal(run(compiled=True), whole)
 
 
@@ -328,7 +332,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         kept = (path for path in tmp_path.rglob("*") if path.suffix in (".py", ".nbi", ".nbc"))
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
-    compiled.loaded.cache_clear()
+    numba_backend.load_compiled.cache_clear()
     kinds.forget()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
@@ -371,8 +375,8 @@ def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monk
     angles = np.linspace(0.1, 6.0, 5)
     before = [program(angle)["friction_torque"] for angle in (0.3, angles)]
     assert "_short_loop" not in vars(program._program)
-    monkeypatch.setattr(programs, "LONG", 0)
-    monkeypatch.setattr(programs, "PAYS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_LONG_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_COMPILED_OPERATIONS", 0)
     after = [program(angle)["friction_torque"] for angle in (0.3, angles)]
     assert "_short_loop" in vars(program._program)
     assert all(np.array_equal(one, other) for one, other in zip(before, after, strict=True))
@@ -381,9 +385,48 @@ def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monk
 
 def test_few_angles_stay_on_plain_numbers_without_numba(monkeypatch):
     program = ks.compile(RUBBING, "friction_loss", engine="numpy")
-    monkeypatch.setattr(programs, "LONG", 0)
-    monkeypatch.setattr(programs, "PAYS", 0)
-    monkeypatch.setattr(programs, "available", lambda: False)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_LONG_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.MIN_COMPILED_OPERATIONS", 0)
+    monkeypatch.setattr("kinetostatics.engines.program.numba_available", lambda: False)
     expected = program(0.3)["friction_loss"]
     assert [program.unlooked(0.3, {}, True)["friction_loss"] for _ in range(3)] == [expected] * 3
     assert "_short_loop" not in vars(program._program)
+
+
+SIZES = st.sampled_from([0.02, 0.05, 0.3, 0.3 * (1 + 1e-12), 2.0, 50.0])
+MASSES = st.sampled_from([0.0, 1e-6, 0.01, 5.0, 400.0])
+
+
+@given(SIZES, SIZES, MASSES, MASSES, SIZES, SIZES, st.sampled_from(["open", "crossed", 1, -1]))
+def test_a_scene_with_hints_always_gets_a_closer_look(crank, length, mass, inertia, centre, offset, assembly):
+    assume(inertia == 0.0 or mass > 0.0)
+    try:
+        rod = ks.Link(mass, centre, inertia)
+        mechanism = ks.crank_slider(crank, length, guide_offset=offset - 0.02, assembly=assembly, coupler=rod)
+    except ks.ParameterError:
+        assume(False)
+    s = ks.Scene(mechanism, crank_speed=1.0).unsolved(np.array([0.3]))
+    proportion, odd = s.first_look
+    assert math.isclose(proportion, mechanism.proportion, rel_tol=1e-15)
+    assert odd or mechanism.hints == ()
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_ordinary_machines_need_no_closer_look(name):
+    s = solve(SCENES[name], SCENES[name].mechanism.turns * [0.3])
+    proportion, odd = s.first_look
+    assert math.isclose(proportion, s.mechanism.proportion, rel_tol=1e-15)
+    assert not odd
+
+
+def test_what_cannot_be_recorded_gets_a_closer_look():
+    class Measured(ks.cams.Circle):
+        @property
+        def lengths(self):
+            return (math.floor(self.pitch_radius),)
+
+    mechanism = ks.cam_crank_slider(Measured(0.3, (0.01, 0.0)), 2.0)
+    s = ks.solve(mechanism, 0.3, crank_speed=1.0)
+    assert plausibility_test(s.kind) is None
+    assert s.first_look is None
+    assert s.proportion == mechanism.proportion

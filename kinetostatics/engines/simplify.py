@@ -1,21 +1,28 @@
-"""A graph with fewer operations: what is recorded is written in the way that takes least at each crank angle."""
+"""Algebraic simplification of recorded arithmetic, and fused multiply-add (FMA).
+
+No FMA for a b - c d when both products have the same structure, as those of twin groups: for equal inputs the result
+must be exactly 0, and FMA would return the rounding error of a b instead. Factors and terms fixed by the design do not
+count as structure. Each decision depends only on the nodes below a sum, so that a result has the same bits whatever
+else is computed.
+"""
 
 from itertools import product
+from typing import Any, NamedTuple
 
-from .trace import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number
+from .graph import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number, varies
 
-SMALLEST = 2.0**-1022
-"""What is smaller may have no reciprocal."""
+MIN_DIVISOR = 2.0**-1022
+"""Divisors below this may have no finite reciprocal."""
 
 
-class LeanGraph(Graph):
-    """The same with fewer operations at each crank angle, and the same values but for rounding.
+class SimplifiedGraph(Graph):
+    """Graph with fewer operations at each crank angle and the same values except for rounding.
 
-    Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
-    design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. The size of what
-    lies along the crank, or across it, needs no root. Products leave signs to sums, to the last bit. A zero that is
-    added stays, for it gives a zero its sign, on which friction hangs. Each is decided where it is recorded, by what is
-    there, so that a number is computed in one way whatever else is wanted.
+    A quotient by a root becomes a product with its reciprocal, which other quotients share; a quotient by a number of
+    the design becomes a product with a reciprocal computed once. Divisors with infinite reciprocals keep the quotient,
+    so that 0 / x stays 0. The length of a vector along the crank, or across it, needs no root. Signs of factors move
+    to sums, to the last bit. An added zero stays: it decides the sign of a zero, which friction uses. Each decision
+    uses the recorded arguments only, so that a number is computed in one way whatever else is wanted.
     """
 
     def node(self, operation, *arguments):
@@ -52,12 +59,12 @@ class LeanGraph(Graph):
                     return right if below is left else left
             if _is_root(below):
                 return self.node("*", above, self._over(below))
-        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= SMALLEST):
+        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= MIN_DIVISOR):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
     def _over(self, part):
-        """One over a part; of what a design's number multiplies, that over the rest."""
+        """1 / part, with reciprocals of the design's factors computed apart from those at each angle."""
         if not isinstance(part, Node):
             return 1.0 / part
         arguments = part.arguments
@@ -76,7 +83,7 @@ class LeanGraph(Graph):
 
 
 def _is_root(part):
-    """Whether a part is a root, or one times a number of the design."""
+    """Whether a part is a root, or a root times numbers of the design."""
     while part.operation in ("*", "-"):
         own = [other for other in part.arguments if _varies(other) == BY_ANGLE]
         if len(own) > 1 or (part.operation == "-" and len(part.arguments) > 1):
@@ -94,7 +101,7 @@ def _are_inverse(one, other):
 
 
 def _is_over(part, other):
-    """Whether a part is one over a node."""
+    """Whether a part is 1 / other."""
     return (
         isinstance(part, Node)
         and part.operation == "/"
@@ -104,7 +111,7 @@ def _is_over(part, other):
 
 
 def _is_none_of_turn(part, other):
-    """Whether a part is zero and the other the sine or cosine of the crank angle, which is finite."""
+    """Whether a part is 0 and the other the sine or cosine of the crank angle, which is finite."""
     return (
         is_number(part, 0.0)
         and isinstance(other, Node)
@@ -114,7 +121,7 @@ def _is_none_of_turn(part, other):
 
 
 def _secant(square):
-    """Where a square is 1 + x^2 / h^2 with h the root of (a - x) (a + x): a and h, for its root is |a| / h."""
+    """(a, h) where a square is 1 + x^2 / h^2 and h = sqrt((a - x) (a + x)), so that its root is |a| / h; else None."""
     one, power = _parts(square, "+")
     if not is_number(one, 1.0):
         one, power = power, one
@@ -132,7 +139,7 @@ def _secant(square):
 
 
 def _turned(square):
-    """What is multiplied by a sine and the cosine beside it where a square is the sum of the squares of both."""
+    """Factor a where a square is (a sin)^2 + (a cos)^2 of one angle; else None."""
     for one, other in _either_way(square, "+"):
         (x, same), (y, alike) = _parts(one, "*"), _parts(other, "*")
         if x is same and y is alike:
@@ -148,7 +155,7 @@ def _are_of_one_angle(sine, cosine):
 
 
 def _parts(part, operation):
-    """Both arguments of an operation, or nothing twice."""
+    """Both arguments of an operation, or (None, None)."""
     is_one = isinstance(part, Node) and part.operation == operation and len(part.arguments) == 2
     return part.arguments if is_one else (None, None)
 
@@ -156,3 +163,73 @@ def _parts(part, operation):
 def _either_way(part, operation):
     left, right = _parts(part, operation)
     return ((left, right), (right, left))
+
+
+NONE: frozenset[int] = frozenset()
+
+
+class FusedSum(NamedTuple):
+    """A sum as sign * one * other + rest_sign * rest, with signs 1 or -1."""
+
+    sign: int
+    one: Any
+    other: Any
+    rest_sign: int
+    rest: Any
+
+
+def fused_sums(nodes) -> dict[Node, FusedSum]:
+    """FMA of each sum that may be fused, by node; of two products the one that is computed later."""
+    found: dict[Node, FusedSum] = {}
+    ways: dict[Node, int] = {}
+    held: dict[Node, frozenset[int]] = {}
+    depths: dict[Node, int] = {}
+    numbers: dict[tuple, int] = {}
+    for node in nodes:
+        if node.varies < BY_ANGLE:
+            continue
+        kind, moving = node.operation, [part for part in node.arguments if varies(part)]
+        is_sum, minus = kind in ("+", "-", "held"), -1 if kind == "-" else 1
+        depths[node] = 1 + max((depths[part] for part in moving), default=0)
+        if len(moving) == 1 and (is_sum or kind == "*"):
+            ways[node] = ways[moving[0]]
+        else:
+            key = "+" if is_sum else kind, *sorted(ways[part] for part in moving)
+            ways[node] = numbers.setdefault(key, len(numbers))
+        held[node] = NONE.union(*(held[part] for part in moving)) if is_sum else NONE
+        if kind == "*":
+            held[node] = frozenset((ways[node],))
+        if is_sum and len(node.arguments) == 2:
+            left, right = node.arguments
+            choices = [
+                (depths[part], FusedSum(own * sign, product.arguments[0], product.arguments[1], others, rest))
+                for part, own, others, rest in ((left, 1, minus, right), (right, minus, 1, left))
+                for sign, product in (_product(part),)
+                if product is not None and ways[product] not in held.get(rest, NONE)
+            ]
+            if choices:
+                found[node] = max(choices, key=lambda choice: choice[0])[1]
+    return found
+
+
+def operands_of(node, sums):
+    """Nodes that are arguments of a node, or of its fused sum."""
+    found = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
+    return [part for part in found if isinstance(part, Node)]
+
+
+def drop_unused(nodes, outputs, sums):
+    """Nodes without products that only their fused sums use."""
+    wanted = {part for part in outputs if isinstance(part, Node)}
+    for node in reversed(nodes):
+        if node in wanted:
+            wanted.update(operands_of(node, sums))
+    return [node for node in nodes if node in wanted]
+
+
+def _product(part):
+    """Sign, and product node or None, of a part."""
+    sign = 1
+    if varies(part) and part.operation == "-" and len(part.arguments) == 1:
+        sign, part = -1, part.arguments[0]
+    return sign, part if varies(part) and part.operation == "*" else None

@@ -1,4 +1,4 @@
-"""Machine code on disk: found again, whole, for its user alone; and nothing of it needed."""
+"""Generated modules: machine code kept on disk, sealed, private, and compiled anew where needed."""
 
 import os
 import subprocess
@@ -9,9 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics.engines import machine_code, programs_folder
-from kinetostatics.engines.machine_code import load
-from kinetostatics.engines.programs_folder import CHECKSUMS, new_entry, sealed
+from kinetostatics.engines import code_cache
+from kinetostatics.engines.code_cache import (
+    CHECKSUMS,
+    UntrustedError,
+    is_intact,
+    load_module,
+    new_entry,
+    require_private,
+)
 from kinetostatics.errors import CacheWarning
 
 TEXT = """
@@ -29,10 +35,10 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "new" / "programs"))
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
     yield tmp_path / "new" / "programs"
     assert not list((tmp_path / "temporary").iterdir())
-    machine_code._tell.cache_clear()
+    code_cache._tell.cache_clear()
 
 
 def hits(module):
@@ -51,7 +57,7 @@ def file_modes(path):
 def test_machine_code_is_found_again_and_is_for_its_user_alone(numba, folder, mask):
     before = os.umask(mask)
     try:
-        first, second = load(TEXT, keep=True), load(TEXT, keep=True)
+        first, second = load_module(TEXT, keep=True), load_module(TEXT, keep=True)
     finally:
         os.umask(before)
     assert (hits(first), hits(second)) == (0, 1)
@@ -62,12 +68,12 @@ def test_machine_code_is_found_again_and_is_for_its_user_alone(numba, folder, ma
 
 
 def test_what_is_not_to_be_kept_leaves_nothing(numba, folder):
-    assert load(TEXT).twice(2.1) == 4.2
+    assert load_module(TEXT).twice(2.1) == 4.2
     assert not folder.exists()
 
 
 def test_modules_of_plain_python_need_no_numba(folder):
-    assert load("def thrice(x):\n    return 3 * x\n").thrice(2) == 6
+    assert load_module("def thrice(x):\n    return 3 * x\n").thrice(2) == 6
 
 
 def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
@@ -75,7 +81,7 @@ def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
     monkeypatch.setenv("KINETOSTATICS_CACHE", "~/mine")
     monkeypatch.chdir(tmp_path)
-    load(TEXT, keep=True)
+    load_module(TEXT, keep=True)
     assert list((tmp_path / "mine").iterdir())
     assert not (tmp_path / "~").exists()
 
@@ -86,7 +92,7 @@ def test_one_warning_is_given_however_many_programs_cannot_be_kept(numba, folder
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         for number in range(3):
-            assert load(f"{TEXT}#{number}", keep=True).twice(2.0) == 4.0
+            assert load_module(f"{TEXT}#{number}", keep=True).twice(2.0) == 4.0
     assert [item.category for item in caught] == [CacheWarning]
     assert f"others may write to {folder}" in str(caught[0].message)
     assert not list(folder.iterdir())
@@ -95,7 +101,7 @@ def test_one_warning_is_given_however_many_programs_cannot_be_kept(numba, folder
 def test_numbas_own_folder_is_left_alone(numba, folder, monkeypatch, tmp_path):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "numba"))
     with pytest.warns(CacheWarning, match="NUMBA_CACHE_DIR is set"):
-        assert load(TEXT, keep=True).twice(2.0) == 4.0
+        assert load_module(TEXT, keep=True).twice(2.0) == 4.0
     assert not (tmp_path / "numba").exists()
 
 
@@ -106,7 +112,7 @@ def test_of_two_that_make_the_same_entry_the_first_has_its_way(tmp_path):
         with new_entry(entry) as other:
             (other / "text").write_text("other")
     assert (entry / "text").read_text() == "other"
-    assert sealed(entry)
+    assert is_intact(entry)
     assert [path.name for path in tmp_path.iterdir()] == ["entry"]
 
 
@@ -123,11 +129,11 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
 
 @pytest.mark.slow
 def test_processes_that_start_together_share_the_folder(numba, folder):
-    code = f"from kinetostatics.engines.machine_code import load; print(load({TEXT!r}, keep=True).twice(2.1))"
+    code = f"from kinetostatics.engines.code_cache import load; print(load({TEXT!r}, keep=True).twice(2.1))"
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     assert [(process.communicate()[0], process.returncode) for process in started] == [("4.2\n", 0)] * 2
-    assert [sealed(entry) for entry in folder.iterdir()] == [True]
+    assert [is_intact(entry) for entry in folder.iterdir()] == [True]
 
 
 # Nowhere to keep it
@@ -193,7 +199,7 @@ def test_without_a_folder_programs_are_compiled_in_memory(numba, folder, monkeyp
     message = NOWHERE[name](monkeypatch, tmp_path)
     present = set(tmp_path.iterdir())
     with pytest.warns(CacheWarning, match=f"made anew in each session.*{message}"):
-        assert load(TEXT, keep=True).twice(2.1) == 4.2
+        assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert set(tmp_path.iterdir()) == present
 
 
@@ -207,7 +213,7 @@ def test_on_a_full_disk_programs_are_compiled_in_memory(numba, folder, limit):
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
     try:
         with pytest.warns(CacheWarning, match=r"made anew in each session.*too large"):
-            module = load(TEXT, keep=True)
+            module = load_module(TEXT, keep=True)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert module.twice(2.1) == 4.2
@@ -217,13 +223,45 @@ def test_on_a_full_disk_programs_are_compiled_in_memory(numba, folder, limit):
 def test_where_users_have_no_numbers_nothing_is_asked(tmp_path, monkeypatch):
     monkeypatch.delattr(os, "getuid", raising=False)
     tmp_path.chmod(0o777)
-    programs_folder.require_private(tmp_path)
+    code_cache.require_private(tmp_path)
 
 
 def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
     folder.mkdir(parents=True, mode=0o700)
     (folder / "__pycache__").mkdir()
     (folder / "kinetostatics_0123456789abcdef.py").write_text("raise SystemExit")
-    load(TEXT, keep=True)
-    assert hits(load(TEXT, keep=True)) == 1
+    load_module(TEXT, keep=True)
+    assert hits(load_module(TEXT, keep=True)) == 1
     assert len(list(folder.rglob(CHECKSUMS))) == 1
+
+
+def test_a_folder_that_is_named_is_made_for_the_user_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "deep" / "own"))
+    folder = code_cache.programs_folder()
+    assert folder == tmp_path / "deep" / "own"
+    assert folder.stat().st_mode & 0o077 == 0
+
+
+def test_an_entry_is_there_when_it_is_whole_and_sealed(tmp_path):
+    with new_entry(tmp_path / "entry") as made:
+        (made / "code").write_text("x")
+        assert not (tmp_path / "entry").exists()
+    assert is_intact(tmp_path / "entry")
+    assert [path.name for path in tmp_path.iterdir()] == ["entry"]
+    (tmp_path / "entry" / "more").write_text("y")
+    assert not is_intact(tmp_path / "entry")
+
+
+def test_an_entry_that_fails_leaves_nothing(tmp_path):
+    with pytest.raises(ZeroDivisionError), new_entry(tmp_path / "entry"):
+        raise ZeroDivisionError
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="users have no numbers here")
+def test_what_others_may_write_is_not_trusted(tmp_path):
+    require_private(tmp_path)
+    tmp_path.chmod(0o777)
+    with pytest.raises(UntrustedError, match=f"others may write to {tmp_path}"):
+        require_private(tmp_path)
+    assert issubclass(UntrustedError, OSError)

@@ -1,6 +1,7 @@
-"""Programs by structure: what a scene computes, recorded once for all scenes alike but for their numbers.
+"""Programs: one recording for all scenes of a structure, run on plain numbers, by NumPy, or as a compiled loop.
 
-A program runs in three ways, all from one recording: on plain numbers, on arrays by NumPy, and as a compiled loop.
+`program_of` keeps programs by structure; `plausibility_test` is a fast test of a scene's numbers, compiled once per
+structure: only scenes that fail it get the full test.
 """
 
 import math
@@ -10,28 +11,30 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError, QuantityError
+from ..machine import hints
+from ..machine.links import present
+from ..numbers.checks.usual import FAR
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import FLOATS, Leaves
-from . import loops, writing
-from .compiled import available, loaded
+from . import numba_backend
+from .codegen import ARRAYS, BY_DESIGN, PLAIN, SCALARS, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients
-from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, made
-from .recent import kept_for_same_angles
-from .record import record
+from .graph import needed, operations
+from .numba_backend import keep_for_same_angles, load_compiled, numba_available
+from .record import record, recorded_scene
 from .running import RunningBounds
 from .tight import tight_bound
-from .trace import needed, operations
 
-FEW = 12
-"""Crank angles, up to this many, that are computed one by one on plain numbers."""
-LONG, PAYS = 300, 20_000_000
-"""Operations from which few angles take longer on plain numbers than by a loop; after how many this is compiled."""
-BLOCK = 2048
-"""Values over designs and angles that one buffer holds."""
+MAX_PLAIN_ANGLES = 12
+"""Largest number of crank angles that are computed one by one on plain numbers."""
+MIN_LONG_OPERATIONS, MIN_COMPILED_OPERATIONS = 300, 20_000_000
+"""Operations of a program that is compiled even for few angles, once it has computed so many operations in all."""
+BUFFER_VALUES = 2048
+"""Values in one buffer of array operations."""
 
 
 class Program:
-    """The arithmetic of one recording, ready to run.
+    """A recording ready to run.
 
     Attributes
     ----------
@@ -50,12 +53,12 @@ class Program:
         self._computed = 0.0
 
     def by_parameters(self, places):
-        """Program of all outputs and, one after the other, their derivatives by each of the parameters at some places.
+        """Program of all outputs, followed by their derivatives by the parameters at some places.
 
         Raises
         ------
         NotGivenError
-            Code of the user's that could not be recorded is behind the outputs.
+            An output depends on code of the user that could not be recorded.
         """
         if places not in self._slopes:
             recording = self.recording
@@ -84,32 +87,32 @@ class Program:
 
     @cached_property
     def unrecorded(self):
-        """Names of code of the user's behind the outputs that could not be recorded."""
+        """Names of the user's code that outputs depend on and that could not be recorded."""
         tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
         return tuple(table.moved_by for table in tables if table.moved_by)
 
     @cached_property
     def _plain(self):
-        return made(writing.line(self.outputs), PLAIN)
+        return compile_line(line_source(self.outputs), PLAIN)
 
     @cached_property
     def buffered(self):
-        """Lines of arrays for one design and for a batch, and how many buffers they take."""
-        source, count = writing.buffered_line(self.outputs)
-        return [made(source, ARRAYS | by_design) for by_design in self.scopes], count
+        """Array functions for one design and for a batch, and their count of buffers."""
+        source, count = buffered_source(self.outputs)
+        return [compile_line(source, ARRAYS | by_design) for by_design in self.scopes], count
 
     @cached_property
     def loop(self):
-        """The compiled loop; see `writing.loop`."""
-        return loaded(writing.loop(self.outputs)).loop
+        """The compiled loop, see `codegen.loop_source`."""
+        return load_compiled(loop_source(self.outputs)).loop
 
     @cached_property
     def _short_loop(self):
-        """One with every operation rounded, as plain numbers have it."""
-        return loaded(writing.loop(self.outputs, fuse=False)).loop
+        """A compiled loop that rounds every operation, as plain numbers do."""
+        return load_compiled(loop_source(self.outputs, fuse=False)).loop
 
     def rows(self, state, leaves):
-        """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
+        """Rows of the tables at the crank angles of a `Dynamics` with its leaves; 0 where no output needs them."""
         rows: list[Any] = []
         for table in self.recording.tables:
             rows += table.filled(state, leaves, self._rows_needed)
@@ -120,10 +123,10 @@ class Program:
         return {node.arguments[0] for node in needed(self.outputs) if node.operation == "table"}
 
     def run(self, state, leaves, compiled=False):
-        """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
+        """Outputs (outputs, *shape) of a `Dynamics` with its leaves."""
         angle, shape = state.crank_angle, state.shape
         count = math.prod(shape)
-        if len(shape) < 2 and count <= FEW and not self.recording.tables:
+        if len(shape) < 2 and count <= MAX_PLAIN_ANGLES and not self.recording.tables:
             few = self._by_short_loop if compiled and self._has_paid(count) else self._by_numbers
             return few(angle, leaves.numbers, shape)
         run = self.by_loop if compiled else self.by_numpy
@@ -138,11 +141,11 @@ class Program:
         (single, batch), count = self.buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore", under=self.underflow):
-            sine, cosine = turn(angle)
+            sine, cosine = numpy_sines(angle)
             if len(shape) == 1:
                 try:
-                    for start in range(0, shape[0], BLOCK):
-                        part = slice(start, start + BLOCK)
+                    for start in range(0, shape[0], BUFFER_VALUES):
+                        part = slice(start, start + BUFFER_VALUES)
                         given = [row[part] if np.size(row) > 1 else row for row in rows]
                         own, free = results[:, part], _buffers(count, results[0, part].shape)
                         single(angle[part], sine[part], cosine[part], numbers, given, free, own)
@@ -157,19 +160,19 @@ class Program:
         return operations(self.outputs)
 
     def _has_paid(self, count):
-        """Whether these and all earlier computations of few angles on plain numbers took longer than compiling does.
+        """Whether all computations of few angles so far took longer than compiling.
 
-        For ever after the loop computes them, to the same bits but of the arc tangent.
+        From then on the loop computes them, with the same bits except for the arc tangent.
         """
-        if self._operations < LONG:
+        if self._operations < MIN_LONG_OPERATIONS:
             return False
         self._computed += count * self._operations
-        if self._computed > PAYS and not available():
+        if self._computed > MIN_COMPILED_OPERATIONS and not numba_available():
             self._computed = -math.inf
-        return self._computed > PAYS
+        return self._computed > MIN_COMPILED_OPERATIONS
 
     def at_one(self, angle, numbers, compiled):
-        """Outputs at one crank angle, all floats; of a program without tables."""
+        """Outputs at one crank angle, a list of floats; for programs without tables."""
         if compiled and self._has_paid(1):
             return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
         try:
@@ -178,14 +181,14 @@ class Program:
             return self.by_numpy(np.array([angle]), numbers, (), (1,))[:, 0].tolist()
 
     def _by_short_loop(self, angle, numbers, shape):
-        """The same by the loop, with the sines that plain numbers have."""
+        """Outputs by the loop, with NumPy's sines, as on plain numbers."""
         return self._of_one_design(self._short_loop, angle, numbers, shape, _sines)
 
     def _of_one_design(self, loop, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
-        parameters = loops.table_of_parameters(_plain_numbers(numbers), ())
+        parameters = numba_backend.parameter_table(_plain_numbers(numbers), ())
         sine, cosine = turn(angle)
-        loops.run(loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
+        numba_backend.run_loop(loop, angle, sine, cosine, parameters, numba_backend.NO_ROWS, results)
         return results.reshape(-1, *shape)
 
     def _by_numbers(self, angle, numbers, shape):
@@ -199,18 +202,18 @@ class Program:
         return np.array(found).T.reshape(-1, *shape)
 
     def by_loop(self, angle, numbers, rows, shape):
-        """The same by the compiled loop."""
+        """Outputs (outputs, *shape) by the compiled loop."""
         if len(shape) == 1 and not rows:
-            return self._of_one_design(self.loop, angle, numbers, shape, loops.turn)
-        parameters = loops.table_of_parameters(numbers, shape[:-1])
+            return self._of_one_design(self.loop, angle, numbers, shape, numba_backend.compiled_sines)
+        parameters = numba_backend.parameter_table(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
         angles = np.broadcast_to(angle, shape).reshape(designs, -1) if own else angle.reshape(1, -1)
         angles = np.ascontiguousarray(angles)
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
-        tables = loops.table_of_rows(rows, shape or (1,))
-        sine, cosine = loops.turn(angles)
-        loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
+        tables = numba_backend.row_table(rows, shape or (1,))
+        sine, cosine = numba_backend.compiled_sines(angles)
+        numba_backend.run_loop(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 
@@ -265,14 +268,14 @@ def _sines(angle):
     return np.sin(angle), np.cos(angle)
 
 
-turn = kept_for_same_angles(_sines)
+numpy_sines = keep_for_same_angles(_sines)
 
 
 _memory = threading.local()
 
 
 def _buffers(count, shape):
-    """Memory for values on the way, the same again in each thread."""
+    """Scratch buffers, reused in each thread; allocating costs more than the computation."""
     size = count * math.prod(shape)
     held = getattr(_memory, "held", None)
     if held is None or held.size < size:
@@ -283,18 +286,18 @@ def _buffers(count, shape):
 # Programs kept by structure
 
 
-def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
-    """Program for some quantities of a `Dynamics` and of all others of its structure, and its own leaves.
+def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
+    """Program of some quantities for the structure of a `Dynamics`, and the leaves of that `Dynamics`.
 
-    Recorded the first time it is asked for; each time for what may change unseen.
+    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen.
 
     Parameters
     ----------
     state : Dynamics
     quantities, sizes
-        As for `record.record`.
+        As in `record.record`.
     lasting : bool
-        Whether what would have to be recorded each time is refused.
+        Refuse scenes that must be recorded at every call.
 
     Raises
     ------
@@ -329,3 +332,46 @@ def _recorded(state, structure, quantities, sizes):
             f"the compiled engine cannot take {state.mechanism.name}: a group or load of it does more than arithmetic "
             f'with sin, cos and sqrt of `elementary` ({error}); use engine="numpy"'
         ) from error
+
+
+def plausibility_test(kind, judged=()):
+    """Function of a scene's numbers that returns its extent over its shortest length, and whether hints may be due.
+
+    None if the scene cannot be recorded. `judged` holds pairs of a leaf and its usual range, a `checks.Usual`.
+    """
+    outputs = []
+
+    def noted(value):
+        outputs.append(value)
+        return f"v[{len(outputs) - 1}]"
+
+    try:
+        scene = recorded_scene(kind.structure)
+        extent, reaches, bars, bodies, turning, arms = hints.sizes(scene.mechanism)
+    except (TypeError, AttributeError):
+        return None
+    odd = [_unusual(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
+    odd += [f"not extent < {FAR} * longest"] if bars else []
+    odd += [f"longest > {hints.LONGEST}", f"longest > {hints.SLENDER} * shortest"] if bars else []
+    odd += [f"{noted(inertia)} > {hints.THICK} * {noted(mass)} * {noted(long)} ** 2" for inertia, mass, long in turning]
+    if present(scene.crank_speed) is not None and scene.mechanism.crank.length is not None:
+        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {hints.FASTEST}"]
+    odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
+    odd += ["True" for _ in hints.beside_rods(scene.mechanism, scene.loads)]
+    odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
+    source = f"""def line(numbers):
+    v = sizes(0.0, 0.0, 1.0, numbers, ())
+    extent, longest = {noted(extent)}, max({", ".join([*map(noted, bars), "0.0", "0.0"])})
+    shortest = min({", ".join([*map(noted, reaches), "inf", "inf"])})
+    thin = longest * longest / {12.0 * hints.THIN}
+    return extent / shortest, {" or ".join(odd) or "False"}"""
+    if any(node.operation == "table" for node in needed(outputs)):
+        return None
+    return compile_line(source, PLAIN | {"sizes": compile_line(line_source(outputs), PLAIN)})
+
+
+def _unusual(number, usual):
+    """Source of the condition that a number is outside its usual range."""
+    most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
+    too_large = f"not -{most} <= {number} <= {most}"
+    return f"{too_large} or abs({number}) < {least}" if usual.least else too_large

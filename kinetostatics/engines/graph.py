@@ -1,7 +1,7 @@
-"""Numbers that write down every operation: a graph of arithmetic without branches or absent parts.
+"""Recorded arithmetic: numbers that write down every operation as nodes of a graph, without branches.
 
-A graph keeps each operation once. What it costs is its number of operations; `record` fills one with the kernels'
-arithmetic, `derivatives` adds to it, `writing` makes source of it.
+A graph keeps each operation once. `record` fills it with the kernels' arithmetic, `derivatives` adds to it, `codegen`
+writes source from it; the number of operations at each crank angle is its cost.
 """
 
 import numpy as np
@@ -10,15 +10,15 @@ from ..numbers.elementary import APART
 from ..numbers.nothing import Nothing
 
 BY_DESIGN, BY_ANGLE = range(2)
-"""What the value of a node varies with: the design, or the crank angle as well."""
+"""The value of a node varies with the design alone, or with the crank angle as well."""
 OTHERS = (np.ndarray, Nothing)
-"""What arithmetic is left to."""
+"""Operands that combine with a node by their own arithmetic."""
 INPUTS = ("angle", "parameter", "table")
-"""Operations without arguments that are nodes."""
+"""Operations whose arguments are not nodes."""
 
 
 class Node:
-    """A number that is not known yet, and the operation it comes from."""
+    """A recorded number: an operation, its arguments, and what it varies with."""
 
     __slots__ = ("arguments", "graph", "index", "operation", "varies")
 
@@ -113,7 +113,7 @@ def _combined(node, operation, left, right):
 
 
 class Graph(list):
-    """Nodes in the order in which they can be computed; what was computed before is not computed again."""
+    """Nodes in the order of their computation; equal operations on equal arguments are one node."""
 
     def __init__(self):
         super().__init__()
@@ -152,7 +152,7 @@ def is_number(part, number):
 
 
 def _with_signs_taken_in(operation, *arguments):
-    """The same sum or difference, to the last bit, without operations that only turn a sign."""
+    """The same sum or difference, to the last bit, without negations of its terms."""
     *left, right = arguments
     if is_negative(right):
         operation, right = "-" if operation == "+" else "+", right.arguments[0]
@@ -162,7 +162,7 @@ def _with_signs_taken_in(operation, *arguments):
 
 
 def varies(part):
-    """Whether a part is a number of the crank angle."""
+    """Whether a part varies with the crank angle."""
     return isinstance(part, Node) and part.varies == BY_ANGLE
 
 
@@ -171,7 +171,7 @@ def is_negative(part):
 
 
 def needed(outputs):
-    """Nodes that outputs, nodes or plain numbers, are computed from, in order."""
+    """Nodes from which outputs (nodes or plain numbers) are computed, in the order of computation."""
     found: set[Node] = set()
     waiting = [part for part in outputs if isinstance(part, Node)]
     while waiting:
@@ -188,7 +188,7 @@ def operations(outputs):
 
 
 def parted(outputs):
-    """What a design hands over to the operations at each crank angle, and outputs of a graph of these alone."""
+    """Split outputs: values fixed by the design, and outputs of a graph with these as parameters."""
     graph = Graph()
     parameters: list[tuple[Node | float, Node]] = []
     nodes: dict[Node, Node] = {}

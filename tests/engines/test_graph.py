@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
-from kinetostatics.engines.trace import Node
+from kinetostatics.engines.graph import Node
+from kinetostatics.engines.program import program_of
 from kinetostatics.errors import NotGivenError
 from support.scenes import (
     SCENES,
@@ -17,7 +17,7 @@ from support.scenes import (
 
 def program(solution, names, sizes=False):
     """Program of some quantities, and a function that runs it: by NumPy unless told."""
-    made, leaves = programs.of(solution.dynamics, tuple(names), sizes)
+    made, leaves = program_of(solution.dynamics, tuple(names), sizes)
     return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
 
 

@@ -1,69 +1,72 @@
-"""What the designs of a sweep have in common, computed once: values at crank angles behind which no varied number is.
+"""Values at crank angles that all designs of a sweep share, computed once.
 
-Where masses, springs or loads vary the motion does not. A program is parted in two: one of what is common, whose
-results are rows of tables to the other. Sums are fused with products as in the whole, so all results are the same to
-the last bit.
+Where masses, springs or loads vary, the motion does not. A program is split in two: the shared part, whose results are
+rows of tables for the other part. Sums are fused with products as in the whole, so all results keep their bits.
 """
 
 from typing import Any
 
 import numpy as np
 
-from .compiled import loaded
-from .fusing import fused, parts, still_needed
-from .programs import Program
-from .trace import BY_ANGLE, INPUTS, Graph, Node, needed, operations
-from .writing import is_of_angle, loop
+from .codegen import is_of_angle, loop_source
+from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations
+from .numba_backend import load_compiled
+from .program import Program
+from .simplify import drop_unused, fused_sums, operands_of
 
-VALUES = 10_000_000
-"""Values over designs and angles from which two loops are made in place of one."""
-SHARE = 0.25
-"""Least share of operations that is common."""
+MIN_SHARED_VALUES = 10_000_000
+"""Values (designs * angles) from which two loops replace one."""
+MIN_SHARE = 0.25
+"""Least share of operations that the designs have in common."""
 
 
-def shared(program, numbers, angle, tables, count):
-    """A compiled loop for designs alike but for some numbers, and the tables it takes.
+def shared_loop(program, numbers, angle, tables, count):
+    """Compiled loop for designs that differ in some numbers, and its tables.
 
     Parameters
     ----------
     program : Program
     numbers : sequence of float or array (designs, 1)
-        Those of its recording.
+        Numbers of its recording; arrays vary.
     angle : array (1 or designs, N)
     tables : array (T, 1 or designs, N)
     count : int
-        How many designs there are.
+        Number of designs.
     """
-    if count * angle.shape[1] < VALUES or len(angle) > 1 or tables.shape[1] > 1:
+    if count * angle.shape[1] < MIN_SHARED_VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables
     varied = {place for place, number in enumerate(numbers) if np.ndim(number)}
-    common, rest = apart(program.outputs, varied, len(tables))
-    if operations(common) < SHARE * operations(program.outputs):
+    common, rest = split_common(program.outputs, varied, len(tables))
+    if operations(common) < MIN_SHARE * operations(program.outputs):
         return program.loop, tables
     fixed = [0.0 if np.ndim(number) else number for number in numbers]
     rows = Program(program.recording, common).by_loop(angle[0], fixed, list(tables[:, 0]), angle.shape[1:])
-    return loaded(loop(rest, fuse=False)).loop, np.concatenate([tables.reshape(-1, *angle.shape), rows[:, None]])
+    return load_compiled(loop_source(rest, fuse=False)).loop, np.concatenate(
+        [tables.reshape(-1, *angle.shape), rows[:, None]]
+    )
 
 
-def apart(outputs, varied, first=0):
-    """Nodes that designs have in common, and outputs in a graph that has them as rows of tables.
+def split_common(outputs, varied, first=0):
+    """Shared nodes, and outputs in a graph that reads them as rows of tables.
 
     Parameters
     ----------
     outputs : sequence of Node or float
     varied : set of int
-        Places of the parameters in which designs differ.
+        Places of the parameters that vary.
     first : int
         Number of the first of these rows.
     """
     nodes = needed(outputs)
-    sums = fused(nodes)
-    nodes = still_needed(nodes, outputs, sums)
+    sums = fused_sums(nodes)
+    nodes = drop_unused(nodes, outputs, sums)
     own: set[Node] = set()
     for node in nodes:
-        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(parts(node, sums)):
+        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(
+            operands_of(node, sums)
+        ):
             own.add(node)
-    asked = {part for node in nodes if node in own for part in parts(node, sums)}.union(outputs)
+    asked = {part for node in nodes if node in own for part in operands_of(node, sums)}.union(outputs)
     common = [node for node in nodes if node in asked and _is_common(node, own)]
     rows = {node: first + place for place, node in enumerate(common)}
     graph = Graph()

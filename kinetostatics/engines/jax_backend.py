@@ -1,0 +1,298 @@
+"""Backends of a program: NumPy, compiled loop or JAX (extra `grad`), in double or single precision, on a device.
+
+For JAX and single precision a program is split: values fixed by the design, sines and cosines of the crank angle and
+rows of tables are computed in double and rounded once; the operations at each crank angle follow in the precision
+asked for. So a crank angle may be a million turns, and masses may nearly cancel.
+"""
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..errors import MissingLibraryError, NotGivenError, ParameterError
+from ..numbers.elementary import ROUNDING, total
+from ..numbers.lazy import cached_property
+from . import arithmetic, numba_backend
+from .arithmetic import BoundsElsewhere
+from .bounded import where_known, with_bounds
+from .bounds import CAP
+from .codegen import BY_DESIGN, compile_line, line_source, loop_source
+from .graph import parted
+from .numba_backend import load_compiled
+from .program import BUFFER_VALUES, Program, numpy_sines
+
+PROVEN = "cpu"
+"""Platform whose functions have the errors that bounds assume, as a test shows."""
+AS_WRITTEN = {
+    "xla_disable_hlo_passes": "algsimp",
+    "xla_cpu_enable_fast_math": False,
+    "xla_cpu_enable_fast_min_max": False,
+}
+"""Options that keep XLA on that platform from changing quotients and roots; it may still fuse products and sums."""
+
+
+def _jax():
+    try:
+        import jax
+    except ImportError as error:
+        raise MissingLibraryError(
+            f'engine="jax" needs JAX, which {"is not installed" if error.name == "jax" else f"fails: {error}"}: '
+            'pip install "kinetostatics[grad]"; engine="numpy" works without'
+        ) from None
+    return jax
+
+
+def device_of(platform=None):
+    """The first device of JAX, an accelerator if there is one, or the first of a platform.
+
+    Raises
+    ------
+    ParameterError
+        JAX finds no device of the platform; the message lists the platforms it finds.
+    """
+    jax = _jax()
+    if platform is None:
+        return jax.devices()[0]
+    try:
+        return jax.devices(platform)[0]
+    except RuntimeError:
+        found = sorted({device.platform for device in jax.devices()} | {PROVEN})
+        raise ParameterError(f"device {platform!r}: JAX finds none, only {', '.join(found)}") from None
+
+
+def device_name(device):
+    """Name of a device: "cpu", "gpu: NVIDIA H100"."""
+    kind = device.device_kind
+    return device.platform if kind.lower() == device.platform else f"{device.platform}: {kind}"
+
+
+class DeviceProgram:
+    """A `MixedPrecision` run by JAX on a device, compiled once for each shape."""
+
+    def __init__(self, split, device):
+        jax = _jax()
+        xp = jax.numpy
+        self._device, self._compiled = device, {}
+        self._options = AS_WRITTEN if device.platform == PROVEN else None
+        outputs = split.at_angles.outputs
+        scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
+        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": total}
+        scope["fma"] = lambda one, other, more: one * other + more
+        scope["root"] = lambda square, unit: xp.where(
+            square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
+        )
+        line = compile_line(line_source(outputs), scope)
+
+        def computed(angle, sine, cosine, parameters, rows, shape):
+            return tuple(xp.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
+
+        self._traced = jax.jit(computed, static_argnums=5)
+
+    def run(self, given):
+        """Outputs (outputs, *shape) for given inputs."""
+        jax = _jax()
+        with jax.default_device(self._device), _width(jax, given.angle.dtype):
+            dtype = given.angle.dtype
+            arrays = *given[:3], _stacked(given.parameters, dtype), _stacked(given.rows, dtype)
+            key = given.shape, *(part.shape for part in arrays)
+            if key not in self._compiled:
+                self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
+            return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
+
+
+def _stacked(parts, dtype):
+    """One array of numbers and arrays: a transfer for each would take longer than computing."""
+    return np.array(np.broadcast_arrays(*parts), dtype)
+
+
+@contextmanager
+def _width(jax, dtype):
+    """JAX in the precision of a dtype."""
+    home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
+    with home.enable_x64(dtype == np.float64):
+        yield
+
+
+def require_known_rounding(device):
+    """Raise `NotGivenError` for a device on which the rounding of functions has not been tested."""
+    if device.platform != PROVEN:
+        raise NotGivenError(
+            f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile the "
+            f'program with device="{PROVEN}", engine="numpy" or engine="compiled" to have one'
+        )
+
+
+class Given(NamedTuple):
+    """Inputs of the operations at each crank angle: arrays of one dtype, and numbers that NumPy converts to it.
+
+    Attributes
+    ----------
+    angle, sine, cosine : array (..., N)
+    parameters : list of number or array (..., 1)
+    rows : list of number or array (..., N)
+    shape : tuple of int
+        Shape of the results, without the axis of outputs.
+    """
+
+    angle: Any
+    sine: Any
+    cosine: Any
+    parameters: list
+    rows: list
+    shape: tuple
+
+
+class MixedPrecision:
+    """A program split into values fixed by the design and operations at each crank angle.
+
+    Attributes
+    ----------
+    at_angles : Program
+        Its parameters are the values fixed by the design; it has no other constants.
+    """
+
+    def __init__(self, program):
+        self._whole = program
+        given, outputs = parted(program.outputs)
+        self._fixed = compile_line(line_source(given), BY_DESIGN)
+        self.at_angles = Program(program.recording, outputs)
+
+    def given(self, state, leaves, dtype):
+        """Inputs, in a dtype, for a `Dynamics` with its leaves."""
+        shape = state.shape or (1,)
+        angle = state.crank_angle.reshape(state.crank_angle.shape or (1,))
+        if angle.shape[-1:] != shape[-1:]:
+            angle = np.broadcast_to(angle, angle.shape[:-1] + shape[-1:])
+        with np.errstate(all="ignore"):
+            parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
+            rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
+            angle, sine, cosine = (part.astype(dtype) for part in (angle, *numpy_sines(angle)))
+        return Given(angle, sine, cosine, parameters, rows, shape)
+
+    def _fixed_by(self, numbers):
+        try:
+            return self._fixed(0.0, 0.0, 1.0, numbers, ())
+        except (ZeroDivisionError, OverflowError):  # plain numbers raise it, those of NumPy answer with infinity or NaN
+            return self._fixed(0.0, 0.0, 1.0, [np.float64(part) for part in numbers], ())
+
+    def by_numpy(self, given):
+        """Outputs (outputs, *shape) by array operations."""
+        (_, batch), count = self.at_angles.buffered
+        results = np.empty((len(self.at_angles.outputs), *given.shape), given.angle.dtype)
+        step = BUFFER_VALUES if len(given.shape) == 1 else given.shape[-1]
+        with np.errstate(all="ignore"):
+            for start in range(0, given.shape[-1], step):
+                part = slice(start, start + step)
+                turn = [array[..., part] for array in given[:3]]
+                rows = [row[..., part] if np.size(row) > 1 else row for row in given.rows]
+                own = results[..., part]
+                free = np.empty((count, *own.shape[1:]), own.dtype)
+                batch(*turn, given.parameters, rows, free, own)
+        return results
+
+    def by_loop(self, given):
+        """Outputs (outputs, *shape) by a loop compiled for single precision."""
+        shape, dtype = given.shape, given.angle.dtype
+        parameters = numba_backend.parameter_table(given.parameters, shape[:-1]).astype(dtype)
+        own = given.angle.size > shape[-1]
+        turn = [
+            np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
+            for array in given[:3]
+        ]
+        rows = numba_backend.row_table(given.rows, shape).astype(dtype)
+        results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
+        angle, sine, cosine = turn
+        numba_backend.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
+        return results.swapaxes(0, 1).reshape(-1, *shape)
+
+    @cached_property
+    def _loop(self):
+        """The loop compiled for single precision."""
+        return load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
+
+
+def _of_type(part, dtype):
+    return float(part) if isinstance(part, float) else np.asarray(part, dtype)
+
+
+_splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True)
+class Backend:
+    """An engine with its precision and device.
+
+    Attributes
+    ----------
+    engine : "numpy", "compiled" or "jax"
+    precision : "double" or "single"
+    platform : str or None
+        Platform of the device for JAX; None for its first device.
+    """
+
+    engine: str
+    precision: str = "double"
+    platform: str | None = None
+    _on_device: Any = field(default_factory=WeakKeyDictionary, compare=False, repr=False)
+    _bounded: Any = field(default_factory=WeakKeyDictionary, compare=False, repr=False)
+
+    def __reduce__(self):
+        return Backend, (self.engine, self.precision, self.platform)
+
+    @property
+    def device(self):
+        """Name of the device: "cpu", or the name that JAX uses."""
+        return device_name(device_of(self.platform)) if self.engine == "jax" else "cpu"
+
+    @property
+    def is_own(self):
+        """Whether programs run without a split: by NumPy or compiled, in double precision."""
+        return self.engine != "jax" and self.precision == "double"
+
+    def run(self, program, state, leaves):
+        """Outputs (outputs, *shape) of a `Dynamics` with its leaves."""
+        if self.is_own:
+            return program.run(state, leaves, self.engine == "compiled")
+        if program not in _splits:
+            _splits[program] = MixedPrecision(program)
+        split = _splits[program]
+        given = split.given(state, leaves, arithmetic.OF[self.precision].dtype)
+        if self.engine == "jax":
+            if program not in self._on_device:
+                self._on_device[program] = DeviceProgram(split, device_of(self.platform))
+            rows = self._on_device[program].run(given)
+        else:
+            rows = split.by_loop(given) if self.engine == "compiled" else split.by_numpy(given)
+        return rows if state.shape else rows[:, 0]
+
+    def bounds(self, program, state, leaves, tight=False):
+        """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without one.
+
+        `tight` needs `is_own`.
+
+        Raises
+        ------
+        NotGivenError
+            The rounding of user code, or of a device, is not known.
+        """
+        if self.engine == "jax":
+            require_known_rounding(device_of(self.platform))
+        compiled = self.engine == "compiled"
+        if self.is_own:
+            values, found = with_bounds(program, state, leaves, compiled, tight)
+        else:
+            count, rows = len(program.outputs), self._elsewhere(program).run(state, leaves, compiled)
+            values, found = rows[:count], rows[count:]
+        small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
+        return where_known(values, found if small else np.nan)
+
+    def _elsewhere(self, program):
+        if program not in self._bounded:
+            recording = program.recording
+            bounds = BoundsElsewhere(recording.graph, recording.inputs, arithmetic.OF[self.precision])
+            self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
+        return self._bounded[program]
