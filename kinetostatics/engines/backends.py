@@ -6,10 +6,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from . import accelerated, arithmetic
-from .arithmetic import BoundsElsewhere
-from .bounded import where_known, with_bounds
-from .bounds import CAP
+from . import accelerated
+from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
 from .programs import Program
 from .split import Split
 
@@ -54,7 +52,7 @@ class Backend:
         if program not in _splits:
             _splits[program] = Split(program)
         split = _splits[program]
-        given = split.given(state, leaves, arithmetic.OF[self.precision].dtype)
+        given = split.given(state, leaves, PRECISIONS[self.precision].dtype)
         if self.engine == "jax":
             if program not in self._on_device:
                 self._on_device[program] = accelerated.OnDevice(split, accelerated.device_of(self.platform))
@@ -87,6 +85,6 @@ class Backend:
     def _elsewhere(self, program):
         if program not in self._bounded:
             recording = program.recording
-            bounds = BoundsElsewhere(recording.graph, recording.inputs, arithmetic.OF[self.precision])
+            bounds = ErrorBounds(recording.graph, recording.inputs, PRECISIONS[self.precision])
             self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
         return self._bounded[program]

@@ -15,8 +15,7 @@ from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
 from . import programs
-from .bounded import with_bounds
-from .bounds import CAP
+from .error_bounds import CAP, with_bounds
 
 
 @dataclass(frozen=True)

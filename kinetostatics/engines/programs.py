@@ -16,11 +16,10 @@ from ..numbers.leaves import FLOATS, Leaves
 from . import loops, writing
 from .compiled import available, loaded
 from .derivatives import gradients
+from .error_bounds import OWN, ErrorBounds, tight_bounds
 from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, made
 from .recent import kept_for_same_angles
 from .record import record
-from .running import RunningBounds
-from .tight import tight_bound
 from .trace import needed, operations
 
 FEW = 12
@@ -41,7 +40,7 @@ class Program:
     """
 
     scopes: Any = (PLAIN, BY_DESIGN)
-    underflow: Any = "ignore"
+    extremes: Any = "ignore"
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -138,7 +137,7 @@ class Program:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self.buffered
         results = np.empty((len(self.outputs), *shape))
-        with np.errstate(all="ignore", under=self.underflow):
+        with np.errstate(all="ignore", under=self.extremes, over=self.extremes):
             sine, cosine = turn(angle)
             if len(shape) == 1:
                 try:
@@ -213,7 +212,7 @@ class Program:
 
 
 class _Bounded(Program):
-    """Values with bounds. Arrays of NumPy tell if any value was too small for a double: mostly none has to be bounded.
+    """Values with bounds. NumPy reports under- and overflow in arrays: mostly there is none that has to be bounded.
 
     Attributes
     ----------
@@ -236,17 +235,17 @@ class _Bounded(Program):
             return super().by_numpy(angle, numbers, rows, shape)
 
 
-def _bounds(recording, values, tight, **dust):
-    graph, inputs = recording.graph, recording.inputs
+def _bounds(recording, values, tight, **known):
+    graph, inputs, arithmetic = recording.graph, recording.inputs, OWN._replace(**known)
     if tight:
-        return [tight_bound(graph, inputs, part, **dust) for part in values]
-    return RunningBounds(graph, inputs, **dust).of(values)
+        return tight_bounds(graph, inputs, values, arithmetic)
+    return ErrorBounds(graph, inputs, arithmetic).of(values)
 
 
 class _Watched(Program):
-    """Program that NumPy alone runs, plain numbers too, and that raises FloatingPointError where one is too small."""
+    """Program that NumPy alone runs, plain numbers too; it raises FloatingPointError where one under- or overflows."""
 
-    scopes, underflow = (SCALARS, BY_DESIGN), "raise"
+    scopes, extremes = (SCALARS, BY_DESIGN), "raise"
 
     def by_numpy(self, angle, numbers, rows, shape):
         numbers = [np.float64(number) if isinstance(number, float) else number for number in numbers]

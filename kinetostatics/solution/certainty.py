@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.backends import Backend
-from ..engines.bounded import of_magnitude, where_known
+from ..engines.error_bounds import of_magnitude, where_known
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..engines.arithmetic import OF as PRECISIONS
 from ..engines.backends import Backend
 from ..engines.compiled import available, require
+from ..engines.error_bounds import PRECISIONS
 from ..machine.loads import is_given
 from ..mechanics.pure import require_pure
 from ..numbers import checks

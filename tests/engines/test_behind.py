@@ -5,10 +5,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.behind import Behind
+from kinetostatics.engines.error_bounds import ErrorBounds, tight_bounds
 from kinetostatics.engines.lean import LeanGraph
-from kinetostatics.engines.running import RunningBounds
-from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import sign, total
 from support.every import every
@@ -33,7 +31,7 @@ def test_a_product_of_zero_with_a_root_that_may_not_be_there_has_no_bound(kind, 
     one, other, unit = map(graph.parameter, range(3))
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     output = made(root, one)
-    found = *RunningBounds(graph).of([output]), tight_bound(graph, {}, output)
+    found = *ErrorBounds(graph).of([output]), *tight_bounds(graph, {}, [output])
     line = programs.Program(None, found)._by_numbers
     for rest, known in ((0.5, True), (2.0**-52, False)):  # that of the root is found nearly zero
         bounds = line(np.array([0.0]), [1.0, 1.0 - rest, 1e-3], (1,))[:, 0]
@@ -44,21 +42,8 @@ def test_a_constant_is_exact_where_what_is_behind_it_is_known():
     graph = LeanGraph()
     one, other, unit = map(graph.parameter, range(3))
     output = one + 0.0 * (graph.angle().cos() * one - other).forgiving_root(unit).held()
-    line = programs.Program(None, RunningBounds(graph).of([output]))._by_numbers
+    line = programs.Program(None, ErrorBounds(graph).of([output]))._by_numbers
     assert line(np.array([0.0]), [1.0, 0.5, 1e-3], (1,)) == 0.0
-
-
-def test_what_the_bound_of_another_pivot_has_is_not_looked_at_twice():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
-    first = graph.angle() - one
-    second = one / first - other
-    last = one / second
-    output, behind = one + 0.0 * last, Behind(graph)
-    for node in graph:
-        behind.tell(node, {last: (second,), second.arguments[0]: (first,)}.get(node, ()))
-    assert behind.unseen(output) == [second]
-    assert behind.unseen(last) == []
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")

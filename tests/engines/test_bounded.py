@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kinetostatics.engines.bounded import of_magnitude, where_known
+from kinetostatics.engines.error_bounds import of_magnitude, where_known
 
 
 def test_the_bound_of_a_magnitude_covers_the_errors_of_its_components_and_its_own_rounding():

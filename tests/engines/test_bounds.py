@@ -8,8 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.engines import bounds, programs
-from kinetostatics.engines.tight import tight_bound
+from kinetostatics.engines import programs
+from kinetostatics.engines.error_bounds import ErrorBounds, tight_bounds
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, rest, total
 from kinetostatics.studies.methods.enclosures import enclosure
@@ -51,7 +51,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
 
 def bounds_of(graph, outputs, values, tight=False):
     """Bounds of outputs at some values of the parameters of a graph."""
-    found = [tight_bound(graph, {}, part) for part in outputs] if tight else bounds.Bounds(graph).of(outputs)
+    found = tight_bounds(graph, {}, outputs) if tight else ErrorBounds(graph).of(outputs)
     return programs.Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
 
 
@@ -113,7 +113,7 @@ def test_a_product_with_a_reciprocal_is_bounded_as_the_quotient():
 def test_rows_of_tables_may_be_of_any_size():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
-    found = bounds.Bounds(graph).of([one * other * graph.row(0)])
+    found = ErrorBounds(graph).of([one * other * graph.row(0)])
     (bound,) = programs.Program(None, found)._plain(0.0, 0.0, 1.0, [1e-170, 1e-170], [1e200])
     assert bound >= 1e-140  # computed 0
 

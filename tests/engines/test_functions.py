@@ -7,20 +7,17 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import loops, programs
-from kinetostatics.engines.bounds import Bounds, Error
 from kinetostatics.engines.compiled import available
-from kinetostatics.engines.functions import OTHER, SMALL, ULP
-from kinetostatics.engines.running import RunningBounds
-from kinetostatics.engines.tight import tight_bound
+from kinetostatics.engines.error_bounds import OWN, SMALL_TURN, Error, ErrorBounds, tight_bounds
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart, sign, total
 from support import bounded
 from support.every import every
 
+OTHER = {"sin": "cos", "cos": "sin"}
 WAYS = {
-    "running": lambda graph, output: RunningBounds(graph).of([output])[0],
-    "by design": lambda graph, output: Bounds(graph).of([output])[0],
-    "tight": lambda graph, output: tight_bound(graph, {}, output),
+    "running": lambda graph, output, inputs=None: ErrorBounds(graph, inputs).of([output])[0],
+    "tight": lambda graph, output, inputs=None: tight_bounds(graph, inputs, [output])[0],
 }
 
 
@@ -40,7 +37,7 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
-    assert max(error) <= ULP.get(function, ULP["atan"]) * UNIT
+    assert max(error) <= OWN.ulp.get(function, OWN.ulp["atan"]) * UNIT
 
 
 @every("function", OTHER)
@@ -54,7 +51,7 @@ def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
         turns.append([part[0] for part in loops.turn(angles[None])])
     for turn in turns:
         own, other = turn if function == "sin" else turn[::-1]
-        small = np.abs(other) < SMALL
+        small = np.abs(other) < SMALL_TURN
         assert np.count_nonzero(small) > 6000
         assert np.all(np.abs(own[small]) == 1.0)
 
@@ -70,7 +67,7 @@ def test_one_less_a_sine_or_cosine_is_bounded_as_the_square_of_the_other_is_smal
         other = getattr(np, OTHER[function])(angle)
         for output in (part - side, side - part, part + -side):
             bound = bound_of(way, graph, output, angle, 0.3)
-            assert 0.5 * other * other * (distance < SMALL) <= bound < 8.0 * min(other * other, UNIT)
+            assert 0.5 * other * other * (distance < SMALL_TURN) <= bound < 8.0 * min(other * other, UNIT)
 
 
 @every("way", WAYS)
@@ -132,17 +129,12 @@ def test_a_sign_that_is_turned_by_what_moves_it_off_zero_is_no_known_one(way, gi
     assert bound_of(way, graph, folded, 1e-9, 0.3) < 1e-17
 
 
-@every("way", ["running", "by design", "tight"])
+@every("way", WAYS)
 def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_turn_it(way):
     graph = Graph()
     given = graph.parameter(0)
     inputs = {given: lambda bounds: Error(4.0, None)}
-    bound = {
-        "running": lambda output: RunningBounds(graph, inputs).of([output])[0],
-        "by design": lambda output: Bounds(graph, inputs).of([output])[0],
-        "tight": lambda output: tight_bound(graph, inputs, output),
-    }[way]
     folded = sign(given - 0.3) * graph.angle().cos() - 1.0
     for value, is_known in ((0.3 + 2.0**-54, False), (0.3 + 1e-9, True)):
-        found = programs.Program(None, [bound(folded)])._by_numbers(np.array([1e-9]), [value], (1,))[0, 0]
+        found = programs.Program(None, [WAYS[way](graph, folded, inputs)])._by_numbers(np.array([1e-9]), [value], (1,))[0, 0]
         assert (found < 1e-17) == is_known

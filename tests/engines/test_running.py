@@ -7,10 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.bounds import DUST
+from kinetostatics.engines.error_bounds import OWN, ErrorBounds, tight_bounds
 from kinetostatics.engines.lean import LeanGraph
-from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
-from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
 from support.every import every
@@ -19,7 +17,7 @@ from support.shipped import shipped
 
 
 def bounds_of(graph, outputs, values, angle=0.0):
-    found = RunningBounds(graph).of(outputs)
+    found = ErrorBounds(graph).of(outputs)
     return programs.Program(None, found)._by_numbers(np.array([angle]), values, (1,))[:, 0]
 
 
@@ -32,14 +30,7 @@ def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_ha
     np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
 
-def test_powers_of_pivots_are_bounded_up_to_what_makes_the_bound_infinite():
-    known = np.linspace(1e-9, KNOWN, 1000)
-    for power in (0.5, 1.0, 2.0, 5.0, 16.0):
-        assert np.all(np.expm1(-power * np.log1p(-known)) <= steepest([power]) * power * known * (1.0 + 1e-12))
-    assert LIMIT * 3.999 < np.inf == LIMIT * 4.0
-
-
-@every("digits, finite", [(30, True), (46, True), (50, False), (60, False)])
+@every("digits, finite", [(30, True), (46, True), (52, True), (60, False)])
 def test_what_is_divided_by_a_sum_is_bounded_as_long_as_that_is_known(digits, finite):
     graph = Graph()
     one, other = map(graph.parameter, range(2))
@@ -55,7 +46,7 @@ def test_a_root_over_itself_kept_off_zero_has_no_bound_where_that_acts(form):
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     share = form(root, root.kept_off_zero(unit))
     (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
-    assert known < 8.0 * UNIT
+    assert known < 12.0 * UNIT
     assert not np.isfinite(acting)
 
 
@@ -95,7 +86,7 @@ def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
     graph = Graph()
     tiny, small = map(graph.parameter, range(2))
     product = (graph.angle().cos() / small) * tiny
-    found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
+    found = *ErrorBounds(graph).of([product]), *tight_bounds(graph, {}, [product])
     bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
     assert np.all(bounds >= UNIT * (5e-324 / 4.1e-193) * np.cos(1.0))
 
@@ -204,8 +195,8 @@ def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     product = apart(one, UNSEEN) * other
-    for dust in (DUST, None):
-        (bound,) = RunningBounds(graph, dust=dust).of([product])
+    for dust in (OWN.dust, None):
+        (bound,) = ErrorBounds(graph, arithmetic=OWN._replace(dust=dust)).of([product])
         values = programs.Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
         assert values[1] >= values[0] > 0.0
 
@@ -226,7 +217,7 @@ def test_a_bound_does_not_hang_on_what_else_is_asked_for():
 def test_values_with_bounds_take_few_times_the_operations(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = programs.of(s.dynamics, ("balancing_torque",))
-    assert programs.operations(program.bounded().outputs) <= 3.1 * programs.operations(program.outputs)
+    assert programs.operations(program.bounded().outputs) <= 4.1 * programs.operations(program.outputs)
 
 
 @every("case, variant", [("chain_unit", "rho-0.5"), ("toggle_press", "idle")])
@@ -261,12 +252,12 @@ def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound(
     one, tiny, huge = map(graph.parameter, range(3))
     part = one / tiny / tiny / tiny * graph.angle()
     share = huge / (part + part * 1.0000001).sqrt()
-    found = share, *RunningBounds(graph).of([share]), tight_bound(graph, {}, share)
+    found = share, *ErrorBounds(graph).of([share]), *tight_bounds(graph, {}, [share])
     line = programs.Program(None, found)._by_numbers
     value, *bounds = line(np.array([1.0]), [1.2e30, 2.0e-93, 1e30], (1,))[:, 0]
     assert value == 0.0
     assert not np.isfinite(bounds).any()
-    assert np.isfinite(line(np.array([1.0]), [1.2e30, 3.0e-93, 1e30], (1,))).all()
+    assert np.isfinite(line(np.array([1.0]), [1.2e30, 3.0e-92, 1e30], (1,))).all()
 
 
 @every("first", [lambda one, angle: one, lambda one, angle: angle])
@@ -277,7 +268,7 @@ def test_what_a_root_lost_counts_times_what_a_sum_lost_that_is_zero(first):
     zero = (first(one, angle) + tiny) - one  # computed 0, truly 2^-60
     root = (small * small * (angle.sin() * angle.sin())).sqrt()  # computed 0, truly 8.4e-171
     product = zero * root * huge
-    found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
+    found = *ErrorBounds(graph).of([product]), *tight_bounds(graph, {}, [product])
     values = [1.0, 2.0**-60, 1e-170, 1e30]
     bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), values, (1,))[:, 0]
     assert np.all(bounds >= 2.0**-60 * 1e-170 * 1e30 * np.sin(1.0))
@@ -311,7 +302,7 @@ def test_no_random_graph_is_off_by_more_than_its_bounds_compiled(flint, numba):
 
 
 def test_an_output_that_is_a_plain_number_is_exact():
-    assert RunningBounds(Graph()).of([0.0]) == (0.0,)
+    assert ErrorBounds(Graph()).of([0.0]) == (0.0,)
 
 
 @every("case, variant", [("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("shaper", "cutting")])
