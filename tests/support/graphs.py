@@ -245,7 +245,9 @@ COMPILED = {
 def _one_by_one(program, angle, given, rows):
     """Each design by itself, as a user's call has it."""
     designs = [
-        program.by_numpy(angle[design], [float(number[design, 0]) for number in given], [row[design] for row in rows], (ANGLES,))
+        program.by_numpy(
+            angle[design], [float(number[design, 0]) for number in given], [row[design] for row in rows], (ANGLES,)
+        )
         for design in range(len(angle))
     ]
     return np.moveaxis(np.array(designs), 0, 1)

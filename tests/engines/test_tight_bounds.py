@@ -7,8 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.error_bounds import STRETCH, Error, ErrorBounds, tight_bounds
 from kinetostatics.engines.engines import NUMPY
+from kinetostatics.engines.error_bounds import STRETCH, Error, ErrorBounds, tight_bounds
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.places import PLACES
@@ -48,7 +48,9 @@ def test_an_adjoint_is_not_lost_by_numbers_of_a_design_that_are_tiny():
     row, tiny, unit = graph.row(0), *map(graph.parameter, range(2))
     root = (row.kept_off_zero(unit) * tiny).forgiving_root(unit)
     (bound,) = tight_bounds(graph, {row: lambda bounds: Error(0.0, graph.row(1))}, [root])
-    (least,) = programs.Program(None, (bound,)).by_numpy(np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5), np.ones(1)], (1,))
+    (least,) = programs.Program(None, (bound,)).by_numpy(
+        np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5), np.ones(1)], (1,)
+    )
     assert least >= 0.5 * UNIT * (4e-164 / 3e-5) ** 0.5
 
 
