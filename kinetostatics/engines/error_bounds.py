@@ -21,7 +21,7 @@ import numpy as np
 
 from ..errors import NotGivenError
 from ..numbers.elementary import APART, UNIT, UNSEEN
-from ..numbers.planar import plus
+from ..numbers.planar import plus, product
 from .derivatives import adjoints
 from .trace import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, needed, varies
 
@@ -40,8 +40,9 @@ LOST_SQUARE = 2.0**-900
 SECOND_ORDER = 8.0
 """Roundings of an operation that make terms of second order, beside those of its arguments."""
 SUMS = {"+", "-"}
+"""Operations that need the whole bound of a part, not its two numbers."""
 CHARGED = 2.0
-"""Roundings of both parts from which on that of their sum is added to theirs: it takes no operation there."""
+"""Roundings of both parts from which on the rounding of their sum is added to theirs, which takes no operation."""
 STRETCH = 2.0**16
 """Factor on terms of second order in the running bounds that a tight bound takes its remainder from."""
 SEED = 2.0**900
@@ -122,15 +123,13 @@ class ErrorBounds:
 
     def __init__(self, graph, inputs=None, arithmetic=OWN, given=None, weight=1.0, cuts=None):
         self.graph, self.arithmetic, self.weight, self.cut = graph, arithmetic, weight, {}
-        self._inputs, self._given, self._cuts = inputs or {}, given, cuts
-        if given is None and not arithmetic.as_recorded:
-            self._given = ErrorBounds(graph, inputs)
+        self.inputs, self._cuts = inputs or {}, cuts
+        self._given = given if given or arithmetic.as_recorded else ErrorBounds(graph, inputs)
         self.off = arithmetic.safe * arithmetic.unit
         self._errors: dict[Node, Error] = {}
         self._totals: dict[tuple[Node, float], Any] = {}
-        self._parts: dict[Node, tuple[Any, ...]] = {}
+        self.factors: dict[Node, tuple[Any, ...]] = {}
         self._users: dict[Any, set[str]] = {}
-        self._clear: dict[Node, Any] = {}
         self._caps: dict[Node, float | None] = {}
         self._positive: dict[Node, bool] = {}
         self._peaks: dict[Node, tuple[int, Any]] = {}
@@ -163,11 +162,11 @@ class ErrorBounds:
                 self._require_small(node)
 
     def _whole(self, part):
-        total = self.cut.get(part, self.total(part)) if isinstance(part, Node) else self.total(part)
+        total = self.total(part)
         if total is None:
             return 0.0
         own = None if is_zero(total) else self.arithmetic.dust  # what the bound itself may lose
-        bound = self.fused(self.off, total, _times(self.off, own))
+        bound = self.fused(self.off, total, product(self.off, own))
         if part in self._peaks:
             bound = bound + 0.0 / self._positive_part(self.arithmetic.limit - self._peaks[part][1])
         return bound
@@ -175,8 +174,8 @@ class ErrorBounds:
     def _found(self, node):
         if self._given is not None and is_handed_over(node):
             return self._handed_over(node)
-        if node in self._inputs:
-            return self._inputs[node](self)
+        if node in self.inputs:
+            return self.inputs[node](self)
         return EXACT if node.operation in INPUTS else RULES[node.operation](self, node, *node.arguments)
 
     def _handed_over(self, node):
@@ -185,7 +184,7 @@ class ErrorBounds:
         if self.arithmetic.as_recorded:
             return Error(relative, rest)
         finer = UNIT / self.arithmetic.unit
-        return Error(float(finer < 1.0) + finer * relative, plus(_times(finer, rest), self.arithmetic.dust))
+        return Error(float(finer < 1.0) + finer * relative, plus(product(finer, rest), self.arithmetic.dust))
 
     def _require_small(self, node):
         """Check that terms of second order are small; take note of the largest number on the way to a node."""
@@ -224,19 +223,15 @@ class ErrorBounds:
     def _total(self, part, relative, rest):
         if not relative:
             return rest
-        if part in self._parts and self._users.get(part, SUMS) <= SUMS:  # by factors: it takes no magnitude of its own
-            left, own, right, across = self._parts[part]
+        if part in self.factors and self._users.get(part, SUMS) <= SUMS:  # by factors: it takes no magnitude of its own
+            left, own, right, across = self.factors[part]
             return self.fused(self.size(right), self.fused(relative, self.size(left), own), across)
         return self.fused(relative, self.size(part), rest)
 
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for its relative errors."""
-        rest = self.error(part).rest
-        return (
-            self.size(part)
-            if rest is None or not self.weight
-            else self.fused(self.weight * self.off, rest, self.size(part))
-        )
+        rest = self.error(part).rest if self.weight else None
+        return self.size(part) if rest is None else self.fused(self.weight * self.off, rest, self.size(part))
 
     def above(self, value, total, floor=None):
         """Distance of a value above a floor less its error in units; 0 where it may not be above."""
@@ -258,10 +253,8 @@ class ErrorBounds:
 
     def clear(self, part):
         """Magnitude of a part less its error; 0 where the error is larger."""
-        if part not in self._clear:
-            total = self.total(part)
-            self._clear[part] = self.size(part) if total is None else self.above(self.size(part), total)
-        return self._clear[part]
+        total = self.total(part)
+        return self.size(part) if total is None else self.above(self.size(part), total)
 
     def over(self, part):
         """Bound on one over the magnitude of the exact value; NaN where that is too large for a double."""
@@ -283,8 +276,8 @@ class ErrorBounds:
             return abs(part)
         if part not in self._caps:
             rule = CAPS.get(part.operation) if self.arithmetic.as_recorded else None
-            caps = [] if part.operation in ("parameter", "sin", "cos") else map(self.cap, part.arguments)
-            self._caps[part] = None if rule is None or None in (caps := list(caps)) else rule(*caps)
+            caps = [] if part.operation in ("parameter", "sin", "cos") else [self.cap(one) for one in part.arguments]
+            self._caps[part] = None if rule is None or None in caps else rule(*caps)
         return self._caps[part]
 
     def is_reciprocal(self, part):
@@ -346,10 +339,6 @@ def is_scaling(part):
     return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
-def _times(number, part):
-    return None if part is None else number * part
-
-
 # Rules: the error of a result from those of its arguments
 
 
@@ -374,23 +363,15 @@ def _of_total(bounds, node, *parts):
     else:  # compensated sums lose what is small of third order, or of second where products are fused with them
         share = (2.0 * (len(parts) - 1)) ** 3 * bounds.arithmetic.unit ** (2 if bounds.arithmetic.as_recorded else 1)
         more = plus(share * reduce(plus, map(bounds.largest, parts)), bounds.arithmetic.dust)
-    single = dict(enumerate(parts))
-    signs = {_signed(part): place for place, part in single.items()}
-    for place, part in enumerate(parts):
-        sign, index = _signed(part)
-        if index is not None and bounds.graph[index].operation == "rest":
-            length = signs.get((sign, bounds.graph[index].arguments[0].index))
-            if length in single:
-                del single[place], single[length]
-                more = plus(_beside_length(bounds, bounds.graph[index]), more)
-    return Error(1.0, reduce(plus, map(bounds.total, single.values()), more))
-
-
-def _signed(part):
-    """Sign, and the place in the graph of the node that it is the sign of; None of a number."""
-    if not isinstance(part, Node):
-        return 1, None
-    return (-1, part.arguments[0].index) if is_negative(part) else (1, part.index)
+    signed = [(-1, part.arguments[0]) if is_negative(part) else (1, part) for part in parts]
+    alone = dict(enumerate(parts))
+    for place, (sign, part) in enumerate(signed):
+        if isinstance(part, Node) and part.operation == "rest":
+            pairs = (other for other in alone if signed[other][0] == sign and signed[other][1] is part.arguments[0])
+            if (length := next(pairs, None)) is not None:
+                del alone[place], alone[length]
+                more = plus(_beside_length(bounds, part), more)
+    return Error(1.0, reduce(plus, map(bounds.total, alone.values()), more))
 
 
 def _beside_length(bounds, rest):
@@ -398,7 +379,7 @@ def _beside_length(bounds, rest):
     length, x, y = rest.arguments
     lost = bounds.graph.node("lost_by_squares", length, x, y)
     own = 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length
-    dust = _times(1.0 / length, bounds.arithmetic.dust)
+    dust = product(1.0 / length, bounds.arithmetic.dust)
     return reduce(plus, map(bounds.total, (x, y)), plus(own, dust))
 
 
@@ -421,7 +402,7 @@ def _of_product(bounds, node, left, right):
         across = bounds.fused(bounds.largest(left), other, more)
     else:
         across = plus(bounds.underflow(other, left), more)
-    bounds._parts[node] = left, one, right, across
+    bounds.factors[node] = left, one, right, across
     return Error(relative, bounds.fused(bounds.size(right), one, across))
 
 
@@ -474,17 +455,13 @@ def _of_guarded(bounds, node, value, unit):
 
 
 RULES: dict[str, Callable[..., Error]] = {
-    "+": _of_sum,
-    "-": _of_sum,
+    **dict.fromkeys(("+", "-"), _of_sum),
     "total": _of_total,
     "rest": lambda bounds, node, *arguments: Error(0.0, bounds.size(node) * (1.0 / bounds.arithmetic.unit)),
     "*": _of_product,
     "/": _of_quotient,
-    "sqrt": _of_root,
-    "root": _of_root,
-    "sin": _of_function,
-    "cos": _of_function,
-    "atan": _of_function,
+    **dict.fromkeys(("sqrt", "root"), _of_root),
+    **dict.fromkeys(("sin", "cos", "atan"), _of_function),
     "abs": _of_magnitude,
     "held": lambda bounds, node, value: bounds.error(value),
     "divisor": _of_guarded,
@@ -493,14 +470,10 @@ RULES: dict[str, Callable[..., Error]] = {
 """By operation: ``rule(bounds, node, *arguments)``, the error of its result."""
 CAPS: dict[str, Callable[..., float]] = {
     "parameter": lambda: CAP,
-    "total": lambda *parts: sum(parts),
-    "+": lambda left, right: left + right,
-    "-": lambda *parts: sum(parts),
+    **dict.fromkeys(("+", "-", "total"), lambda *parts: sum(parts)),
     "*": lambda left, right: left * right,
-    "sin": lambda: 1.0,
-    "cos": lambda: 1.0,
-    "abs": lambda value: value,
-    "held": lambda value: value,
+    **dict.fromkeys(("sin", "cos"), lambda: 1.0),
+    **dict.fromkeys(("abs", "held"), lambda value: value),
     "sqrt": math.sqrt,
     "root": lambda square, unit: math.sqrt(square),
     "divisor": max,
@@ -526,7 +499,7 @@ def _beside_one(bounds, node):
 
 def _turn_beside_one(node):
     """The sine or cosine of the crank angle to which, or to its opposite, one is added, and the sign it is times."""
-    if node.operation not in "+-" or len(node.arguments) != 2:
+    if len(node.arguments) != 2:
         return None, None
     turn, one = sorted(node.arguments, key=lambda part: not isinstance(part, Node))
     if isinstance(one, Node) or abs(one) != 1.0:
@@ -540,8 +513,7 @@ def _turn_beside_one(node):
 
 
 def _is_of_angle(part):
-    is_turn = isinstance(part, Node) and part.operation in ("sin", "cos")
-    return is_turn and part.arguments[0].operation == "angle"
+    return isinstance(part, Node) and part.operation in ("sin", "cos") and part.arguments[0].operation == "angle"
 
 
 def _moved_apart(parts, unit):
@@ -559,13 +531,12 @@ def _moved_apart(parts, unit):
 
 
 def tight_bounds(graph, inputs, outputs, arithmetic=OWN):
-    """A bound for each output, as `ErrorBounds.of`, smaller where errors cancel; NaN where running bounds must serve."""
+    """A bound for each output, as `ErrorBounds.of`, smaller where errors cancel; NaN where only running bounds hold."""
     plain = ErrorBounds(graph, inputs, arithmetic)
     stretched = arithmetic if arithmetic.dust is None else arithmetic._replace(dust=STRETCH * arithmetic.dust)
     running = ErrorBounds(graph, inputs, stretched, plain, STRETCH)
-    return tuple(
-        _tight_bound(output, most, running, plain) for output, most in zip(outputs, running.of(outputs), strict=True)
-    )
+    bounds = zip(outputs, running.of(outputs), strict=True)
+    return tuple(_tight_bound(output, most, running, plain) for output, most in bounds)
 
 
 def _tight_bound(output, most, running, plain):
@@ -587,7 +558,7 @@ def _tight_bound(output, most, running, plain):
         uses = users.get(node, ())
         return isinstance(error.rest, Node) and (len(uses) > 1 or any(_divides(node, user) for user in uses))
 
-    first = ErrorBounds(graph, running._inputs, running.arithmetic._replace(dust=None), plain, 0.0, cuts)
+    first = ErrorBounds(graph, running.inputs, running.arithmetic._replace(dust=None), plain, 0.0, cuts)
     (own,) = first.of([output])
     wanted = set(first.cut)
     for node in nodes:
@@ -595,11 +566,10 @@ def _tight_bound(output, most, running, plain):
             wanted.add(node)
     ends = {node for node in wanted if not varies(node)}
     slopes = adjoints(graph, output, wanted, SEED, 1.0, ends)
-    terms = [(slopes[node], bound) for node, bound in first.cut.items() if node in slopes]
-    bound = own
-    if terms:
-        shared = reduce(lambda more, term: first.fused(abs(term[0]), term[1], more), terms, None)
-        bound = plus(first.fused(first.off / SEED, shared, len(slopes) * 2.0**-48 / SEED), own)
+    shared: Any = len(slopes) * 2.0**-48 / UNIT  # adjoints that underflow
+    for node, error in first.cut.items():
+        shared = first.fused(abs(slopes[node]), error, shared) if node in slopes else shared
+    bound = first.fused(first.off / SEED, shared, own)
     return -graph.node("divisor", -first.fused(2.0 / STRETCH, most, bound), -most)
 
 

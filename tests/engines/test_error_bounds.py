@@ -682,8 +682,8 @@ def test_a_product_of_zero_with_a_root_that_may_not_be_there_has_no_bound(kind, 
     output = made(root, one)
     found = *ErrorBounds(graph).of([output]), *tight_bounds(graph, {}, [output])
     line = programs.Program(None, found)._by_numbers
-    for rest, known in ((0.5, True), (2.0**-52, False)):  # that of the root is found nearly zero
-        bounds = line(np.array([0.0]), [1.0, 1.0 - rest, 1e-3], (1,))[:, 0]
+    for square, known in ((0.5, True), (2.0**-52, False)):  # that of the root is found nearly zero
+        bounds = line(np.array([0.0]), [1.0, 1.0 - square, 1e-3], (1,))[:, 0]
         assert (np.isfinite(bounds) == known).all()
 
 

@@ -1,4 +1,4 @@
-"""Loads by tables over travel, steep pieces among them: engines, designs, single angles and programs read them alike."""
+"""Loads by steep tables over travel: engines, designs, single angles and programs read them alike."""
 
 import numpy as np
 import pytest
