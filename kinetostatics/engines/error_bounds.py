@@ -233,23 +233,18 @@ class ErrorBounds:
         rest = self.error(part).rest if self.weight else None
         return self.size(part) if rest is None else self.fused(self.weight * self.off, rest, self.size(part))
 
-    def above(self, value, total, floor=None):
-        """Distance of a value above a floor less its error in units; 0 where it may not be above."""
-        if total is not None and self.weight:
-            value = value - (self.weight * self.off) * total
-        return self._positive_part(value if floor is None else value - floor)
+    def above(self, value, total):
+        """A value less its error in units; 0 where the error is larger."""
+        exact = total is None or not self.weight
+        return self._positive_part(value if exact else value - (self.weight * self.off) * total)
 
     def _positive_part(self, value):
         return self.graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
-    def doubt(self, part, floor=None):
-        """0 where the magnitude of a part, or a guarded part, exceeds its error; infinite or NaN elsewhere."""
-        total = self.total(part)
-        if not self.weight or (total is None and floor is None):
-            return None
-        if is_zero(part):
-            return total
-        return 0.0 / (self.clear(part) if floor is None else self.above(part, total, floor))
+    def doubt(self, part):
+        """0 where the magnitude of a part exceeds its error; infinite or NaN elsewhere, None if it is exact."""
+        total = self.total(part) if self.weight else None
+        return total if total is None or is_zero(part) else 0.0 / self.clear(part)
 
     def clear(self, part):
         """Magnitude of a part less its error; 0 where the error is larger."""
@@ -265,10 +260,8 @@ class ErrorBounds:
 
     def underflow(self, rest, part):
         """A rest that only underflow causes times the magnitude of a part: a number where its `cap` is known."""
-        if rest is None:
-            return None
-        cap = self.cap(part)
-        return rest * (self.largest(part) if cap is None else 2.0 * cap)
+        cap = None if rest is None else self.cap(part)
+        return product(rest, self.largest(part) if cap is None else 2.0 * cap)
 
     def cap(self, part):
         """Largest magnitude of a part for numbers up to `CAP`; None where only the value tells."""
@@ -448,10 +441,10 @@ def _of_magnitude(bounds, node, value):
 
 
 def _of_guarded(bounds, node, value, unit):
-    """No bound where the guard may act."""
-    floor = unit if bounds.arithmetic.as_recorded else 2.0 * bounds.largest(unit)
+    """Exact arithmetic has no guard: the error has the distance by which it moves the value."""
     relative, rest = bounds.error(value)
-    return Error(relative, plus(rest, bounds.doubt(value, floor)))
+    own = 0.0 if bounds.arithmetic.as_recorded else 2.0  # of values near the guard, which both are rounded
+    return Error(relative + own, bounds.fused(1.0 / bounds.arithmetic.unit, node - value, rest))
 
 
 RULES: dict[str, Callable[..., Error]] = {

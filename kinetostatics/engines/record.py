@@ -323,7 +323,7 @@ def _errors_of_piece(value, slope, kinks, travel, rate):
             return Error(0.0, jumps)
         off = 2.0 * total  # also of the travel by which the piece was chosen
         jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps))
+        return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT, None), jumps))
 
     return {value: of_value, slope: lambda bounds: Error(3.0, None)}
 
