@@ -51,13 +51,21 @@ def _adjoints(graph, output, parameters):
     return tuple(found.get(parameter, 0.0) for parameter in parameters)
 
 
-def adjoints(graph, output, wanted):
-    """Derivatives of one output by each of the nodes wanted that it hangs on: a dict of nodes or numbers."""
-    parts: dict[Node, list] = {output: [1.0]}
+def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
+    """Derivatives of one output by each of the wanted nodes that it depends on: a dict of nodes or numbers.
+
+    They are times `seed`. `held` is the derivative of `elementary.held`, which is 1 for rounding errors; nodes among
+    `ends` count as independent.
+    """
+    parts: dict[Node, list] = {output: [seed]}
     found = {}
     for node in reversed(needed([output])):
         if node in parts and node in wanted:
             whole = found[node] = _total(parts[node])
+            if node in ends:
+                continue
+            if node.operation == "held" and held:
+                parts.setdefault(node.arguments[0], []).append(held * whole)
             for argument, partial in _partials(graph, node, wanted):
                 parts.setdefault(argument, []).append(_times(partial, whole))
     return found

@@ -14,8 +14,7 @@ from ..mechanics.gaps import gap, groups_behind
 from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
-from .bounded import with_bounds
-from .bounds import CAP
+from .error_bounds import CAP, with_bounds
 from .program import program_of
 
 

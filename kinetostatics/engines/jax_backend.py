@@ -16,11 +16,9 @@ import numpy as np
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.elementary import ROUNDING, total
 from ..numbers.lazy import cached_property
-from . import arithmetic, numba_backend
-from .arithmetic import BoundsElsewhere
-from .bounded import where_known, with_bounds
-from .bounds import CAP
+from . import numba_backend
 from .codegen import BY_DESIGN, compile_line, line_source, loop_source
+from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
 from .graph import parted
 from .numba_backend import load_compiled
 from .program import BUFFER_VALUES, Program, numpy_sines
@@ -260,7 +258,7 @@ class Backend:
         if program not in _splits:
             _splits[program] = MixedPrecision(program)
         split = _splits[program]
-        given = split.given(state, leaves, arithmetic.OF[self.precision].dtype)
+        given = split.given(state, leaves, PRECISIONS[self.precision].dtype)
         if self.engine == "jax":
             if program not in self._on_device:
                 self._on_device[program] = DeviceProgram(split, device_of(self.platform))
@@ -293,6 +291,6 @@ class Backend:
     def _elsewhere(self, program):
         if program not in self._bounded:
             recording = program.recording
-            bounds = BoundsElsewhere(recording.graph, recording.inputs, arithmetic.OF[self.precision])
+            bounds = ErrorBounds(recording.graph, recording.inputs, PRECISIONS[self.precision])
             self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
         return self._bounded[program]

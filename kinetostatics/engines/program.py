@@ -19,11 +19,10 @@ from ..numbers.leaves import FLOATS, Leaves
 from . import numba_backend
 from .codegen import ARRAYS, BY_DESIGN, PLAIN, SCALARS, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients
+from .error_bounds import OWN, ErrorBounds, tight_bounds
 from .graph import needed, operations
 from .numba_backend import keep_for_same_angles, load_compiled, numba_available
 from .record import record, recorded_scene
-from .running import RunningBounds
-from .tight import tight_bound
 
 MAX_PLAIN_ANGLES = 12
 """Largest number of crank angles that are computed one by one on plain numbers."""
@@ -43,7 +42,7 @@ class Program:
     """
 
     scopes: Any = (PLAIN, BY_DESIGN)
-    underflow: Any = "ignore"
+    extremes: Any = "ignore"
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -140,7 +139,7 @@ class Program:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self.buffered
         results = np.empty((len(self.outputs), *shape))
-        with np.errstate(all="ignore", under=self.underflow):
+        with np.errstate(all="ignore", under=self.extremes, over=self.extremes):
             sine, cosine = numpy_sines(angle)
             if len(shape) == 1:
                 try:
@@ -218,7 +217,7 @@ class Program:
 
 
 class _Bounded(Program):
-    """Values with bounds. Arrays of NumPy tell if any value was too small for a double: mostly none has to be bounded.
+    """Values with bounds. NumPy reports under- and overflow in arrays: mostly there is none that has to be bounded.
 
     Attributes
     ----------
@@ -241,17 +240,17 @@ class _Bounded(Program):
             return super().by_numpy(angle, numbers, rows, shape)
 
 
-def _bounds(recording, values, tight, **dust):
-    graph, inputs = recording.graph, recording.inputs
+def _bounds(recording, values, tight, **known):
+    graph, inputs, arithmetic = recording.graph, recording.inputs, OWN._replace(**known)
     if tight:
-        return [tight_bound(graph, inputs, part, **dust) for part in values]
-    return RunningBounds(graph, inputs, **dust).of(values)
+        return tight_bounds(graph, inputs, values, arithmetic)
+    return ErrorBounds(graph, inputs, arithmetic).of(values)
 
 
 class _Watched(Program):
-    """Program that NumPy alone runs, plain numbers too, and that raises FloatingPointError where one is too small."""
+    """Program that NumPy alone runs, plain numbers too; it raises FloatingPointError where one under- or overflows."""
 
-    scopes, underflow = (SCALARS, BY_DESIGN), "raise"
+    scopes, extremes = (SCALARS, BY_DESIGN), "raise"
 
     def by_numpy(self, angle, numbers, rows, shape):
         numbers = [np.float64(number) if isinstance(number, float) else number for number in numbers]

@@ -21,13 +21,13 @@ from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.elementary import UNIT, held
+from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
-from .bounds import Error
+from ..numbers.planar import plus
+from .error_bounds import Error
 from .graph import Graph, Node, needed, operations
 from .simplify import SimplifiedGraph
-from .steep import SteepTable, not_known, of_pieces
 
 ROOTS = ("root", "sqrt")
 """Operations that are NaN where a group is open."""
@@ -125,7 +125,7 @@ class Recording:
     tables : tuple of Table
     graph : Graph
     inputs : mapping of Node to function
-        ``input(bounds) -> Error`` of inputs that are not exact, as `bounds.Bounds` takes it.
+        ``input(bounds) -> Error`` of inputs that are not exact, as `ErrorBounds` takes it.
     """
 
     quantities: tuple[str, ...]
@@ -175,7 +175,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other method for the positions, see `Dynamics`.
     """
-    recorder = Recorder(structure, way, SimplifiedGraph(), steeply=True)
+    recorder = Recorder(structure, way, SimplifiedGraph())
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -205,14 +205,10 @@ def recorded_scene(structure):
 
 
 class Recorder:
-    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given.
+    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
 
-    `steeply`: tables over travel are read with more digits where they are steep, see `steep`.
-    """
-
-    def __init__(self, structure, way=None, graph=None, steeply=False):
+    def __init__(self, structure, way=None, graph=None):
         self.graph = Graph() if graph is None else graph
-        self._steeply = steeply
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
@@ -299,28 +295,21 @@ class Recorder:
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
-        if not self._steeply:
-            pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
-            return lambda motion: table.read(motion, pieces)
-        steep = SteepTable(self.inputs)
         rows = self._tabled(
-            (*names, ("known", 0, ""), *ERRORS),
-            lambda motion, leaves: steep.pieces(item(motion), motion, leaves),
+            (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"), *ERRORS),
+            lambda motion, leaves: item(motion).pieces(motion),
             of=place,
-            bounded=lambda motion, leaves: steep.pieces_and_errors(item(motion), motion, leaves),
+            bounded=lambda motion, leaves: [
+                *item(motion).pieces(motion),
+                *table_errors.kinks_within(item(motion), motion),
+            ],
         )
-        pieces, within = rows[:4], rows[4:]
+        start, value, slope, *kinks = rows
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
-            steep.follow(travel, rate)
-            start, value, slope, known = pieces
-            beyond = table.beyond(start, motion)
-            left = beyond - known * held(beyond)
-            self.inputs |= of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
-            self.inputs[left[0]] = not_known(beyond[0], known[0])
-            return value + slope * left
+            self.inputs |= _errors_of_piece(value[0], slope[0], [row[0] for row in kinks], travel, rate)
+            return table.read(motion, (start, value, slope))
 
         return read
 
@@ -355,12 +344,29 @@ class _Tabled:
 
 # Errors of inputs that are not exact
 
-ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""), ("error", 4, ""))
-"""Names of rows that only bounds use."""
+ERRORS = tuple(("error", order, "") for order in range(4))
+"""Names of rows that only bounds need."""
 
 
 def _rounded_once(bounds):
     return Error(1.0, None)
+
+
+def _errors_of_piece(value, slope, kinks, travel, rate):
+    """Errors of a piece of a table over travel: the exact travel may lie in the next one, or on the other stroke."""
+    change, jump, near, distance = kinks
+
+    def of_value(bounds):
+        bounds.look_at((travel, rate))
+        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        total = bounds.total(travel)
+        if total is None:  # the travel is exact
+            return Error(0.0, jumps)
+        off = 2.0 * total  # also of the travel by which the piece was chosen
+        jumps = plus(jumps, 0.0 / bounds.above(near, off))
+        return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT, None), jumps))
+
+    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
 
 
 def _unproven(what):

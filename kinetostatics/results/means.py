@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..engines.bounds import SAFE
+from ..engines.error_bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics import jamming

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.bounded import of_magnitude
 from ..engines.engines import NUMPY
+from ..engines.error_bounds import of_magnitude
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale, unit_of
 from ..numbers.formatting import number

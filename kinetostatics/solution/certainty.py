@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.bounded import of_magnitude, where_known
+from ..engines.error_bounds import of_magnitude, where_known
 from ..engines.jax_backend import Backend
 from ..engines.program import program_of
 from ..errors import ConditionWarning, ParameterError

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..engines.arithmetic import OF as PRECISIONS
+from ..engines.error_bounds import PRECISIONS
 from ..engines.jax_backend import Backend
 from ..engines.numba_backend import numba_available, require_numba
 from ..machine.loads import is_given

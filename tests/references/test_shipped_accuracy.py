@@ -11,17 +11,20 @@ from kinetostatics.mechanics.quantities import scale
 from support.case_files import shipped
 from support.enclosed import ordinary_angles, worst
 from support.every import every
+from support.kept import has_table_loads
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 ERROR, BOUND = 5e-15, 2e-13
+ERROR_OF_TABLES, BOUND_OF_TABLES = 1e-13, 1e-12
+"""With table loads, whose flanks magnify a rounding of the travel; their rows have four digits."""
 VANISHING = 0.01
 """So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
 cam makes 4e-15 of it.
 """
 EVEN, BETWEEN = 720, 200
 """Crank angles a turn, and between two kinks of a table, as `ordinary_angles` has them."""
-PLAIN, TIGHT = 150.0, 20.0
+PLAIN, TIGHT, TIGHT_OF_TABLES = 100.0, 20.0, 50.0
 
 
 VARIANTS = [(case, variant) for case in ks.shipped_cases() for variant in shipped(case).variants]
@@ -32,12 +35,13 @@ VARIANTS = [(case, variant) for case in ks.shipped_cases() for variant in shippe
 def test_shipped_results_are_near_exact_and_bounded(case, variant):
     scene = shipped(case).variants[variant].scene
     s = scene.solve(ordinary_angles(scene, EVEN, BETWEEN))
+    most = (ERROR_OF_TABLES, BOUND_OF_TABLES) if has_table_loads(scene) else (ERROR, BOUND)
     for name, found in worst(s).items():
         size, largest = found.size, scale(s, name)
         if name == "balancing_torque" or size < VANISHING * largest:
             size = max(size, largest)
-        assert found.error <= ERROR * size, name
-        assert found.plain <= BOUND * size, name
+        assert found.error <= most[0] * size, name
+        assert found.plain <= most[1] * size, name
 
 
 @pytest.mark.slow
@@ -45,7 +49,8 @@ def test_shipped_results_are_near_exact_and_bounded(case, variant):
 def test_worst_bounds_are_near_worst_errors(case, variant):
     """`ratios_of_bounds.py` prints all."""
     scene = shipped(case).variants[variant].scene
+    tight = TIGHT_OF_TABLES if has_table_loads(scene) else TIGHT
     for name, found in worst(scene.solve(ordinary_angles(scene, 3600, 40), on_gap="nan")).items():
         assert found.error <= found.tight <= found.plain * (1.0 + 1e-12), name
         assert found.plain <= PLAIN * found.error, name
-        assert found.tight <= TIGHT * found.error, name
+        assert found.tight <= tight * found.error, name

@@ -58,16 +58,14 @@ def _distance(x, place):
     return np.minimum(np.abs(place - x[row - 1]), np.abs(place - x[row]))
 
 
-def kinks_within(table, motion, slider=None):
+def kinks_within(table, motion):
     """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
 
     By how much the slope may change at the row beside each place, N/m or N m/m, how far the value may jump there, how
-    near, m or m a radian, a row or the end of a stroke must be for it not to be zero, and how far, m, the row is. With
-    a `slider` as `Table.pieces` takes it.
+    near, m or m a radian, a row or the end of a stroke must be for it not to be zero, and how far, m, the row is.
     """
     near = 1e-6 * float(table.x[-1] - table.x[0])
-    place, rate = (table.place(motion), table.rate(motion)) if slider is None else slider
-    place = np.asarray(place, dtype=float)
+    place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
     sides = [table.y] if table.back is None else [table.y, table.back]
     change, distance = 2.0 * max(_steepest(table.x, side) for side in sides), _distance(table.x, place)
     jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)

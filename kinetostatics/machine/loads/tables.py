@@ -20,8 +20,6 @@ LARGEST_AREA = checks.Usual(5.0, "is it in cm2, or in mm2?")
 """Area, m2, beyond which no piston goes: one of 2.5 m in diameter."""
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
-STEEP = 8.0
-"""Roundings of the largest value that one of the travel makes, from which on a table counts as steep."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,34 +243,25 @@ class Table:
     def read(self, motion, pieces):
         """Values at a motion of whatever numbers that runs through these pieces."""
         start, value, slope = pieces
-        return value + slope * self.beyond(start, motion)
-
-    def beyond(self, start, motion):
-        """How far what it is read by is beyond the start of a piece; where a slider is, without its own rounding."""
-        if self.over == "angle":
-            return motion.crank_angle - start
-        return motion.elongation(start, self._slider(motion))
-
-    def is_steep(self, place, slope):
-        """Whether one rounding of a travel makes `STEEP` of the largest value, or more, where the slope is such."""
-        return np.abs(slope * place) > STEEP * abs(self.largest)
+        is_angle = self.over == "angle"
+        beyond = motion.crank_angle - start if is_angle else motion.elongation(start, self._slider(motion))
+        return value + slope * beyond
 
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
 
-    def pieces(self, motion, number=lambda given: given, slider=None):
+    def pieces(self, motion, number=lambda given: given):
         """Where the piece of the table starts at each crank angle, the value there, and its slope.
 
-        In double precision, or in whatever numbers `number` makes of floats and of arrays of them. `slider` is where
-        the slider is, and its rate, if that is known beforehand.
+        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
 
         Raises
         ------
         ParameterError
             The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
         """
-        place, rate = (self.place(motion), None) if slider is None else slider
-        returning = None if self.back is None else self.returns(motion, rate)
+        place = self.place(motion)
+        returning = None if self.back is None else self.returns(motion)
         xp, place, returning = rows.looked_at(place, returning)
         x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
@@ -299,9 +288,9 @@ class Table:
         """Whether its values depend on which way the crank turns."""
         return self.back is not None
 
-    def returns(self, motion, rate=None):
+    def returns(self, motion):
         """Whether the slider is on its stroke with negative velocity, or begins it where the crank stands."""
-        return motion.crank_sense * (self.rate(motion) if rate is None else rate) < 0
+        return motion.crank_sense * self.rate(motion) < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""

@@ -7,16 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import steep
-from kinetostatics.engines.arithmetic import (
-    DOUBLE,
-    LONGER,
-    SINGLE,
-    TURN,
-    BoundsElsewhere,
-    BoundsOfLonger,
-    is_handed_over,
-)
+from kinetostatics.engines.error_bounds import DOUBLE, SINGLE, ErrorBounds, is_handed_over
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import Program
@@ -26,7 +17,7 @@ from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
 from support.graphs import Case
-from support.graphs_elsewhere import MORE_DIGITS, SINGLE_PRECISION, runs_in_more_digits
+from support.graphs_elsewhere import SINGLE_PRECISION
 from support.inclined import INCLINED
 
 U = 2.0**-24
@@ -79,7 +70,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, 
 
 
 def bounds_of(outputs, values, arithmetic=SINGLE):
-    found = BoundsElsewhere(outputs[0].graph, {}, arithmetic).of(outputs)
+    found = ErrorBounds(outputs[0].graph, {}, arithmetic).of(outputs)
     return Program(None, found)._by_numbers(np.array([0.5]), values, (1,))[:, 0]
 
 
@@ -228,7 +219,7 @@ def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
     graph = Graph()
     half, sizes = 0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1)
     for moved, least in ((apart(half, sizes), APART * 7.0), (apart(half, UNSEEN), APART * UNSEEN)):
-        (bound,) = BoundsElsewhere(graph, {}, arithmetic).of([moved])
+        (bound,) = ErrorBounds(graph, {}, arithmetic).of([moved])
         assert Program(None, [bound])._by_numbers(np.array([0.0]), [3.0, 4.0], (1,))[0, 0] >= least
 
 
@@ -245,54 +236,5 @@ def test_however_near_to_a_change_point_bounds_elsewhere_hold_or_are_infinite(fl
         assert errors(s, exact_values(s), [backend])[backend].wrong == []
 
 
-@pytest.mark.skipif(not steep.LONG, reason="long numbers have no more digits than a double here")
-def test_sines_of_long_numbers_are_off_by_less_than_is_taken_for_them(flint):
-    angle = np.concatenate(
-        [np.linspace(-7.0, 7.0, 4001), np.random.default_rng(1).uniform(-steep.FAR, steep.FAR, 4000)]
-    )
-    for compute, method in ((np.sin, "sin"), (np.cos, "cos")):
-        found = compute(angle.astype(np.longdouble))
-        first = found.astype(float)
-        second = (found - first).astype(float)
-        for one, rest, given in zip(first.tolist(), second.tolist(), angle.tolist(), strict=True):
-            assert abs(flint.arb(one) + flint.arb(rest) - getattr(flint.arb(given), method)()) < TURN * LONGER.unit
-
-
-SUMS = {
-    "what cancels": lambda graph, turn, a, b: (turn * a + b) - b,
-    "a quotient": lambda graph, turn, a, b: (a + turn) / (b - turn * a),
-    "a root": lambda graph, turn, a, b: (b * b - (turn * a) * (turn * a)).sqrt() - b,
-    "a total": lambda graph, turn, a, b: graph.node("total", turn * a, b, -b, -turn),
-    "a quotient of what cancels": lambda graph, turn, a, b: a / ((turn + b) - b),
-    "a sine of a sum": lambda graph, turn, a, b: (turn * b + a).sin() * a,
-    "what is moved off zero": lambda graph, turn, a, b: apart(turn - turn * (a / a), b),
-}
-
-
-@every("name", SUMS)
-def test_numbers_of_more_digits_are_within_their_bound_by_either_kind(name, flint):
-    graph, numbers, angle = Graph(), [0.7, 3.3], np.linspace(0.1, 6.2, 300)
-    turn, everywhere = graph.angle().sin(), np.ones(300, dtype=bool)
-    output = SUMS[name](graph, turn, graph.parameter(0), graph.parameter(1))
-    (bound,) = Program(None, BoundsOfLonger(graph, {}).of([output])).by_numpy(angle, numbers, (), angle.shape)
-    reader = steep.SteepTable({})
-    reader.follow(output, turn)
-    state, leaves = SimpleNamespace(crank_angle=angle), SimpleNamespace(numbers=numbers)
-    summing = SimpleNamespace(node=lambda operation, *parts: sum(parts))
-    with flint.ctx.workprec(200):
-        exact = [SUMS[name](summing, flint.arb(one).sin(), *map(flint.arb, numbers)) for one in angle.tolist()]
-        for way in (reader._in_two, reader._in_long)[: 1 + steep.LONG]:
-            pairs = zip(exact, *map(np.ndarray.tolist, way(everywhere, state, leaves)), bound.tolist(), strict=True)
-            off = [(abs(flint.arb(one) + flint.arb(rest) - true), flint.arb(most)) for true, one, rest, most in pairs]
-            assert all(error <= most for error, most in off)
-    assert np.isfinite(bound).mean() > 0.9
-
-
 def test_no_random_graph_in_single_precision_is_off_by_more_than_its_bounds(flint):
     assert [wrong for seed in range(60) for wrong in Case(seed).wrong(SINGLE_PRECISION)] == []
-
-
-def test_no_random_graph_in_more_digits_is_off_by_more_than_its_bounds(flint):
-    cases = [case for case in map(Case, range(60)) if runs_in_more_digits(case)]
-    assert len(cases) > 10
-    assert [wrong for case in cases for wrong in case.wrong(MORE_DIGITS)] == []
