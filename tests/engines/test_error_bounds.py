@@ -9,6 +9,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
+from kinetostatics.engines import numba_backend
 from kinetostatics.engines.error_bounds import (
     OWN,
     SMALL_TURN,
