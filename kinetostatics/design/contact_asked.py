@@ -99,10 +99,10 @@ def contact(
     )
     cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
-    roller = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
+    wheel = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
     materials = [[values[f"{name} of the {part}"] for name in MATERIAL] for part in PARTS]
     kept = {name: values[f"limit {name!r}"] for name in UNITS if name in limits}
-    found = Contact(solution, cam, radius, values["width"], hertz.modulus(*materials), roller, kept)
+    found = Contact(solution, cam, radius, values["width"], hertz.modulus(*materials), wheel, kept)
     for side in found.sides:
         working_curve(cam, radius, 8, side)
     return found

@@ -13,9 +13,9 @@ from ..numbers.planar import minus, unturned
 TERMS = {
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
     "elongation.sine": ("s", "sine of that angle"),
-    "turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
-    "short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
-    "departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
+    "elongation.turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
+    "_from.short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
+    "departure.departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
 

@@ -14,7 +14,7 @@ from ..numbers import checks
 from ..numbers.elementary import root
 from ..numbers.planar import minus, plus, turned, unturned, vector
 from .group import Output
-from .guided_follower import RULES, FollowerForces, GuidedFollower
+from .guided_follower import GUIDED_RULES, FollowerForces, GuidedFollower
 from .links import Wrench
 from .roller import Face
 
@@ -88,7 +88,7 @@ class FlatFollower(GuidedFollower):
     face: Face | None = None
 
     TRUSTED = True
-    RULES = checks.Rules("flat follower", **RULES, face=checks.Optional(checks.Made(Face, "a Face")))
+    RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.Made(Face, "a Face")))
     forces = staticmethod(forces)
 
     @property

@@ -15,7 +15,7 @@ from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
 from .pairs import Slide, Sliding
 
-RULES = {
+GUIDED_RULES = {
     **follower.RULES,
     "guide": checks.Made(Guide, "made by Guide.at or .through"),
     "follower": checks.Made(Link, "a Link"),

@@ -12,7 +12,7 @@ from ..numbers.batched import Batched
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
-from .chain import Chain
+from .chain import NAME, Chain
 from .crank import Crank
 from .friction import kind_for
 from .group import FRAME, Resolved
@@ -21,7 +21,6 @@ from .names import name_problems
 from .pairs import Sliding, Turning
 from .placement import margin, place
 
-NAME = checks.Name()
 _NAMED_WELL: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
 

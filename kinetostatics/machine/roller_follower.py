@@ -18,7 +18,7 @@ from ..numbers import checks
 from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import minus, number, plus, turned, unturned, vector
 from .group import Output
-from .guided_follower import RULES, FollowerForces, GuidedFollower
+from .guided_follower import GUIDED_RULES, FollowerForces, GuidedFollower
 from .links import Wrench
 from .roller import Roller
 
@@ -94,7 +94,7 @@ class RollerFollower(GuidedFollower):
     roller: Roller | None = None
 
     TRUSTED = True
-    RULES = checks.Rules("roller follower", **RULES, roller=checks.Optional(checks.Made(Roller, "a Roller")))
+    RULES = checks.Rules("roller follower", **GUIDED_RULES, roller=checks.Optional(checks.Made(Roller, "a Roller")))
     forces = staticmethod(forces)
 
     @property

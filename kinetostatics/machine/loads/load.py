@@ -10,7 +10,7 @@ which is then all of its push, and may by ``parted_rate(motion)`` say how much o
 
 from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` names the field that may hold an array over
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
-such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
+such a function gives in its place before (`settled`). ``LENGTHS`` names the fields that hold
 lengths and angles of the geometry. ``potential(motion)``, of loads that have one, is their potential energy, J; those
 that turn to heat what they take, as dampers do, say so by ``DISSIPATES``. ``misplaced(mechanism)`` says what of a
 mechanism it names wrongly, ``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)``

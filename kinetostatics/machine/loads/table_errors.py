@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...numbers.elementary import UNIT
-from . import rows
+from .rows import piece
 
 MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
@@ -24,15 +24,15 @@ def rounding(table, motion):
     angle = np.asarray(motion.crank_angle)
     turned = np.floor((angle - x[0]) / table.period) * table.period
     place = angle - turned
-    piece = rows.piece(np, x, place)
-    bound = own[piece]
+    row = piece(np, x, place)
+    bound = own[row]
     on = turned != 0.0
     if not on.any():
         return bound
     reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
     near = _distance(x, place[on]) <= 4.0 * UNIT * reach
     moved = np.zeros_like(bound)
-    moved[on] = (MORE * UNIT) * (3.0 * slope[piece[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
+    moved[on] = (MORE * UNIT) * (3.0 * slope[row[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
     return bound + moved
 
 
