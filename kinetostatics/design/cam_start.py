@@ -12,7 +12,7 @@ from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
-from ..numbers.elementary import ROUNDING
+from ..numbers.arithmetic import ROUNDING
 from ..numbers.planar import cross
 from ..results.extremes import extrema
 from ..solution.scene import Scene

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 
 REACH = 2.0

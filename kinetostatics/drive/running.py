@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene

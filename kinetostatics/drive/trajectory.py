@@ -9,7 +9,7 @@ import numpy as np
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene

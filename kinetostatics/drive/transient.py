@@ -14,7 +14,7 @@ from ..errors import DriveError, HintWarning
 from ..machine import hints
 from ..machine.loads import TURN
 from ..numbers import checks
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from .motor import Motor
 from .operating import require_known
 from .periodic import steady

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, SPLIT, lost, off_square, rest, total
+from ..numbers.arithmetic import ROUNDING, SPLIT, lost, off_square, rest, total
 from .graph import BY_ANGLE, Node, needed
 from .simplify import drop_unused, fused_sums
 
@@ -152,7 +152,7 @@ def _helpers(nodes):
 
 
 def _sum_of(name, count):
-    """Source of `total` or `lost` of `count` terms, see `elementary.total`."""
+    """Source of `total` or `lost` of `count` terms, see `arithmetic.total`."""
     terms = [f"t{k}" for k in range(count)]
     steps = [f"    {there}, {here} = two_sum({here}, {there})" for here, there in pairwise(terms)]
     found = (

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import NotGivenError
 from ..mechanics.gaps import gap, groups_behind
 from ..mechanics.quantities import CHECKS, all_found, of_scene
-from ..numbers.elementary import read_only, stack
+from ..numbers.arithmetic import read_only, stack
 from ..numbers.planar import plus
 from .error_bounds import CAP, with_bounds
 from .program import program_of

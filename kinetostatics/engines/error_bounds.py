@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import NotGivenError
-from ..numbers.elementary import APART, UNIT, UNSEEN
+from ..numbers.arithmetic import APART, UNIT, UNSEEN
 from ..numbers.planar import plus, product
 from .derivatives import adjoints
 from .graph import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, needed, varies

@@ -8,7 +8,7 @@ from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
-from ..numbers.elementary import APART
+from ..numbers.arithmetic import APART
 from .graph import Node
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}

@@ -6,7 +6,7 @@ writes source from it; the number of operations at each crank angle is its cost.
 
 import numpy as np
 
-from ..numbers.elementary import APART
+from ..numbers.arithmetic import APART
 from ..numbers.nothing import Nothing
 
 BY_DESIGN, BY_ANGLE = range(2)
@@ -92,7 +92,7 @@ class Node:
         return self + APART * unit
 
     def total_with(self, terms):
-        """Called by `elementary.total`."""
+        """Called by `arithmetic.total`."""
         return self.graph.node("total", *terms)
 
     def rest_with(self, length, x, y):

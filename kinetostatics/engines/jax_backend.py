@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
-from ..numbers.elementary import ROUNDING, total
+from ..numbers.arithmetic import ROUNDING, total
 from ..numbers.lazy import cached_property
 from . import numba_backend
 from .codegen import BY_DESIGN, compile_line, line_source, loop_source

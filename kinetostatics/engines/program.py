@@ -64,7 +64,7 @@ class Program:
             if self.unrecorded:
                 raise NotGivenError(
                     f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
-                    "sin, cos and sqrt of `elementary`, so how its values hang on the parameters is not recorded"
+                    "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
                 )
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
@@ -329,7 +329,7 @@ def _recorded(state, structure, quantities, sizes):
     except (TypeError, AttributeError) as error:
         raise NotGivenError(
             f"the compiled engine cannot take {state.mechanism.name}: a group or load of it does more than arithmetic "
-            f'with sin, cos and sqrt of `elementary` ({error}); use engine="numpy"'
+            f'with sin, cos and sqrt of `arithmetic` ({error}); use engine="numpy"'
         ) from error
 
 

@@ -21,7 +21,7 @@ from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.elementary import UNIT
+from ..numbers.arithmetic import UNIT
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
@@ -372,7 +372,7 @@ def _errors_of_piece(value, slope, kinks, travel, rate):
 def _unproven(what):
     def error(bounds):
         raise NotGivenError(
-            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its "
+            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `arithmetic`, so its "
             "own rounding is not known"
         )
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import atan
+from ..numbers.arithmetic import atan
 from ..numbers.planar import polar_curvature
 from .crank import ray as ray_at
 

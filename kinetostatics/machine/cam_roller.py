@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import atan, sign, sqrt
+from ..numbers.arithmetic import atan, sign, sqrt
 from ..numbers.inherited import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt, total
+from ..numbers.arithmetic import namespace, sqrt, total
 from ..numbers.lazy import cached_property
 from ..numbers.planar import length_and_rest, minus
 from .cam import Cam

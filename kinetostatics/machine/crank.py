@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ..numbers import checks
-from ..numbers.elementary import cos, sin
+from ..numbers.arithmetic import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
 from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion

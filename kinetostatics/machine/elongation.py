@@ -7,7 +7,7 @@ the lengths themselves.
 
 from typing import Any
 
-from ..numbers.elementary import sign
+from ..numbers.arithmetic import sign
 from ..numbers.planar import minus, unturned
 
 TERMS = {

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import root
+from ..numbers.arithmetic import root
 from ..numbers.planar import minus, plus, turned, unturned, vector
 from .group import Output
 from .guided_follower import GUIDED_RULES, FollowerForces, GuidedFollower

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import cos, sin
+from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Axis
 from ..numbers.planar import added, number, turned

@@ -7,7 +7,7 @@ With 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, F the force, w the width, and 1/Re 
 
 import math
 
-from ..numbers.elementary import sqrt
+from ..numbers.arithmetic import sqrt
 
 
 def modulus(one, other):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import sqrt
+from ..numbers.arithmetic import sqrt
 from .group import FRAME
 from .links import present
 from .loads.places import carrier

@@ -14,7 +14,7 @@ Designs together must all allow it, so what one has may change in its last bits 
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import sign
+from ..numbers.arithmetic import sign
 from ..numbers.leaves import FLOATS
 from ..numbers.planar import cross
 

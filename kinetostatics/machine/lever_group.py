@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.arithmetic import apart, divisor, root, sqrt
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
 from . import change_points, on_crank, passing
 from .declared import Slot

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import APART, UNSEEN, apart, divisor, root, sign, total
+from ..numbers.arithmetic import APART, UNSEEN, apart, divisor, root, sign, total
 from ..numbers.planar import (
     length,
     length_and_rest,

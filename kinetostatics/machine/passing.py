@@ -5,7 +5,7 @@ Which change points there are, and the notation, is told in `change_points`.
 
 from typing import Any, NamedTuple
 
-from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt, total
+from ..numbers.arithmetic import apart, cos, divisor, root, sin, sqrt, total
 from ..numbers.planar import added, cross, dot, length_and_rest, minus, number, stretched, subtracted, turned, unturned
 from .change_points import BOTH, FAR, KITE, MEETING, NEAR, PARALLEL, TWICE, parted
 from .links import Joint, LinkMotion, present, tip

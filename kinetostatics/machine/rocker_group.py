@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.arithmetic import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import atan, sqrt
+from ..numbers.arithmetic import atan, sqrt
 from ..numbers.planar import minus, number, plus, turned, unturned, vector
 from .group import Output
 from .guided_follower import GUIDED_RULES, FollowerForces, GuidedFollower

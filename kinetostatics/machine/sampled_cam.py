@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import NotGivenError
 from ..numbers import checks
-from ..numbers.elementary import is_foreign_array
+from ..numbers.arithmetic import is_foreign_array
 from ..numbers.lazy import cached_property
 from .cam import Cam
 from .turn_tables import TurnTable

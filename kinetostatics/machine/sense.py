@@ -7,7 +7,7 @@ Friction, tables with values for the stroke back and functions of the motion dep
 import numpy as np
 
 from ..errors import ParameterError
-from ..numbers.elementary import sign, where_zero
+from ..numbers.arithmetic import sign, where_zero
 from ..numbers.planar import number
 from .links import present
 

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import divisor, root
+from ..numbers.arithmetic import divisor, root
 from ..numbers.planar import (
     added,
     cross,

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import atan, cos, sin
+from ..numbers.arithmetic import atan, cos, sin
 from ..numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
 from . import follower
 from .group import FRAME, Bar, Output, Point, Resolved

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import cos, sin
+from ..numbers.arithmetic import cos, sin
 from ..numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
 from .declared import Slot
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction

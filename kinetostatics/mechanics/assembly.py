@@ -5,8 +5,8 @@ import numpy as np
 from ..errors import AssemblyError, ParameterError
 from ..machine.loads import TURN
 from ..machine.placement import require_positions
+from ..numbers.arithmetic import ROUNDING
 from ..numbers.brackets import find_minima, find_roots
-from ..numbers.elementary import ROUNDING
 from . import quantities
 
 STEPS = 720

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..errors import QuantityError
 from ..numbers import checks
-from ..numbers.elementary import sign
+from ..numbers.arithmetic import sign
 from ..numbers.planar import number
 
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench
 from ..machine.pairs import Rolling, Sliding, Turning
-from ..numbers.elementary import held, root, sign, sqrt
+from ..numbers.arithmetic import held, root, sign, sqrt
 from ..numbers.nothing import NOTHING, absent
 from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
 

@@ -9,7 +9,7 @@ from collections import defaultdict
 from functools import reduce
 
 from ..machine.group import RATES, TRAVELS
-from ..numbers.elementary import held, namespace
+from ..numbers.arithmetic import held, namespace
 from ..numbers.planar import plus
 
 

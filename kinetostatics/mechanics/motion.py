@@ -15,7 +15,7 @@ from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..machine.sense import sense_of
 from ..numbers import checks, kinds
-from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.arithmetic import namespace, read_only, stack
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, wider
 from ..numbers.planar import number, plus, product, stretched, vector

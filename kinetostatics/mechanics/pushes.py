@@ -7,7 +7,7 @@ from ..machine.links import present
 from ..machine.loads import Load
 from ..machine.sense import require_sense
 from ..numbers import checks
-from ..numbers.elementary import is_foreign_array
+from ..numbers.arithmetic import is_foreign_array
 from ..numbers.leaves import with_fields
 from .motion import Motion
 

@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 from ..errors import QuantityError
 from ..machine.pairs import Turning
 from ..numbers import checks
-from ..numbers.elementary import sqrt
+from ..numbers.arithmetic import sqrt
 
 
 class Quantity(NamedTuple):

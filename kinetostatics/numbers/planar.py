@@ -4,7 +4,7 @@ A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent
 is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
 """
 
-from .elementary import UNSEEN, apart, rest, sqrt
+from .arithmetic import UNSEEN, apart, rest, sqrt
 from .nothing import absent
 
 

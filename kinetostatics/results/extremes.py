@@ -10,7 +10,7 @@ from ..errors import ConditionWarning, NotGivenError, ParameterError
 from ..mechanics import jamming, quantities
 from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
-from ..numbers.elementary import UNIT
+from ..numbers.arithmetic import UNIT
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, told
 from .turn import require_single

@@ -10,8 +10,8 @@ from ..engines.error_bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics import jamming
+from ..numbers.arithmetic import UNIT
 from ..numbers.brackets import find_roots
-from ..numbers.elementary import UNIT
 from .extremes import extrema, warning
 from .turn import USABLE, require_single
 

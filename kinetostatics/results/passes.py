@@ -11,7 +11,7 @@ import numpy as np
 from ..engines import numba_backend
 from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
 from ..engines.scanning import COLUMNS, edition
-from ..numbers.elementary import ROUNDING
+from ..numbers.arithmetic import ROUNDING
 from . import peaks
 from .peaks import REACH
 from .reductions import MEAN, PEAK

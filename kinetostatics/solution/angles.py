@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import HintWarning
 from ..machine import hints
 from ..numbers import checks
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 
 ANGLE = checks.Number("rad", "crank_angle", table=True)
 PLAIN = int, float, list, tuple

@@ -13,7 +13,7 @@ from ..engines.program import program_of
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from . import second_order
 from .parameters import Parameters, fixed, keeping, leaves_of, require_free, unknown
 from .slopes import slopes

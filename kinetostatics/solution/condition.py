@@ -31,7 +31,7 @@ from ..machine.links import Link, arm, first_at, second_at, virtual_work
 from ..machine.loads import TURN, Load, value_of
 from ..mechanics.assembly import HALF
 from ..mechanics.dynamics import Dynamics
-from ..numbers.elementary import ROUNDING, UNIT, is_foreign_array
+from ..numbers.arithmetic import ROUNDING, UNIT, is_foreign_array
 from ..numbers.leaves import Opaque, mapped, put_together
 from ..numbers.planar import product, subtracted
 
@@ -364,7 +364,7 @@ def _slope_of_table(place, solution):
 def _by_differences(solution):
     """Scene, and function of sizes, as `_Recorded.of`, by central differences of the kernels on plain numbers."""
     warnings.warn(
-        f"{solution.mechanism.name}: a group of it does more than arithmetic with sin, cos and sqrt of `elementary`, "
+        f"{solution.mechanism.name}: a group of it does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
         "so its condition is by differences in place of exact derivatives, and rough near limit positions",
         ConditionWarning,
         stacklevel=4,

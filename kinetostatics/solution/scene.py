@@ -18,7 +18,7 @@ from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
-from ..numbers.elementary import looked_at
+from ..numbers.arithmetic import looked_at
 from ..numbers.leaves import made
 from . import slips
 from .angles import BYTES, crank_angles, problems

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 
 
 def slopes(program, by, state, leaves, backend):

@@ -15,7 +15,7 @@ from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
 from ..mechanics.quantities import all_found, scale, values, without_bars
-from ..numbers.elementary import read_only
+from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import made
 from ..results.turn import Turn

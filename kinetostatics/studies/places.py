@@ -10,7 +10,7 @@ from ..machine.builders import cam_crank_slider, crank_slider, four_bar, slotted
 from ..machine.cams import Circle, CosineLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
-from ..numbers.elementary import UNIT
+from ..numbers.arithmetic import UNIT
 from ..solution.solution import Solution
 
 SPEED = 320 * math.pi / 30

@@ -16,7 +16,7 @@ from ..errors import HintWarning, MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
-from ..numbers.elementary import UNIT
+from ..numbers.arithmetic import UNIT
 from .methods import METHODS
 from .methods.certified import differences, enclosure, relative_errors
 from .methods.engines import proven

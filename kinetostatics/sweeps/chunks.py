@@ -12,7 +12,7 @@ import pandas as pd
 from ..errors import MissingLibraryError
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import quantity
-from ..numbers.elementary import ROUNDING
+from ..numbers.arithmetic import ROUNDING
 from ..results.peaks import lowest
 from . import together
 from .job import scene_of

@@ -15,7 +15,7 @@ from ..machine.loads import TURN, refusals
 from ..mechanics import contact
 from ..mechanics.quantities import scale, sizes
 from ..numbers import checks
-from ..numbers.elementary import ROUNDING
+from ..numbers.arithmetic import ROUNDING
 from ..results.bends import bent
 from ..results.passes import Passes
 from ..results.rounding import FLOOR

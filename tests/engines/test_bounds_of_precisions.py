@@ -12,7 +12,7 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
-from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart
+from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart
 from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every

@@ -19,8 +19,8 @@ from kinetostatics.engines.codegen import (
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Recording
-from kinetostatics.numbers import elementary
-from kinetostatics.numbers.elementary import ROUNDING
+from kinetostatics.numbers import arithmetic
+from kinetostatics.numbers.arithmetic import ROUNDING
 from support.every import every
 
 ANGLE = np.linspace(0.0, 6.0, 9)
@@ -69,7 +69,7 @@ def test_a_total_loses_nothing_in_any_engine():
     pytest.importorskip("numba")
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
-    outputs = (elementary.total(*parts), elementary.total(parts[0], graph.angle(), -parts[3]))
+    outputs = (arithmetic.total(*parts), arithmetic.total(parts[0], graph.angle(), -parts[3]))
     values, angles = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001], np.array([0.1, 0.7])
     program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
@@ -83,10 +83,10 @@ def test_a_rest_is_the_same_in_any_engine():
     graph = Graph()
     x, y, length = parts = [graph.parameter(place) for place in range(3)]
     whole, values = (x * x + y * y).sqrt(), [0.3, 0.4, 0.5000000000000001]
-    outputs = elementary.rest(whole, x, y), elementary.total(whole, -length, elementary.rest(whole, x, y))
+    outputs = arithmetic.rest(whole, x, y), arithmetic.total(whole, -length, arithmetic.rest(whole, x, y))
     program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     least = np.sqrt(0.3 * 0.3 + 0.4 * 0.4)
-    lost = elementary.rest(least, 0.3, 0.4)
+    lost = arithmetic.rest(least, 0.3, 0.4)
     for compute in (program.by_numpy, program.by_loop):
         found = compute(np.zeros(1), values, (), (1,))
         np.testing.assert_array_equal(found[:, 0], [lost, math.fsum((least, -values[2], lost))])

@@ -9,7 +9,7 @@ from kinetostatics.engines.derivatives import Evaluation, tangents
 from kinetostatics.engines.graph import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers import elementary
+from kinetostatics.numbers import arithmetic
 from kinetostatics.numbers.leaves import put_together
 
 ANGLES = np.linspace(0.1, 6.2, 7)
@@ -114,7 +114,7 @@ class Elementary:
     """The elementary functions as kernels call them: on arrays of objects."""
 
     def __getattr__(self, name):
-        return lambda x: getattr(elementary, name)(np.array([x], dtype=object))[0]
+        return lambda x: getattr(arithmetic, name)(np.array([x], dtype=object))[0]
 
 
 def along_two_directions(function):
@@ -138,13 +138,13 @@ def test_value_and_slope_of_operations_are_those_of_sympy(name):
 
 @pytest.mark.parametrize("name", ["held", "sign", "rest"])
 def test_signs_and_numbers_that_are_held_have_no_slope(name):
-    functions = {"rest": lambda x: elementary.rest(x, 0.3 * x, 0.4)}
+    functions = {"rest": lambda x: arithmetic.rest(x, 0.3 * x, 0.4)}
     value, slope = along_two_directions(functions.get(name, getattr(Elementary(), name)))
     assert np.isfinite(value[0])
     assert slope == 0.0
 
 
 def test_a_total_has_the_slopes_of_a_sum():
-    value, slopes = along_two_directions(lambda x: elementary.total(x, 0.2, -(x * x)))
+    value, slopes = along_two_directions(lambda x: arithmetic.total(x, 0.2, -(x * x)))
     assert value[0] == pytest.approx(0.36, rel=1e-15)
     assert slopes[:, 0] == pytest.approx([-0.6, -1.2], rel=1e-15)

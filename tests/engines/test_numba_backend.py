@@ -16,7 +16,7 @@ from kinetostatics.engines.codegen import BY_DESIGN
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Recording
-from kinetostatics.numbers import elementary
+from kinetostatics.numbers import arithmetic
 from support.both_engines import ULP, again, assert_same
 from support.scenes import (
     ANGLES,
@@ -142,13 +142,13 @@ def test_each_operation_is_that_of_numbers_at_signs_of_zero_infinities_and_what_
     def write(a, b, c):
         yield from (operation(a, b) for operation in (add, sub, mul, truediv))
         yield from (neg(a), abs(a), a.sqrt(), a.sign(), a.forgiving_root(b), a.kept_off_zero(b))
-        yield elementary.total(a, b, c)
+        yield arithmetic.total(a, b, c)
         yield from (2.5 - a, 2.5 / a, a * 0.1)
 
     with np.errstate(all="ignore"):
         wanted = [operation(one, other) for operation in (add, sub, mul, truediv)]
         wanted += [-one, abs(one), np.sqrt(one), np.copysign(1.0, one), BY_DESIGN["root"](one, other)]
-        wanted += [np.where(one < other, other, one), elementary.total(one, other, more)]
+        wanted += [np.where(one < other, other, one), arithmetic.total(one, other, more)]
         wanted += [2.5 - one, 2.5 / one, one * 0.1]
     found = of_rows(write, np.array([one, other, more]))
     for place, (values, expected) in enumerate(zip(found, wanted, strict=True)):

@@ -10,7 +10,7 @@ from kinetostatics.engines.engines import NUMPY
 from kinetostatics.engines.error_bounds import STRETCH, Error, ErrorBounds, tight_bounds
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, operations, program_of
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies.places import PLACES
 from support.bounded import FAMILIES, errors, solution
 from support.case_files import shipped

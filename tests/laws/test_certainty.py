@@ -11,7 +11,7 @@ from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.friction import NONE
 from kinetostatics.mechanics.assembly import HALF, NO_DIGIT
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from support.bounded import FAMILIES, solution
 from support.case_files import shipped
 from support.every import every

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import ConditionWarning, ParameterError
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies.methods.certified import differences, enclosure, relative_errors
 
 R, PIVOT = 0.1, (0.05, -0.35)

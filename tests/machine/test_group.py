@@ -19,7 +19,7 @@ from kinetostatics.machine.links import Joint, LinkMotion, Wrench
 from kinetostatics.machine.pairs import Sliding, Turning
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.elementary import cos, sin
+from kinetostatics.numbers.arithmetic import cos, sin
 from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, subtracted, turned, unturned, vector
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.compile import compile as compiled

@@ -9,7 +9,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.graph import Graph
-from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, rest, root, sign, total
+from kinetostatics.numbers.arithmetic import APART, ROUNDING, apart, divisor, rest, root, sign, total
 from support.every import every
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics.assembly import HALF
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.solution import condition
 from kinetostatics.solution.condition import ill_conditioned, is_surely_well_conditioned
 from support.machines import ANGLES, planar, turning

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS
 from kinetostatics.studies.places import PLACES

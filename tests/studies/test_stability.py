@@ -12,7 +12,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS, Method
 from kinetostatics.views import charts

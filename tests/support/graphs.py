@@ -8,8 +8,8 @@ from kinetostatics.engines.error_bounds import Error
 from kinetostatics.engines.graph import INPUTS, Graph, Node, needed
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.numbers import elementary
-from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
+from kinetostatics.numbers import arithmetic
+from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN
 
 PARAMETERS, UNITS = 5, 2
 DESIGNS, ANGLES = 6, 3
@@ -44,7 +44,7 @@ def recorded(steps, inputs):
             places = [place % PARAMETERS for place in places[:2]] + places[2:]
         if kind == "sum":
             parts = [values[place % len(values)] for place in range(places[0], places[0] + 2 + places[1] % 5)]
-            values.append(elementary.total(*parts))
+            values.append(arithmetic.total(*parts))
         elif kind == "scaled":
             values.append(values[places[0]] * CONSTANTS[places[1] % len(CONSTANTS)])
         else:
@@ -64,7 +64,7 @@ def _recorded(kind, one, other, third, fourth, unit):
         "root": lambda: one.forgiving_root(unit),
         "guard": lambda: one.kept_off_zero(unit),
         "apart": lambda: one.moved_apart(unit),
-        "total": lambda: elementary.total(one, other, third),
+        "total": lambda: arithmetic.total(one, other, third),
         "rest": lambda: _with_rest(one, other, third),
         "minus": lambda: -one,
         "abs": lambda: abs(one),
@@ -76,7 +76,7 @@ def _recorded(kind, one, other, third, fourth, unit):
 
 def _with_rest(x, y, other):
     length = (x * x + y * y).sqrt()
-    return elementary.total(length, elementary.rest(length, x, y), -other)
+    return arithmetic.total(length, arithmetic.rest(length, x, y), -other)
 
 
 def exactly(nodes, inputs):

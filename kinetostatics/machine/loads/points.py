@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.elementary import divisor, sqrt
+from ...numbers.arithmetic import divisor, sqrt
 from ...numbers.planar import added, dot, length, stretched, subtracted, turned, vector
 from ..crank import ray
 from ..group import FRAME

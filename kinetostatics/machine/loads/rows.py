@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.elementary import namespace
+from ...numbers.arithmetic import namespace
 from .period import TURN
 
 BEYOND = 1e-9

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...numbers.elementary import UNIT
+from ...numbers.arithmetic import UNIT
 from .rows import piece
 
 MORE = 1.0 + 1e-9

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.elementary import atan
+from ...numbers.arithmetic import atan
 from ...numbers.planar import minus, number, product, unturned
 from ..crank import ray
 from ..group import FRAME

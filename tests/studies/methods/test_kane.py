@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies.methods import kane, papers
 from kinetostatics.studies.methods.method import NotGivenError
 from support import followers

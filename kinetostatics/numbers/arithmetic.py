@@ -141,7 +141,7 @@ def total(*terms):
     """
     present = [term for term in terms if term is not None]
     if len(present) > MOST_TERMS:
-        raise ParameterError(f"elementary.total takes {MOST_TERMS} numbers at most, got {len(present)}; make two of it")
+        raise ParameterError(f"arithmetic.total takes {MOST_TERMS} numbers at most, got {len(present)}; make two of it")
     recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
         return recorded.total_with(present) if len(present) > 1 else recorded
