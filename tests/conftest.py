@@ -38,7 +38,7 @@ def programs(tmp_path_factory):
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
     from kinetostatics.engines import code_cache, jax_backend, numba_backend, program
-    from kinetostatics.numbers import kinds
+    from kinetostatics.numbers import parameter_tree
     from support import by_arrays
 
     numba = ModuleType("numba")
@@ -56,9 +56,9 @@ def interpreted(monkeypatch):
     loaded = cache(code_cache.load_module)
     for module in (numba_backend, program, jax_backend):
         monkeypatch.setattr(module, "load_compiled", loaded)
-    kinds.forget()
+    parameter_tree.forget()
     yield
-    kinds.forget()
+    parameter_tree.forget()
 
 
 @pytest.fixture

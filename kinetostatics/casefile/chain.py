@@ -4,7 +4,7 @@ from ..machine.crank import Crank
 from ..machine.guide import Guide
 from ..machine.loads import Spring
 from ..machine.mechanism import Mechanism
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from . import schema
 from .pieces import PartsError, all_of, cam_of, guide_of, link_of, roller_of
 

@@ -16,7 +16,7 @@ from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, 
 from ..mechanics.pushes import drive_asked_for, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..solution.compile import compile as compiled
 from ..solution.scene import scene_problem
 from .motor import Motor

@@ -15,7 +15,7 @@ from ..machine.friction import NONE
 from ..mechanics.pushes import title_of
 from ..numbers import checks
 from ..numbers.formatting import number
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
 SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"

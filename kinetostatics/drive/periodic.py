@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import DriveError
 from ..numbers import checks
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..solution.angles import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..solution.angles import crank_angles, hint_at
 from ..solution.solution import Solution
 from .saving import DrivenComparison

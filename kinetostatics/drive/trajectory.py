@@ -11,7 +11,7 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..solution.scene import Scene
 from .driven import Driven
 from .motor import Motor

@@ -7,7 +7,7 @@ writes source from it; the number of operations at each crank angle is its cost.
 import numpy as np
 
 from ..numbers.arithmetic import APART
-from ..numbers.nothing import Nothing
+from ..numbers.planar import Nothing
 
 BY_DESIGN, BY_ANGLE = range(2)
 """The value of a node varies with the design alone, or with the crank angle as well."""

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..numbers.dimensions import NONE, dimension, spelled
+from ..numbers.units import NONE, dimension, spelled
 from .formulas import formula, names_in
 from .graph import INPUTS, Node, is_negative, needed
 from .naming import Named, Symbol

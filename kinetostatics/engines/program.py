@@ -13,9 +13,9 @@ import numpy as np
 from ..errors import NotGivenError, QuantityError
 from ..machine import hints
 from ..machine.links import present
-from ..numbers.checks.usual import FAR
+from ..numbers.checks.rules import FAR
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import FLOATS, Leaves
+from ..numbers.parameter_tree import FLOATS, Leaves
 from . import numba_backend
 from .codegen import ARRAYS, BY_DESIGN, PLAIN, SCALARS, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients

@@ -23,7 +23,7 @@ from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.arithmetic import UNIT
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import put_together, with_fields
+from ..numbers.parameter_tree import put_together, with_fields
 from ..numbers.planar import plus
 from .error_bounds import Error
 from .graph import Graph, Node, needed, operations

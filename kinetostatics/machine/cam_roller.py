@@ -13,7 +13,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import atan, sign, sqrt
-from ..numbers.inherited import say_together
+from ..numbers.parameter_tree import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
 from .declared import Led, Slot

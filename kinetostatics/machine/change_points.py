@@ -27,7 +27,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..numbers.planar import unturned
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from ..numbers import checks
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..numbers.planar import number, stretched
 from . import lever_group, on_crank
 from .declared import Slot

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.batched import Batched
+from ..numbers.paths import Batched
 from .links import present
 from .pairs import Rolling, Sliding, Turning
 

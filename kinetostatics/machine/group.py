@@ -81,7 +81,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..numbers.inherited import say_together
+from ..numbers.parameter_tree import say_together
 from .links import Wrench
 from .placement import Throw
 

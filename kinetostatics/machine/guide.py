@@ -8,7 +8,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Axis
+from ..numbers.parameter_tree import Axis
 from ..numbers.planar import added, number, turned
 from .group import Output
 from .links import Joint, LinkMotion, present

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import sign
-from ..numbers.leaves import FLOATS
+from ..numbers.parameter_tree import FLOATS
 from ..numbers.planar import cross
 
 BESIDE = 2.0**-5

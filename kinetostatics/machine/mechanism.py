@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.batched import Batched
 from ..numbers.lazy import cached_property
+from ..numbers.paths import Batched
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .chain import NAME, Chain

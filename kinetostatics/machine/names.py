@@ -3,7 +3,7 @@
 from dataclasses import fields
 
 from ..numbers import checks
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from .group import FRAME, RATES, RESERVED, TRAVELS
 
 REMEDY = "give the second group another pin, pivot_name or label"

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import apart, divisor, root, sqrt
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation

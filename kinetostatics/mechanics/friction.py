@@ -19,8 +19,7 @@ from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench
 from ..machine.pairs import Rolling, Sliding, Turning
 from ..numbers.arithmetic import held, root, sign, sqrt
-from ..numbers.nothing import NOTHING, absent
-from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
+from ..numbers.planar import NOTHING, absent, added, length, minus, number, plus, product, quotient, stretched, vector
 
 MIN_SQUARE = 1e-290
 """Square of a force that is added so that a force of zero can be divided by, N2."""

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import ConditionWarning, JammingError
 from ..machine.friction import PASSES
 from ..machine.sense import WANTED, stands
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 
 MAX_CHANGE = 1e-13
 """Upper limit of the relative change of forces by one more pass, times the margin from jamming, for convergence."""

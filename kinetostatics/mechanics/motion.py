@@ -14,12 +14,11 @@ from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..machine.sense import sense_of
-from ..numbers import checks, kinds
+from ..numbers import checks, parameter_tree
 from ..numbers.arithmetic import namespace, read_only, stack
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Leaves, wider
+from ..numbers.parameter_tree import Leaves, taken_apart, wider
 from ..numbers.planar import number, plus, product, stretched, vector
-from ..numbers.structures import taken_apart
 from .gaps import gap, groups_behind
 from .quantities import of_mechanism
 
@@ -81,7 +80,7 @@ class Motion:
     def kind(self):
         """What all scenes of its structure have in common."""
         structure, leaves = self.apart
-        return kinds.of(structure) if leaves.lasting else kinds.Kind(structure)
+        return parameter_tree.of(structure) if leaves.lasting else parameter_tree.Kind(structure)
 
     @cached_property
     def loads_are_given(self):

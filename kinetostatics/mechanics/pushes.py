@@ -8,7 +8,7 @@ from ..machine.loads import Load
 from ..machine.sense import require_sense
 from ..numbers import checks
 from ..numbers.arithmetic import is_foreign_array
-from ..numbers.leaves import with_fields
+from ..numbers.parameter_tree import with_fields
 from .motion import Motion
 
 STANDING = 1e-150

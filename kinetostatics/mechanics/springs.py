@@ -22,7 +22,7 @@ that of a spring whose rate does not change and little more, (k + q l^2) e + q p
 from functools import reduce
 
 from ..machine.links import Wrench
-from ..numbers.inherited import say_together
+from ..numbers.parameter_tree import say_together
 from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
 

@@ -2,6 +2,8 @@
 
 A part tells by the rules of its fields (`checks.fields`) what its numbers are, with their units, and by `PATHS` what a
 field is called where that is not its name; "" stands for a part whose fields are called as they are.
+
+Parameters that may be arrays of designs, and the shape that these have in common.
 """
 
 from dataclasses import fields, is_dataclass
@@ -9,8 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ParameterError
 from . import checks
-from .leaves import is_structural
+from .checks import fitting
+from .lazy import cached_property
+from .parameter_tree import Leaves, is_structural, taken_apart, wider
 
 
 class Place(NamedTuple):
@@ -104,3 +109,27 @@ def with_values(item, values: dict, changed=changed):
 def _is_number(value):
     """Whether a value is one number, or one for each of some designs."""
     return isinstance(value, float) or (isinstance(value, np.ndarray) and value.shape[-1:] in ((), (1,)))
+
+
+class Batched:
+    """A dataclass of parameters, which may be arrays of designs."""
+
+    @cached_property
+    def batch(self):
+        """Shape that arrays of designs among the parameters have in common; () for a single design.
+
+        An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
+        """
+        leaves = Leaves()
+        taken_apart(self, leaves)
+        try:
+            return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
+        except ValueError:
+            raise _unfitting(self) from None
+
+
+def _unfitting(item):
+    """Error that names the arrays of designs in an item, which do not fit together."""
+    shapes = {path: np.shape(place.value(item)) for path, place in places(item).items()}
+    problem = fitting(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
+    return ParameterError(f"{getattr(item, 'name', type(item).__name__)}: {problem}")

@@ -3,6 +3,8 @@
 Numbers are written in ASCII digits with a decimal point and no thousands separators. A unit is a product or quotient of
 names with small whole powers ("kN/mm", "kg m^2", "1/s"), worked from left to right. A table knows the usual names.
 pint, which takes half a second to load, is asked for others only, and gets nothing but names and powers.
+
+Dimensions of numbers: powers of m, kg and s; radians count as 1.
 """
 
 import math
@@ -10,6 +12,8 @@ import re
 import unicodedata
 from fractions import Fraction
 from functools import cache, partial
+
+import numpy as np
 
 NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
 """A number, as a regular expression: the only form that case files, tables and spreads take."""
@@ -253,3 +257,59 @@ def _readings(text):
     if len(set(found)) == 1 and len(groups[-1]) == 3:
         readings.append(first + "".join(groups))
     return readings
+
+
+NONE = (0.0, 0.0, 0.0)
+BASES = {
+    "m": (1, 0, 0),
+    "kg": (0, 1, 0),
+    "s": (0, 0, 1),
+    "N": (1, 1, -2),
+    "J": (2, 1, -2),
+    "Pa": (-1, 1, -2),
+    "W": (2, 1, -3),
+}
+"""Powers of m, kg and s of units that others are made of."""
+SPELLED = {
+    (0, 0, 0): "1",
+    (1, 0, 0): "m",
+    (2, 0, 0): "m2",
+    (3, 0, 0): "m3",
+    (4, 0, 0): "m4",
+    (-1, 0, 0): "1/m",
+    (-2, 0, 0): "1/m2",
+    (0, 1, 0): "kg",
+    (1, 1, 0): "kg m",
+    (2, 1, 0): "kg m2",
+    (0, 0, -1): "rad/s",
+    (0, 0, -2): "rad2/s2",
+    (1, 0, -1): "m/s",
+    (1, 0, -2): "m/s2",
+    (1, 1, -2): "N",
+    (0, 1, -2): "N/m",
+    (2, 1, -2): "N m",
+    (3, 1, -2): "N m2",
+    (2, 1, -3): "W",
+    (1, 1, -1): "N s",
+    (0, 1, -1): "N s/m",
+}
+
+
+_POWER = re.compile(r"([A-Za-z]+)(?:\*\*|\^)?(\d*)")
+
+
+def dimension(unit):
+    """Powers of m, kg and s in a unit such as "N*m*s/rad" or "m/s2"."""
+    found = np.zeros(3)
+    for over, part in enumerate(unit.split("/")):
+        for base, power in _POWER.findall(part):
+            found += (-1 if over else 1) * int(power or 1) * np.array(BASES.get(base, NONE))
+    return tuple(found.tolist())
+
+
+def spelled(dimension):
+    """A unit of these powers."""
+    if dimension in SPELLED:
+        return SPELLED[dimension]
+    named = zip(("m", "kg", "s"), dimension, strict=True)
+    return " ".join(base + (f"{count:g}" if count != 1 else "") for base, count in named if count)

@@ -32,7 +32,7 @@ from ..machine.loads import TURN, Load, value_of
 from ..mechanics.assembly import HALF
 from ..mechanics.dynamics import Dynamics
 from ..numbers.arithmetic import ROUNDING, UNIT, is_foreign_array
-from ..numbers.leaves import Opaque, mapped, put_together
+from ..numbers.parameter_tree import Opaque, mapped, put_together
 from ..numbers.planar import product, subtracted
 
 MARGIN_FACTOR = 100.0

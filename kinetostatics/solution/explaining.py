@@ -18,7 +18,7 @@ from ..machine import hints
 from ..mechanics import quantities
 from ..mechanics.motion import SceneParts
 from ..numbers import checks
-from ..numbers.leaves import mapped
+from ..numbers.parameter_tree import mapped
 from ..results.rounding import without_rounding
 from .angles import crank_angles
 from .checked import checked

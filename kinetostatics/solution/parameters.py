@@ -4,9 +4,8 @@ from typing import ClassVar
 
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
-from ..numbers.kinds import Numbered
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Axis, Kept, with_fields
+from ..numbers.parameter_tree import Axis, Kept, Numbered, with_fields
 
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)

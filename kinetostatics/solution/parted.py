@@ -10,8 +10,7 @@ from ..errors import NotGivenError
 from ..machine.loads import STRAIGHT
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import quantity, sizes
-from ..numbers.leaves import Leaves, put_together
-from ..numbers.structures import taken_apart
+from ..numbers.parameter_tree import Leaves, put_together, taken_apart
 from ..results.bends import bends
 from ..results.pieces import Pieces
 from ..results.refining import GOAL, refined

@@ -16,7 +16,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from ..numbers.leaves import made
+from ..numbers.parameter_tree import made
 from .angles import crank_angles, hint_at, problems
 from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked

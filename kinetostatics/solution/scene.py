@@ -19,7 +19,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.arithmetic import looked_at
-from ..numbers.leaves import made
+from ..numbers.parameter_tree import made
 from . import slips
 from .angles import BYTES, crank_angles, problems
 from .checked import checked

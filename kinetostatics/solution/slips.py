@@ -6,8 +6,7 @@ from ..engines.program import plausibility_test
 from ..machine import hints
 from ..numbers import paths
 from ..numbers.checks import Usual, usual_of
-from ..numbers.kinds import Numbered
-from ..numbers.leaves import made, put_together
+from ..numbers.parameter_tree import Numbered, made, put_together
 from .parameters import Parameters
 
 

@@ -17,7 +17,7 @@ from ..mechanics.motion import Motion
 from ..mechanics.quantities import all_found, scale, values, without_bars
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import made
+from ..numbers.parameter_tree import made
 from ..results.turn import Turn
 from . import contents, slips
 from .angles import crank_angles, hint_at

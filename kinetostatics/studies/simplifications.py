@@ -15,7 +15,7 @@ from ..machine.guide import Guide
 from ..machine.links import Link
 from ..machine.loads import KINDS
 from ..numbers import checks
-from ..numbers.leaves import mapped
+from ..numbers.parameter_tree import mapped
 from ..solution.solution import Solution
 from .series import harmonic_series
 

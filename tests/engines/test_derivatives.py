@@ -10,7 +10,7 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers import arithmetic
-from kinetostatics.numbers.leaves import put_together
+from kinetostatics.numbers.parameter_tree import put_together
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 SIZES = np.array([[0.9], [1.0], [1.1]])

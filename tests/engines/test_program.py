@@ -17,8 +17,8 @@ from kinetostatics.engines.engines import KERNELS
 from kinetostatics.engines.program import plausibility_test, program_of
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
-from kinetostatics.numbers import kinds
-from kinetostatics.numbers.leaves import put_together
+from kinetostatics.numbers import parameter_tree
+from kinetostatics.numbers.parameter_tree import put_together
 from support import DATA
 from support.scenes import (
     ANGLES,
@@ -333,7 +333,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
     numba_backend.load_compiled.cache_clear()
-    kinds.forget()
+    parameter_tree.forget()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
     sources, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))

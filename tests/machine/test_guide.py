@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.leaves import Axis
+from kinetostatics.numbers.parameter_tree import Axis
 from support.every import every
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.leaves import with_fields
+from kinetostatics.numbers.parameter_tree import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every

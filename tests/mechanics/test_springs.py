@@ -8,7 +8,7 @@ from kinetostatics.engines.engines import NUMPY
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.leaves import with_fields
+from kinetostatics.numbers.parameter_tree import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from kinetostatics.numbers import units
-from kinetostatics.numbers.dimensions import dimension, spelled
-from kinetostatics.numbers.units import USUAL_UNITS, base_factor, factor, quoted, to_si
+from kinetostatics.numbers.units import USUAL_UNITS, base_factor, dimension, factor, quoted, spelled, to_si
 from tests.support.every import every
 
 

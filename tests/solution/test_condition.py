@@ -429,7 +429,7 @@ def near_limits(draw, kind):
 
 def rows(item, number):
     """One design of a batch."""
-    from kinetostatics.numbers.leaves import mapped
+    from kinetostatics.numbers.parameter_tree import mapped
 
     return mapped(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
 

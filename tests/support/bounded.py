@@ -10,7 +10,7 @@ from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.errors import KinetostaticsError
 from kinetostatics.machine.guide import Guide
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.numbers.leaves import mapped
+from kinetostatics.numbers.parameter_tree import mapped
 from kinetostatics.studies.methods.enclosures import on_arb
 from kinetostatics.studies.places import PLACES
 

@@ -5,7 +5,7 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.numbers.leaves import with_fields
+from kinetostatics.numbers.parameter_tree import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 
 from .bounded import Found

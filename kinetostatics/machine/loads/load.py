@@ -23,7 +23,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.batched import Batched
+from ...numbers.paths import Batched
 from .period import TURN
 from .tables import Table
 

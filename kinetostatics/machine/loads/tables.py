@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
-from ...numbers.leaves import with_fields
+from ...numbers.parameter_tree import with_fields
 from ..sense import require_sense
 from . import rows
 from .bending import bending, left_out

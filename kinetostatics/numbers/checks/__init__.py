@@ -23,10 +23,7 @@ object keeps floats and locked copies of arrays, so nothing it holds changes beh
 `arb` enclosure passes as it is.
 """
 
-from .checked import Checked, Rules, examined
-from .meant import nearest
-from .measured import DimensionError, converted, is_quantity, plain
-from .problems import (
+from .messages import (
     ANGLE,
     MEMORY,
     Problem,
@@ -38,6 +35,7 @@ from .problems import (
     mapping,
     mechanism,
     names,
+    nearest,
     quantity,
     require,
     seed,
@@ -47,6 +45,7 @@ from .problems import (
 )
 from .rules import (
     UNSURE,
+    Checked,
     Made,
     Name,
     Number,
@@ -54,12 +53,17 @@ from .rules import (
     OrFunction,
     Own,
     Pair,
+    Rules,
     Series,
     Sign,
+    Usual,
+    examined,
+    single,
+    singles,
+    unusual,
+    usual_of,
 )
-from .single import single, singles
-from .usual import Usual, unusual, usual_of
-from .values import kept, known, unfit
+from .values import DimensionError, converted, is_quantity, kept, known, plain, unfit
 
 __all__ = [
     "ANGLE",

@@ -1,17 +1,84 @@
-"""Rules: what a value must be."""
+"""Rules: what a value must be.
+
+Dataclasses whose fields keep to a table of rules.
+
+Single numbers: what takes one number by name, and no arrays of designs.
+
+Sizes that a number of a machine usually has: one beyond them looks like a slip of units.
+"""
 
 import math
+import warnings
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ...errors import HintWarning
 from ..fingerprint import LIBRARY
-from .measured import DimensionError, is_quantity, plain
-from .problems import Problem, shown
-from .usual import Usual
-from .values import UnfitError, kept, known, number, unfit
+from .messages import Problem, fitting, require, shown
+from .values import DimensionError, UnfitError, is_quantity, kept, known, number, plain, unfit
+
+
+class Usual(NamedTuple):
+    """Sizes, without sign, between which a number lies that is not zero.
+
+    Attributes
+    ----------
+    most, least : float
+        In its SI unit, or in lengths of the machine's longest link.
+    advice : str
+        What is asked about one that does not.
+    factor : float
+        To SI from the unit that is asked about; 0 where it is none.
+    in_links : bool
+        Whether they are in lengths of the longest link.
+    unit : str
+        SI unit, where the rule of the number has told it.
+    """
+
+    most: float
+    advice: str
+    factor: float = 0.0
+    least: float = 0.0
+    in_links: bool = False
+    unit: str = ""
+
+
+FAR = 20.0
+"""Lengths of the longest link beyond which nobody puts anything: millimetres beside metres make 1000."""
+BY_UNIT = {
+    "rad": Usual(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
+    "m": Usual(FAR, "is it in mm?", 1e-3, in_links=True),
+}
+"""What holds for all numbers in a unit whose rule says nothing else."""
+
+
+def usual_of(rule):
+    """What is usual of a number by its rule; None where anything is."""
+    found = rule.usual or BY_UNIT.get(rule.unit)
+    return found and found._replace(unit=rule.unit)
+
+
+def unusual(path, value, usual, longest=0.0):
+    """What is odd about a number, as a sentence, or None."""
+    most, advice, factor, least, in_links, si = usual
+    unit = longest if in_links else 1.0
+    if not known(value) or not unit:
+        return None
+    sizes = abs(value)
+    worst = sizes if isinstance(sizes, float) else float(sizes.max())
+    if worst <= most * unit:
+        worst = 0.0 if least == 0.0 else float(np.min(sizes))
+        if worst == 0.0 or worst >= least * unit:
+            return None
+    own = "" if si == "1" else " " + si.replace("**", "").replace("*", " ")
+    beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
+    odd = -worst if np.any(np.equal(value, -worst)) else worst
+    meant = f" That makes {factor * odd:.6g}{own}" if factor else ""
+    return f"{path} is {odd:.6g}{own}{beside}; {advice}{meant}"
+
 
 HUGE, LONG = 1e150, 1e75
 """Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
@@ -292,3 +359,104 @@ class Sign:
             return str(value), None
         words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
         return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
+
+
+class Rules:
+    """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
+
+    def __init__(self, owner, also=None, **rules):
+        """`are_well(values)` tells of a mapping if all values are surely well, and puts in what is kept of them."""
+        self.owner, self.also, self.rules = owner, also, rules
+        self.are_well = _look(rules)
+
+    def admit(self, item):
+        """Put into the fields what is to be kept of them, or raise `ParameterError`."""
+        self.keep(vars(item), self.owner)
+        if self.also is not None:
+            require(self.owner, *self.also(item))
+
+    def keep(self, values, owner):
+        """The same in a mapping of field to value."""
+        if not self.are_well(values):
+            values.update(examined(owner, self.rules, values))
+
+
+def _look(rules):
+    """Function for values by field that are mostly well, written for the rules as a hand would write it."""
+    scope: dict[str, Any] = {"UNSURE": UNSURE}
+    lines = ["def look(values):"]
+    for field, rule in rules.items():
+        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else ("False", {})
+        scope |= objects | {f"quick_at_{field}": rule.quick}
+        lines += [
+            f"    {field} = values[{field!r}]",
+            f"    if not ({condition}):",
+            f"        kept = quick_at_{field}({field})",
+            "        if kept is UNSURE: return False",
+            f"        if kept is not {field}: values[{field!r}] = kept",
+        ]
+    exec("\n".join([*lines, "    return True"]), scope)
+    return scope["look"]
+
+
+class Checked:
+    """A dataclass whose fields keep to its table of rules."""
+
+    RULES: ClassVar[Rules]
+
+    def __post_init__(self):
+        rules = self.RULES
+        if rules.also is not None or not rules.are_well(self.__dict__):
+            rules.admit(self)
+
+
+def examined(owner, rules, values, *others):
+    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong, `others` too."""
+    found, problems = {}, list(others)
+    for field, rule in rules.items():
+        found[field], problem = rule.taken(values[field], field)
+        problems.append(problem)
+    if not any(problems):
+        problems.append(fitting(**dict(_shapes(found))))
+    require(owner, *problems)
+    return found
+
+
+def _shapes(values):
+    """Name and shape of each array of designs among values and pairs of them."""
+    for name, value in values.items():
+        for part in value if type(value) is tuple else (value,):
+            if len(shape := getattr(part, "shape", ())) > 1:
+                yield name, shape
+
+
+def single(name, value, unit, *, high=None, unequal=None, **rule):
+    """One number in a unit as a float, and what is wrong with it, as a sentence, or None; `rule` as for `Number`."""
+    found, problem = Number(unit, name, **rule).taken(value)
+    if isinstance(value, list | tuple) or (problem is None and (not known(found) or np.ndim(found))):
+        problem = f"{name} must be one number, got {shown(value)}"
+    if problem is None and high is not None and not found < high:
+        problem = f"{name} must be less than {high:.9g}, got {found:.9g}"
+    if problem is None and found == unequal:
+        problem = f"{name} must not be {unequal:g}"
+    return found, problem
+
+
+def singles(owner, *problems, **given):
+    """Single numbers by name, each given as (value, unit, rule); one `ParameterError` for all that is wrong.
+
+    A rule may have another name for messages. About numbers beyond what their rules call usual one warning asks.
+    """
+    found = {
+        field: single(value=value, unit=unit, **{"name": field} | rule) for field, (value, unit, rule) in given.items()
+    }
+    require(owner, *(problem for _, problem in found.values()), *problems)
+    values = {field: value for field, (value, _) in found.items()}
+    odd = (
+        unusual(rule.get("name", field), values[field], rule["usual"]._replace(unit=unit))
+        for field, (_, unit, rule) in given.items()
+        if "usual" in rule
+    )
+    if text := "; ".join(filter(None, odd)):
+        warnings.warn(HintWarning(owner, text), stacklevel=3)
+    return values

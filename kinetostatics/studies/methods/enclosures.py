@@ -19,7 +19,7 @@ from ...machine.loads import Load, ProcessForce, Table
 from ...mechanics.dynamics import Dynamics
 from ...mechanics.pushes import moving, title_of
 from ...mechanics.quantities import components
-from ...numbers.leaves import mapped, with_fields
+from ...numbers.parameter_tree import mapped, with_fields
 
 FEWEST_BITS, MOST_BITS = 128, 4096
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import NotGivenError
 from ...mechanics import energy
-from ...numbers.leaves import with_fields
+from ...numbers.parameter_tree import with_fields
 from .enclosures import library, on_arb
 
 BITS, DIGITS = 300, 1e-22

@@ -3,7 +3,7 @@
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.checks.meant import SYNONYMS, nearest
+from kinetostatics.numbers.checks.messages import SYNONYMS, nearest
 from kinetostatics.results.reductions import FOUND
 from support.every import every
 

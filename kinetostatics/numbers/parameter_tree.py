@@ -1,0 +1,441 @@
+"""Parameter trees: what a scene is apart from its numbers, the numbers, and both put together again.
+
+A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, tells the kinds of parts,
+names, assemblies, and what is absent: a plain zero. Its *leaves* are the numbers, in the order of the structure, each a
+float or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are kept by
+structure, so that new numbers never make a new program.
+
+Scenes taken apart: the structure of each, and its leaves, in one pass by functions written for each type.
+
+It is done for every scene that is solved, so it must take microseconds.
+
+What all items of one structure have in common: found once, and kept by structure.
+
+What a class may still say when it derives from another: two attributes that say the same belong to one class.
+"""
+
+import itertools
+import threading
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from .fingerprint import LIBRARY, key_of, of_class
+from .lazy import cached_property
+
+
+class _Mark:
+    """Stands in a structure where a leaf was taken out."""
+
+    def __init__(self, name):
+        self._name = name
+
+    def __repr__(self):
+        return self._name
+
+    def __reduce__(self):
+        return self._name
+
+
+NUMBER, TABLE, PART = _Mark("NUMBER"), _Mark("TABLE"), _Mark("PART")
+STRUCTURAL = (bool, int, str)
+"""Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
+FLOATS = frozenset((float,))
+
+
+class Kept(float):
+    """A zero that stays a leaf, so that it can be given another value."""
+
+
+class Axis(tuple):
+    """Unit vector along an axis, which belongs to the structure, so that what it turns is known to be exact."""
+
+    @staticmethod
+    def of(pair):
+        """A pair, as an axis if it is one of plain numbers."""
+        if set(map(type, pair)) != FLOATS or sorted(map(abs, pair)) != [0.0, 1.0]:
+            return pair
+        return Axis(part + 0.0 for part in pair)  # structures that are equal have one zero, which has no sign
+
+
+class Leaves:
+    """Leaves of an item, in the order of its structure.
+
+    Attributes
+    ----------
+    numbers : list of float or array (..., 1)
+    tables : list of array
+        With a value for each crank angle.
+    parts : list
+        That declare `TABULATED`, as sampled cams do: they are computed beforehand, not recorded.
+    lasting : bool
+        Whether the structure tells all else; False with objects of the user's that may change unseen.
+    """
+
+    def __init__(self):
+        self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
+
+    @cached_property
+    def are_plain(self):
+        """Whether all are plain numbers, and the structure tells all else."""
+        return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
+
+    def shape(self, angles):
+        """Shape (..., N) of scalar results at crank angles of a shape."""
+        if self.are_plain:
+            return angles
+        arrays = [leaf.shape for leaf in (*self.numbers, *self.tables) if type(leaf) is not float]
+        return np.broadcast_shapes(angles, *arrays) if arrays else angles
+
+    def with_numbers(self, numbers):
+        """The same with other numbers, in the same order."""
+        other = Leaves()
+        other.numbers, other.tables, other.parts, other.lasting = numbers, self.tables, self.parts, self.lasting
+        return other
+
+
+def put_together(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
+    """The item of a structure, with leaves from functions that are called in order; nothing is checked anew."""
+    if structure is NUMBER:
+        return number()
+    if structure is TABLE:
+        return table()
+    if structure is PART:
+        return part()
+    if isinstance(structure, Opaque):
+        return structure.item
+    if type(structure) is not tuple:
+        return structure
+    kind: Any = structure[0].item if isinstance(structure[0], Opaque) else structure[0]
+    parts = structure[1:]
+    made = [put_together(item, number, table, part) for item in parts]
+    if kind is tuple:
+        return tuple(made)
+    return _filled(kind, made) if is_dataclass(kind) else kind(*made)
+
+
+def _filled(kind: Any, values):
+    """Item of a dataclass with values in its fields, nothing checked."""
+    return made(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
+
+
+class Opaque:
+    """A function or an object that is compared by what it is made of, and never looked into."""
+
+    __slots__ = ("_key", "item")
+
+    def __init__(self, item, key):
+        self.item, self._key = item, key
+
+    def __eq__(self, other):
+        return isinstance(other, Opaque) and self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+
+def mapped(item, number, special=None):
+    """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew.
+
+    `special` holds by type functions that copy an item in their own way.
+    """
+    for kind, copied in (special or {}).items():
+        if isinstance(item, kind):
+            return copied(item)
+    if is_dataclass(item) and not getattr(item, "TABULATED", False):
+        return with_fields(
+            item,
+            **{
+                name: mapped(getattr(item, name), number, special)
+                for name, structural in field_kinds(item)
+                if not structural
+            },
+        )
+    if isinstance(item, tuple | list):
+        return tuple(mapped(part, number, special) for part in item)
+    if isinstance(item, int | float | np.number) and item == 0:
+        return item
+    return number(item) if isinstance(item, int | float | np.number | np.ndarray) else item
+
+
+def made(kind: Any, /, **values):
+    """Item of a dataclass with values in its fields, nothing checked."""
+    whole = object.__new__(kind)
+    whole.__dict__.update(values)
+    return whole
+
+
+def with_fields(item, **changes):
+    """Copy of a dataclass with some fields changed and nothing checked."""
+    return made(type(item), **{field.name: getattr(item, field.name) for field in fields(item)} | changes)
+
+
+def is_structural(field):
+    """Whether a field of a dataclass belongs to the structure, and is no number."""
+    return field.type in STRUCTURAL or bool(field.metadata.get("structural"))
+
+
+def field_kinds(kind):
+    """Names of the fields of a dataclass, and whether each belongs to the structure."""
+    for field in fields(kind):
+        yield field.name, is_structural(field)
+
+
+def wider(shape, *parts):
+    """Shape of results that depend on these parts too: numbers, arrays, or parameters with a `batch`."""
+    more = [found for part in parts if (found := getattr(part, "batch", None) or getattr(part, "shape", ()))]
+    return np.broadcast_shapes(shape, *more) if more else shape
+
+
+# How each type is taken apart
+
+
+def taken_apart(item, leaves: Leaves):
+    """Structure of an item; its leaves are appended to `leaves`."""
+    kind = type(item)
+    if kind is float:
+        if item == 0.0:
+            return 0.0
+        leaves.numbers.append(item)
+        return NUMBER
+    return (_TAKERS.get(kind) or _taker(kind))(item, leaves)
+
+
+def _array(item, leaves):
+    shape = item.shape
+    if item.dtype != float:
+        return _passing(item, leaves)
+    if not shape:
+        return taken_apart(float(item), leaves)
+    if shape[-1] == 1:
+        leaves.numbers.append(item)
+        return NUMBER
+    return _table(item, leaves)
+
+
+def _table(item, leaves):
+    leaves.tables.append(item)
+    return TABLE
+
+
+def _constants(item, leaves):
+    """Array of one axis that has nothing to do with crank angles: what it holds belongs to the structure."""
+    if item.ndim == 1 and item.size > 1:
+        return Opaque(item, (item.shape, item.tobytes()))
+    return taken_apart(item, leaves)
+
+
+def _part(item, leaves):
+    leaves.parts.append(item)
+    return PART
+
+
+def _tuple(item, leaves):
+    found: list[Any] = [tuple]
+    for part in item:
+        kind = type(part)
+        if kind is not float:
+            found.append((_TAKERS.get(kind) or _taker(kind))(part, leaves))
+        elif part != 0.0:
+            leaves.numbers.append(part)
+            found.append(NUMBER)
+        else:
+            found.append(0.0)
+    return tuple(found)
+
+
+def _as_it_is(item, leaves):
+    return item
+
+
+def _number(item, leaves):
+    return taken_apart(float(item), leaves)
+
+
+def _kept(item, leaves):
+    leaves.numbers.append(float(item))
+    return NUMBER
+
+
+def _by_content(item, leaves):
+    """What is compared by what it is made of, or taken apart each time where that may change unseen."""
+    key = key_of(item)
+    return _passing(item, leaves) if key is None else Opaque(item, key)
+
+
+def _passing(item, leaves):
+    leaves.lasting = False
+    return Opaque(item, (id(item),))
+
+
+_TAKERS: dict[type, Callable] = {
+    int: _number,
+    bool: _as_it_is,
+    str: _as_it_is,
+    type(None): _as_it_is,
+    Axis: _as_it_is,
+    tuple: _tuple,
+    list: _tuple,
+    np.ndarray: _array,
+    Kept: _kept,
+    FunctionType: _by_content,
+}
+_AS_THEY_ARE = frozenset((bool, int, float, str, type(None)))
+
+
+def _taker(kind):
+    """How items of a type are taken apart, found once: dataclasses and named tuples field by field."""
+    if getattr(kind, "TABULATED", False):
+        taker = _part
+    elif is_dataclass(kind):
+        taker = _of_dataclass(kind)
+    elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
+        taker = _of_named_tuple(kind)
+    else:
+        taker = _number if issubclass(kind, np.floating | np.integer) else _passing
+    _TAKERS[kind] = taker
+    return taker
+
+
+def _of_dataclass(kind):
+    """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
+    over_angles = getattr(kind, "OVER_ANGLES", ())
+    lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
+    for place, (name, structural) in enumerate(field_kinds(kind)):
+        array, value = "taken_apart" if name in over_angles else "constants", f"v{place}"
+        lines.append(f"    {value} = item.{name}")
+        if structural:
+            lines.append(f"    if {value}.__class__ not in as_they_are: {value} = structural({value}, leaves)")
+        else:
+            lines += [
+                f"    if {value}.__class__ is float:",
+                *_of_float(value, 8),
+                f"    elif {value}.__class__ is pair and len({value}) == 2:",
+                f"        first, second = {value}",
+                "        if first.__class__ is second.__class__ is float:",
+                *_of_float("first", 12),
+                *_of_float("second", 12),
+                f"            {value} = pair, first, second",
+                f"        else: {value} = taken_apart({value}, leaves)",
+                f"    elif {value} is not None:",
+                f"        kind = type({value})",
+                f"        if kind is array: {value} = {array}({value}, leaves)",
+                f"        else: {value} = (takers.get(kind) or taker_of(kind))({value}, leaves)",
+            ]
+    lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
+    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "pair": tuple}
+    scope |= {"structural": _by_content, "as_they_are": _AS_THEY_ARE, "array": np.ndarray}
+    scope |= {"takers": _TAKERS, "taker_of": _taker}
+    exec("\n".join(lines), scope)
+    return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
+
+
+def _of_float(value, indent):
+    """Lines that take a float."""
+    lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
+    return [" " * indent + line for line in lines]
+
+
+def _with_its_class(kind, taker):
+    """The same for a class of the user's: what its methods and constants are belongs to the structure."""
+
+    def whole(item, leaves):
+        key = of_class(kind, (kind,))
+        if key is None:
+            leaves.lasting = False
+            key = (id(kind),)
+        return (Opaque(kind, key), *taker(item, leaves)[1:])
+
+    return whole
+
+
+def _of_named_tuple(kind):
+    return lambda item, leaves: (kind, *[taken_apart(part, leaves) for part in item])
+
+
+MOST = 256
+"""Structures that are known at a time; the longest unused goes first."""
+
+
+class Numbered(int):
+    """Place of a number among the leaves of an item."""
+
+
+class Kind:
+    """A structure, as `structures.taken_apart` gives it, and what is known of all items that have it.
+
+    Attributes
+    ----------
+    structure : tuple
+    known : dict
+        Whatever was found to hold for all of them, by the question.
+    used : int
+        When it was last asked for, counted in such questions.
+    """
+
+    def __init__(self, structure):
+        self.structure, self.known, self.used = structure, {}, 0
+
+    def __reduce__(self):
+        return Kind, (self.structure,)
+
+    @cached_property
+    def numbered(self) -> Any:
+        """The item with the place of each number among its leaves, a `Numbered`, instead of it."""
+        places = itertools.count()
+        return put_together(self.structure, lambda: Numbered(next(places)), lambda: None, lambda: None)
+
+    def answer(self, question):
+        """What ``question(kind)`` found, asked once."""
+        if question not in self.known:
+            self.known[question] = question(self)
+        return self.known[question]
+
+
+_kinds: dict[Any, Kind] = {}
+_lock = threading.Lock()
+_uses = itertools.count()
+
+
+def of(structure) -> Kind:
+    """Kind of a structure that tells all."""
+    found = _kinds.get(structure) or _added(structure)
+    found.used = next(_uses)
+    return found
+
+
+def _added(structure):
+    """A new kind, or that which another thread has added meanwhile."""
+    with _lock:
+        found = _kinds.setdefault(structure, Kind(structure))
+        found.used = next(_uses)
+        while len(_kinds) > MOST:
+            idle = min((kind for kind in _kinds.values() if kind is not found), key=lambda kind: kind.used)
+            del _kinds[idle.structure]
+    return found
+
+
+def forget():
+    """Find all anew."""
+    with _lock:
+        _kinds.clear()
+
+
+def say_together(kind, name, *others):
+    """Whether the class that last gives one of `others` to a kind gives `name` beside them.
+
+    One that is derived from it, and gives only the others anew, makes what `name` says of them untrue.
+
+    >>> class Spring:
+    ...     def push(self): ...
+    ...     def rate(self): ...
+    >>> class Stop(Spring):
+    ...     def push(self): ...
+    >>> say_together(Spring, "rate", "push"), say_together(Stop, "rate", "push")
+    (True, False)
+    """
+    giving = (vars(one) for one in kind.__mro__ if not vars(one).keys().isdisjoint(others))
+    return name in next(giving, ())
