@@ -27,8 +27,8 @@ from kinetostatics.casefile.reading import shipped_cases  # noqa: E402
 from kinetostatics.machine.friction import Sliding, Turning  # noqa: E402
 from kinetostatics.machine.guide import Guide  # noqa: E402
 from kinetostatics.machine.loads import Table  # noqa: E402
-from kinetostatics.machine.loads.period import WholeTurns  # noqa: E402
-from kinetostatics.machine.loads.places import Between, Place  # noqa: E402
+from kinetostatics.machine.loads.points import Between, Place  # noqa: E402
+from kinetostatics.machine.loads.table_pieces import WholeTurns  # noqa: E402
 from kinetostatics.numbers import checks  # noqa: E402
 from kinetostatics.studies.methods.certified import certified  # noqa: E402
 from support.friction_machines import Drawn  # noqa: E402

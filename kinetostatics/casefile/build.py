@@ -4,8 +4,8 @@ from typing import Any
 
 from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
-from ..machine import cams
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
+from ..machine.cams import cams
 from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..numbers.files import read_columns
 from ..solution.scene import Scene

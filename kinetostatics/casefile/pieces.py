@@ -3,11 +3,11 @@
 from dataclasses import MISSING, fields
 
 from ..errors import CaseError, KinetostaticsError
-from ..machine import cams
+from ..machine.cams import cams
+from ..machine.cams.roller import Roller
 from ..machine.friction import kind_for
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.roller import Roller
 from ..numbers.checks import choice
 from . import schema
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ..machine import hertz
-from ..machine.profile import SAMPLES, Peak, curvature, highest, surface_curvature
-from ..machine.profile import profile as working_curve
+from ..machine.cams import roller
+from ..machine.cams.profile import SAMPLES, Peak, curvature, highest, surface_curvature
+from ..machine.cams.profile import profile as working_curve
 from ..numbers.lazy import cached_property
 from .cam_rollers import Roller
 from .followers import lift_off_speed, starting_torque
@@ -108,7 +108,7 @@ class Contact:
     @property
     def relative_radius(self):
         """Radius of the cylinder that presses a plane as the roller does the cam, m."""
-        return hertz.relative_radius(self._bend, self.roller_radius, _side_of(self.cam_force))
+        return roller.relative_radius(self._bend, self.roller_radius, _side_of(self.cam_force))
 
     @property
     def pressure(self):
@@ -118,15 +118,15 @@ class Contact:
     @property
     def half_width(self):
         """Half the width of the contact, m."""
-        return hertz.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
+        return roller.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
 
     @property
     def _bend(self):
         return curvature(self.cam, self.crank_angle)
 
     def _pressure(self, force, bend):
-        radius = hertz.relative_radius(bend, self.roller_radius, _side_of(force))
-        return hertz.pressure(force, self.width, self.modulus, radius)
+        radius = roller.relative_radius(bend, self.roller_radius, _side_of(force))
+        return roller.pressure(force, self.width, self.modulus, radius)
 
     # over the period
 

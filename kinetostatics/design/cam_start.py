@@ -7,9 +7,9 @@ import numpy as np
 
 from ..errors import DesignError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, crank_slider_parts
-from ..machine.cams import CosineLaw
+from ..machine.cams.cam import Harmonic
+from ..machine.cams.cams import CosineLaw
 from ..machine.guide import Guide
-from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
 from ..numbers.arithmetic import ROUNDING

@@ -13,14 +13,14 @@ import numpy as np
 
 from ..errors import FileError, ParameterError
 from ..machine.builders import crank_slider_parts
-from ..machine.cams import Circle, CosineLaw, Sampled
+from ..machine.cams.cam import Harmonic
+from ..machine.cams.cams import Circle, CosineLaw, Sampled
+from ..machine.cams.roller import Roller
 from ..machine.guide import Guide
-from ..machine.harmonic_cam import Harmonic
 from ..machine.links import Link
 from ..machine.loads import KINDS, TURN, Gravity, Table
-from ..machine.loads.places import Between, Place
-from ..machine.loads.tables import OVER, VALUES
-from ..machine.roller import Roller
+from ..machine.loads.points import Between, Place
+from ..machine.loads.table import OVER, VALUES
 from ..numbers import checks
 from ..numbers.files import written_whole
 

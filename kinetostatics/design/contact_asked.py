@@ -3,10 +3,10 @@
 from typing import Any
 
 from ..errors import ParameterError
-from ..machine import hertz
-from ..machine.profile import POSITIVE
-from ..machine.profile import profile as working_curve
-from ..machine.roller import MODULUS
+from ..machine.cams import roller
+from ..machine.cams.profile import POSITIVE
+from ..machine.cams.profile import profile as working_curve
+from ..machine.cams.roller import MODULUS
 from ..numbers import checks
 from ..results.turn import require_single
 from .cam_contact import UNITS, Contact
@@ -102,7 +102,7 @@ def contact(
     wheel = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
     materials = [[values[f"{name} of the {part}"] for name in MATERIAL] for part in PARTS]
     kept = {name: values[f"limit {name!r}"] for name in UNITS if name in limits}
-    found = Contact(solution, cam, radius, values["width"], hertz.modulus(*materials), wheel, kept)
+    found = Contact(solution, cam, radius, values["width"], roller.modulus(*materials), wheel, kept)
     for side in found.sides:
         working_curve(cam, radius, 8, side)
     return found

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import ParameterError
+from ..machine.cams.profile import POSITIVE, SAMPLES, highest
 from ..machine.loads import Spring
-from ..machine.profile import POSITIVE, SAMPLES, highest
 from ..numbers import checks
 from ..results.turn import require_single
 from ..solution.scene import Scene

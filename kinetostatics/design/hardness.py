@@ -1,7 +1,7 @@
 """What Hertz pressure steel of a hardness bears, and the other way round."""
 
 from ..errors import ParameterError
-from ..machine.profile import POSITIVE
+from ..machine.cams.profile import POSITIVE
 from ..numbers import checks
 
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from ..machine.cams.profile import Peak, highest, lowest
 from ..machine.loads import Spring
-from ..machine.profile import Peak, highest, lowest
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
 from .followers import lifted

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.builders import with_roller_follower
+from ..machine.cams.profile import POSITIVE
 from ..machine.guide import Guide
+from ..machine.laws.law import PanelLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
-from ..machine.panel_law import PanelLaw
-from ..machine.profile import POSITIVE
 from ..numbers import checks
 from ..numbers.panels import Panels
 from ..numbers.planar import dot

@@ -15,8 +15,8 @@ import numpy as np
 
 from ..engines.numba_backend import numba_available
 from ..errors import DriveError
+from ..machine.links import Rolling, Sliding
 from ..machine.loads import is_given
-from ..machine.pairs import Rolling, Sliding
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.brackets import find_roots

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.pairs import Rolling
+from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
 from ..results.changes import sign_changes
 from ..results.turn import SAMPLES

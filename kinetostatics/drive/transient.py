@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 from ..errors import DriveError, HintWarning
-from ..machine import hints
+from ..machine import plausibility
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
@@ -147,7 +147,7 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     speed, wrong_speed = checks.single("from_speed", from_speed, "rad/s")
     inertia, wrong_inertia = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
-    for hint in hints.of_one(angle):
+    for hint in plausibility.of_one(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
     driven = driven_by(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError, QuantityError
-from ..machine import hints
+from ..machine import plausibility
 from ..machine.links import present
 from ..numbers.checks.rules import FAR
 from ..numbers.lazy import cached_property
@@ -346,23 +346,26 @@ def plausibility_test(kind, judged=()):
 
     try:
         scene = recorded_scene(kind.structure)
-        extent, reaches, bars, bodies, turning, arms = hints.sizes(scene.mechanism)
+        extent, reaches, bars, bodies, turning, arms = plausibility.sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
     odd = [_unusual(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
     odd += [f"not extent < {FAR} * longest"] if bars else []
-    odd += [f"longest > {hints.LONGEST}", f"longest > {hints.SLENDER} * shortest"] if bars else []
-    odd += [f"{noted(inertia)} > {hints.THICK} * {noted(mass)} * {noted(long)} ** 2" for inertia, mass, long in turning]
+    odd += [f"longest > {plausibility.LONGEST}", f"longest > {plausibility.SLENDER} * shortest"] if bars else []
+    odd += [
+        f"{noted(inertia)} > {plausibility.THICK} * {noted(mass)} * {noted(long)} ** 2"
+        for inertia, mass, long in turning
+    ]
     if present(scene.crank_speed) is not None and scene.mechanism.crank.length is not None:
-        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {hints.FASTEST}"]
+        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {plausibility.FASTEST}"]
     odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
-    odd += ["True" for _ in hints.beside_rods(scene.mechanism, scene.loads)]
+    odd += ["True" for _ in plausibility.beside_rods(scene.mechanism, scene.loads)]
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):
     v = sizes(0.0, 0.0, 1.0, numbers, ())
     extent, longest = {noted(extent)}, max({", ".join([*map(noted, bars), "0.0", "0.0"])})
     shortest = min({", ".join([*map(noted, reaches), "inf", "inf"])})
-    thin = longest * longest / {12.0 * hints.THIN}
+    thin = longest * longest / {12.0 * plausibility.THIN}
     return extent / shortest, {" or ".join(odd) or "False"}"""
     if any(node.operation == "table" for node in needed(outputs)):
         return None

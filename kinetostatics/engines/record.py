@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import NotGivenError
 from ..machine import loads
 from ..machine.crank import ray
-from ..machine.loads import Load, ProcessForce, table_errors
+from ..machine.loads import Load, ProcessForce, table_pieces
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
@@ -291,7 +291,7 @@ class Recorder:
         if table.over == "angle":
             (values,) = self._tabled((("value", 0, unit),), lambda motion, leaves: [item(motion)(motion)], of=place)
             (errors,) = self._tabled(
-                ERRORS[:1], lambda motion, leaves: [table_errors.rounding(item(motion), motion) / UNIT]
+                ERRORS[:1], lambda motion, leaves: [table_pieces.rounding(item(motion), motion) / UNIT]
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
@@ -301,7 +301,7 @@ class Recorder:
             of=place,
             bounded=lambda motion, leaves: [
                 *item(motion).pieces(motion),
-                *table_errors.kinks_within(item(motion), motion),
+                *table_pieces.kinks_within(item(motion), motion),
             ],
         )
         start, value, slope, *kinks = rows

@@ -6,9 +6,9 @@ Nothing is computed here that `Dynamics` does not compute; what is found gets a 
 from typing import Any
 
 from ..machine.group import FRAME, Resolved
+from ..machine.kinematic_state import place as placed
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
 from ..machine.loads import value_of
-from ..machine.placement import place as placed
 from ..machine.sense import sense_of
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import FrictionSolver, size_of

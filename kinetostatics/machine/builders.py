@@ -5,17 +5,17 @@ import warnings
 import numpy as np
 
 from ..numbers import checks
-from .cam_roller import CamRoller
-from .cams import CosineLaw, LawCam
+from .cams.cam_roller import CamRoller
+from .cams.cams import CosineLaw, LawCam
 from .crank import Crank
+from .followers.roller import RollerFollower
+from .groups.lever import LeverGroup
+from .groups.rocker import RockerGroup
+from .groups.slider import SliderGroup
+from .groups.yoke import YokeGroup
 from .guide import Guide
-from .lever_group import LeverGroup
 from .links import Link, present
 from .mechanism import Mechanism
-from .rocker_group import RockerGroup
-from .roller_follower import RollerFollower
-from .slider_group import SliderGroup
-from .yoke_group import YokeGroup
 
 LEVEL = Guide()
 """The guide along +x through O."""

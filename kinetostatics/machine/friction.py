@@ -8,8 +8,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.paths import Batched
-from .links import present
-from .pairs import Rolling, Sliding, Turning
+from .links import Rolling, Sliding, Turning, present
 
 COEFFICIENT = checks.Number(
     "1", low=0.0, usual=checks.Usual(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?")

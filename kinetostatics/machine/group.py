@@ -82,8 +82,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers.parameter_tree import say_together
+from .kinematic_state import Throw
 from .links import Wrench
-from .placement import Throw
 
 FRAME = "frame"
 """Link that does not move."""

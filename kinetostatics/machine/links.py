@@ -7,6 +7,12 @@ omega and crank acceleration alpha
     velocity = omega * first                acceleration = omega**2 * second + alpha * first
 
 so geometry is computed once whatever the crank does, and a force at rest is no special case.
+
+Pairs of links that rub: what a group declares in `pairs`, by the name of the reaction.
+
+A pin is fixed to the link that owns its joint; each rod on it rubs against it alone.
+
+What groups declare of slots, and of links that a cam leads.
 """
 
 from dataclasses import dataclass
@@ -216,3 +222,75 @@ def load(link, body, speed_squared, crank_acceleration, gravity):
 def virtual_work(link, wrench):
     """Work of a wrench per unit of crank angle: the torque at the crank that does the same."""
     return plus(work(wrench.force, link.joint.first), product(wrench.moment, link.ratio))
+
+
+class Turning(NamedTuple):
+    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`.
+
+    What turns against itself never turns: both are parts of one rigid triangle.
+    """
+
+    link: str
+    joint: str
+    against: str = ""
+
+
+class Sliding(NamedTuple):
+    """A straight pair: `link` slides along another, at `joint`.
+
+    `force` is the name of the force across the pair, `couple` that of the moment it carries. The group answers
+    ``sliding(name, placement)`` with a `Slide`.
+    """
+
+    link: str
+    joint: str
+    against: str
+    force: str
+    couple: str
+
+
+class Rolling(NamedTuple):
+    """A roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
+
+    link: str
+    joint: str
+    force: str
+
+
+class Slide(NamedTuple):
+    """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
+    along it about the reference joint of what it slides on (None: none).
+    """
+
+    direction: Any
+    rate: Any
+    moment: Any = None
+
+
+class Slot(NamedTuple):
+    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
+
+    Without a rod what slides is a block at the joint. The line runs at `angle` from the link's direction, at `offset`
+    to the left of its reference joint.
+    """
+
+    link: str
+    joint: str
+    rod: str = ""
+    offset: Any = 0.0
+    angle: Any = 0.0
+
+
+class Led(NamedTuple):
+    """A link whose one freedom the curve in `cam` gives: where it slides the coordinate of its joint, else its angle.
+
+    The angle counts from the direction to O, clockwise for an assembly of +1. The curve is fixed to the link `body` and
+    gives `force` on the joint, a roller's centre, across its way along the curve, to the left; or on a `flat` face
+    across the link.
+    """
+
+    link: str
+    joint: str
+    body: str
+    force: str
+    flat: bool = False

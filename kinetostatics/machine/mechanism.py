@@ -1,7 +1,12 @@
-"""A mechanism: a crank and the chain of structural groups that hang on it."""
+"""A mechanism: a crank and the chain of structural groups that hang on it.
+
+What a field takes that holds a chain of groups.
+
+Names in a chain of parts: each is told before it is asked for, and no two things have one.
+"""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import reduce
 from typing import Any, ClassVar
 
@@ -9,17 +14,106 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from ..numbers.parameter_tree import with_fields
 from ..numbers.paths import Batched
 from ..numbers.planar import minus, moment, plus, subtracted
-from . import hints
-from .chain import NAME, Chain
+from . import plausibility
 from .crank import Crank
 from .friction import kind_for
-from .group import FRAME, Resolved
-from .links import Wrench, arm, present
-from .names import name_problems
-from .pairs import Sliding, Turning
-from .placement import margin, place
+from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
+from .kinematic_state import margin, place
+from .links import Sliding, Turning, Wrench, arm, present
+
+NAME = checks.Name()
+GROUP = f"{Group.__module__}.{Group.__name__}"
+
+
+class Chain:
+    """Rule of a field that holds groups."""
+
+    rule = checks.Own(MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own, derived from Group")
+
+    def quick(self, value):
+        if type(value) is tuple and all(isinstance(group, Group) and group.trusted for group in value):
+            return value
+        return checks.UNSURE
+
+    def taken(self, value, field=""):
+        if not isinstance(value, tuple | list):
+            return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
+        found = [self.rule.taken(group, "a group") for group in value]
+        found += [NAME.taken(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
+        strange = [group for group in value if not isinstance(group, Group)]
+        found += [(group, f"{type(group).__name__} is not derived from {GROUP}") for group in strange]
+        problem = next((problem for _, problem in found if problem), None)
+        return tuple(group for group, _ in found[: len(value)]), problem
+
+
+def _on(group):
+    """Names that a group gives of what it hangs on."""
+    found = getattr(group, "on", "O")
+    return found if type(found) is tuple else (found,)
+
+
+REMEDY = "give the second group another pin, pivot_name or label"
+
+
+def _spelled(part, table):
+    """Names in a table of a part; of the library's own parts also those that coincide, which a table has once."""
+    if not part.trusted:
+        return list(getattr(part, table))
+    texts = {field.name: getattr(part, field.name) for field in fields(part)}
+    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
+    found = []
+    for spelled in getattr(with_fields(part, **marks), table):
+        for name, mark in marks.items():
+            spelled = spelled.replace(mark, texts[name])
+        found.append(spelled)
+    return found
+
+
+def name_problems(parts):
+    """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
+    points: dict[str, str] = {}
+    joints: set[str] = set()
+    links = [FRAME]
+    forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
+    problems = []
+    repeated = []
+
+    def add(table, what, kind, names):
+        for name in names:
+            if name in table:
+                repeated.append(f"{kind} adds {what} {name!r} a second time, after the {table[name]}")
+            table[name] = f"{what} of {kind}"
+
+    for part in parts:
+        kind = type(part).__name__
+        for name in (name for name in part.hangs_on if name not in joints):
+            if name in links:
+                problems.append(
+                    f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
+                )
+                continue
+            remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
+            problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
+        links += part.links
+        for name, point in part.joints.items():
+            if point.link not in links:
+                found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
+                problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
+        joints.update(part.joints)
+        own = [link for link in part.links if link not in points]
+        add(points, "joint", kind, _spelled(part, "joints"))
+        add(points, "link", kind, part.links)
+        outputs = _spelled(part, "outputs")
+        for vector, what in ((True, "reaction"), (False, "quantity")):
+            add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
+        endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
+        add(forces, "quantity", kind, [f"{link}{ending}" for link in own for ending in endings])
+        add(forces, "quantity", kind, [*part.motions, *part.contacts])
+    return [*problems, *repeated, *([REMEDY] if repeated else [])]
+
 
 _NAMED_WELL: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
@@ -204,7 +298,7 @@ class Mechanism(Batched):
     @cached_property
     def hints(self):
         """What looks like a slip of units, as sentences."""
-        return hints.of_mechanism(self)
+        return plausibility.of_mechanism(self)
 
     @cached_property
     def extent(self):

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..errors import AssemblyError, ParameterError
+from ..machine.kinematic_state import require_positions
 from ..machine.loads import TURN
-from ..machine.placement import require_positions
 from ..numbers.arithmetic import ROUNDING
 from ..numbers.brackets import find_minima, find_roots
 from . import quantities

@@ -16,8 +16,7 @@ from functools import reduce
 from typing import Any, NamedTuple
 
 from ..machine.group import FRAME, Resolved
-from ..machine.links import Wrench
-from ..machine.pairs import Rolling, Sliding, Turning
+from ..machine.links import Rolling, Sliding, Turning, Wrench
 from ..numbers.arithmetic import held, root, sign, sqrt
 from ..numbers.planar import NOTHING, absent, added, length, minus, number, plus, product, quotient, stretched, vector
 

@@ -11,7 +11,7 @@ from ..machine.friction import NONE, Frictions
 from ..machine.group import FRAME, RATES
 from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
 from ..machine.loads import is_given
-from ..machine.loads.places import PLACE
+from ..machine.loads.points import PLACE
 from ..machine.mechanism import Mechanism
 from ..machine.sense import sense_of
 from ..numbers import checks, parameter_tree

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
-from ..machine.pairs import Turning
+from ..machine.links import Turning
 from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 
 from ..errors import HintWarning
-from ..machine import hints
+from ..machine import plausibility
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 
@@ -36,12 +36,12 @@ def crank_angles(given, owner="solve"):
 
 def hint_at(owner, given):
     """Warn whoever called the caller of valid crank angles that look like degrees, or like a count of them."""
-    if type(given) is float and abs(given) < hints.TWO_TURNS:
+    if type(given) is float and abs(given) < plausibility.TWO_TURNS:
         return
     if type(given) is np.ndarray:
-        texts = hints.of_angles(given)
+        texts = plausibility.of_angles(given)
     else:
-        texts = hints.of_given_angles(given, np.asarray(given) if isinstance(given, PLAIN) else given)
+        texts = plausibility.of_given_angles(given, np.asarray(given) if isinstance(given, PLAIN) else given)
     for text in texts:
         warnings.warn(HintWarning(owner, text), stacklevel=3)
 

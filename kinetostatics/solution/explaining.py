@@ -14,7 +14,7 @@ from ..engines.naming import node_of
 from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
-from ..machine import hints
+from ..machine import plausibility
 from ..mechanics import quantities
 from ..mechanics.motion import SceneParts
 from ..numbers import checks
@@ -90,7 +90,7 @@ def _alone(solution, angle, design):
     asked = crank_angles(angle, "explain")
     checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
     asked = float(asked.reshape(()))
-    for hint in hints.of_one(asked):
+    for hint in plausibility.of_one(asked):
         warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
     batch = solution.shape[:-1]
     place = _design(batch, design)

@@ -13,9 +13,9 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.crank import ORIGIN, ray
 from ..machine.group import FRAME, MEMBERS
+from ..machine.kinematic_state import Course, Placement, margin, place, require_positions
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..machine.mechanism import output_problems
-from ..machine.placement import Course, Placement, margin, place, require_positions
 from ..numbers import checks
 from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
 from . import link_states

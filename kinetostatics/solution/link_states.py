@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.group import FRAME
-from ..machine.links import Spot, arm
-from ..machine.pairs import Sliding, Turning
+from ..machine.links import Sliding, Spot, Turning, arm
 from ..numbers.planar import cross, dot, number, subtracted, turned, unturned, vector
 
 STATES = ("position", "velocity", "acceleration")

@@ -12,7 +12,7 @@ from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
-from ..machine import hints
+from ..machine import plausibility
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
@@ -282,7 +282,7 @@ def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
-    for text in (*odd(solution), *hints.of_given_angles(crank_angle, solution.crank_angle)):
+    for text in (*odd(solution), *plausibility.of_given_angles(crank_angle, solution.crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         program_of(solution.dynamics)  # refuses what cannot be recorded

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..engines.program import plausibility_test
-from ..machine import hints
+from ..machine import plausibility
 from ..numbers import paths
 from ..numbers.checks import Usual, usual_of
 from ..numbers.parameter_tree import Numbered, made, put_together
@@ -44,7 +44,10 @@ def of_scene(solution):
     values = solution.apart[1].numbers
     numbers = [(path, values[leaf], usual) for path, leaf, usual, _ in solution.kind.answer(judged)]
     mechanism = solution.mechanism
-    return (*hints.of_scene(mechanism, solution.crank_speed, numbers), *hints.of_loads(mechanism, solution.loads))
+    return (
+        *plausibility.of_scene(mechanism, solution.crank_speed, numbers),
+        *plausibility.of_loads(mechanism, solution.loads),
+    )
 
 
 def _scene(parts):

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
+from ..machine.links import Turning
 from ..machine.loads import period_of
-from ..machine.pairs import Turning
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, slotted_lever
-from ..machine.cams import Circle, CosineLaw
+from ..machine.cams.cams import Circle, CosineLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
 from ..numbers.arithmetic import UNIT

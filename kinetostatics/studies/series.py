@@ -7,8 +7,8 @@ import numpy as np
 from ..errors import NotGivenError
 from ..machine.crank import ray
 from ..machine.group import FRAME
+from ..machine.kinematic_state import Placement
 from ..machine.links import Joint
-from ..machine.placement import Placement
 from ..numbers.planar import turned
 
 SERIES_SAMPLES = 512

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.engines.program import program_of
-from kinetostatics.machine.loads import table_errors
+from kinetostatics.machine.loads import table_pieces
 from support.enclosed import ordinary_angles, worst
 from support.every import every
 
@@ -110,7 +110,7 @@ def test_programs_read_it_with_the_numbers_they_are_given():
 
 def test_values_alone_need_no_errors_of_tables(monkeypatch):
     s = pump().solve(36)
-    monkeypatch.setattr(table_errors, "kinks_within", None)
+    monkeypatch.setattr(table_pieces, "kinks_within", None)
     assert np.isfinite(s.reaction("B")).all()
     with pytest.raises(TypeError):
         s.error_bound("B")

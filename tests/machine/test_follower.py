@@ -5,8 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.follower import bend
-from kinetostatics.machine.follower_law import FollowerLaw
+from kinetostatics.machine.followers.follower import FollowerLaw, bend
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 

@@ -13,10 +13,8 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.machine.declared import Slot
 from kinetostatics.machine.group import FRAME, Group, Output, Point, Resolved
-from kinetostatics.machine.links import Joint, LinkMotion, Wrench
-from kinetostatics.machine.pairs import Sliding, Turning
+from kinetostatics.machine.links import Joint, LinkMotion, Sliding, Slot, Turning, Wrench
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import cos, sin

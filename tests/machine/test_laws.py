@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from kinetostatics.machine.laws.laws.law import Law, bends_of, knots_of
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine import segments
-from kinetostatics.machine.law import Law, bends_of, knots_of
+from kinetostatics.machine.laws.laws import laws
 
 laws = ks.laws
 TURN = 2 * np.pi
@@ -169,13 +169,13 @@ def test_knots_mark_jumps_of_acceleration_or_jerk():
 
 
 RISING = {
-    "harmonic": segments.harmonic,
-    "cycloidal": segments.cycloidal,
-    "modified sine": segments.modified_sine,
-    "modified trapezoid": segments.modified_trapezoid,
-    "3-4-5": segments.polynomial,
-    "4-5-6-7": lambda *args: segments.polynomial(*args, powers="4-5-6-7"),
-    "powers of one's own": lambda *args: segments.polynomial(*args, powers=[3, 5, 8]),
+    "harmonic": laws.harmonic,
+    "cycloidal": laws.cycloidal,
+    "modified sine": laws.modified_sine,
+    "modified trapezoid": laws.modified_trapezoid,
+    "3-4-5": laws.polynomial,
+    "4-5-6-7": lambda *args: laws.polynomial(*args, powers="4-5-6-7"),
+    "powers of one's own": lambda *args: laws.polynomial(*args, powers=[3, 5, 8]),
 }
 
 
@@ -201,11 +201,11 @@ def test_peaks_scale_with_stroke_and_angle(name):
 
 
 def test_a_dwell_rests():
-    assert_allclose(segments.dwell(0.1, 1.0)([0.0, 0.4, 1.0]), [[0.1] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3])
+    assert_allclose(laws.dwell(0.1, 1.0)([0.0, 0.4, 1.0]), [[0.1] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3])
 
 
 def test_angle_beyond_a_segment_is_refused():
-    segment = segments.cycloidal(0.0, 1.0, 1.0)
+    segment = laws.cycloidal(0.0, 1.0, 1.0)
     assert segment(1.0 + 1e-13).position == 1.0
     with pytest.raises(ks.ParameterError, match=r"segment: angles must lie from 0 to its 1 rad, got -0\.1 to 0\.5"):
         segment([-0.1, 0.5])

@@ -8,9 +8,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
+from kinetostatics.machine.groups import lever, near_dead_centre, rocker, slider
 from kinetostatics.machine.guide import Line
-from kinetostatics.machine.placement import Throw
+from kinetostatics.machine.kinematic_state import Throw
 from kinetostatics.mechanics.quantities import scale
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from support.every import every
@@ -54,8 +54,8 @@ def test_four_bar_equals_its_joint_motion(seed):
     placement = placed(a, None if seed % 2 else (a, aside))
     name = "A" if seed % 2 else "C"
     for side, is_close in product(SIDES, (False, True)):
-        found = rocker_group.turned_by_crank(placement, name, b, h, pivot, side, is_close, "")
-        wanted = rocker_group.place(placement.joints[name], b, h, pivot, side)
+        found = rocker.turned_by_crank(placement, name, b, h, pivot, side, is_close, "")
+        wanted = rocker.place(placement.joints[name], b, h, pivot, side)
         for part in ("coupler", "rocker"):
             same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)
         same(pin(found.pin), pin(wanted.pin), wanted.closure)
@@ -68,8 +68,8 @@ def test_slotted_lever_equals_its_joint_motion(seed):
     placement = placed(a, None if seed % 2 else (a, offset))
     name, offset = "A" if seed % 2 else "C", None if seed % 4 == 0 else offset
     for side in SIDES:
-        found = lever_group.passed(placement, name, pivot, offset, on_crank.slotted, side)
-        wanted = lever_group.place(placement.joints[name], pivot, offset, side)
+        found = lever.passed(placement, name, pivot, offset, near_dead_centre.slotted, side)
+        wanted = lever.place(placement.joints[name], pivot, offset, side)
         same(link(found.lever), link(wanted.lever), wanted.closure)
         same(found[2:], wanted[2:], wanted.closure)
 
@@ -81,8 +81,8 @@ def test_slider_equals_its_joint_motion(seed):
     name = "A" if seed % 2 else "C"
     guide = Line(None if seed % 3 else (math.cos(angle), math.sin(angle)), None if seed % 4 == 0 else offset)
     for side in SIDES:
-        found = slider_group.passed(placement, name, length, guide, on_crank.slid, side)
-        wanted = slider_group.place(placement.joints[name], length, guide, side)
+        found = slider.passed(placement, name, length, guide, near_dead_centre.slid, side)
+        wanted = slider.place(placement.joints[name], length, guide, side)
         same(link(found.coupler), link(wanted.coupler), wanted.closure)
         same((*found.travel, *found[2:6]), (*wanted.travel, *wanted[2:6]), wanted.closure)
 
@@ -113,8 +113,8 @@ def test_pivot_at_the_centre_has_finite_motion():
 )
 def test_nearly_equal_lengths_are_recognised(given, close):
     radius, offset, length = given
-    assert on_crank.is_small(Throw((radius, 0.0), True), offset, length) is close
-    assert on_crank.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
+    assert near_dead_centre.is_small(Throw((radius, 0.0), True), offset, length) is close
+    assert near_dead_centre.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
 
 
 @pytest.mark.slow

@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinetostatics.machine import rises
+from kinetostatics.machine.laws.laws import curves
 
 RISES = {
-    "harmonic": rises.HARMONIC,
-    "cycloidal": rises.CYCLOIDAL,
-    "modified sine": rises.MODIFIED_SINE,
-    "modified trapezoid": rises.MODIFIED_TRAPEZOID,
-    "3-4-5": rises.Powers((3, 4, 5)),
-    "4-5-6-7": rises.Powers((4, 5, 6, 7)),
+    "harmonic": curves.HARMONIC,
+    "cycloidal": curves.CYCLOIDAL,
+    "modified sine": curves.MODIFIED_SINE,
+    "modified trapezoid": curves.MODIFIED_TRAPEZOID,
+    "3-4-5": curves.Powers((3, 4, 5)),
+    "4-5-6-7": curves.Powers((4, 5, 6, 7)),
 }
 PUBLISHED = {
     "harmonic": (1.5708, 4.9348, 15.503),
@@ -98,7 +98,7 @@ def test_pieces_meet_where_the_textbooks_say(name, breaks):
 
 
 def test_rest_does_not_move():
-    assert not np.any(rises.Rest()(np.linspace(0.0, 1.0, 5)))
+    assert not np.any(curves.Rest()(np.linspace(0.0, 1.0, 5)))
 
 
 @pytest.mark.parametrize("name", RISES)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine import hertz
+from kinetostatics.machine.cams.cams import roller
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
 
 ROLLER = (0.05, 0.06, *STEEL)
@@ -78,7 +78,7 @@ def test_two_contacts_of_one_name_are_refused():
 # Line contact by Hertz
 
 
-STEEL_PAIR = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+STEEL_PAIR = roller.modulus((2.1e11, 0.3), (2.1e11, 0.3))
 
 
 def test_equal_materials_have_half_a_plane_modulus():
@@ -86,12 +86,12 @@ def test_equal_materials_have_half_a_plane_modulus():
 
 
 def test_pressure_ellipse_bears_the_force():
-    p, b = (part(-5e3, 0.02, STEEL_PAIR, 0.015) for part in (hertz.pressure, hertz.half_width))
+    p, b = (part(-5e3, 0.02, STEEL_PAIR, 0.015) for part in (roller.pressure, roller.half_width))
     assert 0.5 * np.pi * b * p * 0.02 == pytest.approx(5e3, rel=1e-14)
     assert p / b == pytest.approx(STEEL_PAIR / (2.0 * 0.015), rel=1e-14)
 
 
 def test_roller_conforms_to_a_ring_not_a_disk():
-    disk, ring = hertz.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
+    disk, ring = roller.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
     assert 1.0 / disk == pytest.approx(1.0 / 0.03 + 1.0 / 0.27, rel=1e-14)
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)

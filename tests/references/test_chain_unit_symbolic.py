@@ -14,7 +14,7 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.orderings import lex
 
-from kinetostatics.machine import rocker_group
+from kinetostatics.machine.groups import rocker
 from kinetostatics.machine.links import Joint
 from kinetostatics.studies.methods import printed
 
@@ -58,11 +58,11 @@ def placed(request):
     A = (r * k, -r * s)
     joint = Joint(A, (-slope(A[0]), -slope(A[1])), (-A[0], -A[1]))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rocker_group, "sqrt", root)
-        patch.setattr(rocker_group, "root", lambda square, unit: root(square))
-        patch.setattr(rocker_group, "divisor", lambda root, unit: root)
-        patch.setattr(rocker_group, "apart", lambda distance, unit: distance)
-        return joint, rocker_group.place(joint, c, h, (b, FIELD.zero), request.param), request.param
+        patch.setattr(rocker, "sqrt", root)
+        patch.setattr(rocker, "root", lambda square, unit: root(square))
+        patch.setattr(rocker, "divisor", lambda root, unit: root)
+        patch.setattr(rocker, "apart", lambda distance, unit: distance)
+        return joint, rocker.place(joint, c, h, (b, FIELD.zero), request.param), request.param
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS
+from kinetostatics.machine.kinematic_state import Course, Orbit
 from kinetostatics.machine.links import Joint, Wrench
-from kinetostatics.machine.placement import Course, Orbit
 from support.every import every
 from support.scenes import Pan
 

@@ -7,18 +7,18 @@ from typing import Annotated, Any, Literal
 import pydantic
 from pydantic import BeforeValidator
 
-from ...machine.cam_roller import CamRoller
-from ...machine.cylinder_group import CylinderGroup
-from ...machine.dyad import Dyad
+from ...machine.cams.cam_roller import CamRoller
+from ...machine.crank import Pin
+from ...machine.groups.cylinder import CylinderGroup
+from ...machine.groups.dyad import Dyad
+from ...machine.groups.lever import LeverGroup
+from ...machine.groups.rocker import RockerGroup
+from ...machine.groups.slider import SliderGroup
+from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide
-from ...machine.lever_group import LeverGroup
 from ...machine.links import Link
 from ...machine.loads import KINDS, Gravity, ProcessForce, Spring
-from ...machine.loads.places import WORDS, Between, Place
-from ...machine.pin import Pin
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from ...machine.yoke_group import YokeGroup
+from ...machine.loads.points import WORDS, Between, Place
 from ...numbers import checks
 from ...numbers.units import quoted, to_si
 from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in

@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from ...design.balancing import RATIOS, ratio_problem
-from ...machine.cams import Harmonic
-from ...machine.roller import LARGEST_RATIO
+from ...machine.cams.cams import Harmonic
+from ...machine.cams.roller import LARGEST_RATIO
 from ...numbers.checks import choice, nearest
 from ...numbers.units import quoted
 from .texts import (

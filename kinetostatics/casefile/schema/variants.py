@@ -5,10 +5,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...machine.friction import COEFFICIENT
-from ...machine.lever_group import LeverGroup
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from ...machine.yoke_group import YokeGroup
+from ...machine.groups.lever import LeverGroup
+from ...machine.groups.rocker import RockerGroup
+from ...machine.groups.slider import SliderGroup
+from ...machine.groups.yoke import YokeGroup
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable

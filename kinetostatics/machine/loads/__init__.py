@@ -11,15 +11,24 @@ kinked      what loads declare of their kinks and jumps
 period      turns after which loads repeat
 """
 
-from .bending import STRAIGHT
-from .crossings import in_rows
 from .gravity import Gravity
-from .kinked import bends_of, is_bent, kinked, kinks_of, period_on
-from .load import Load, by_sense, is_given, may_refuse, refusals, value_of
-from .period import MOST_TURNS, TURN, WholeTurns, period_of
+from .load import (
+    Load,
+    bends_of,
+    by_sense,
+    is_bent,
+    is_given,
+    kinked,
+    kinks_of,
+    may_refuse,
+    period_on,
+    refusals,
+    value_of,
+)
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring
-from .tables import Table
+from .table import Table
+from .table_pieces import MOST_TURNS, STRAIGHT, TURN, WholeTurns, in_rows, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (

@@ -9,8 +9,8 @@ from ...errors import ParameterError
 from ...numbers import checks
 from ..links import present
 from .load import Load, Sign, valued
-from .period import TURN, WholeTurns
-from .tables import Table
+from .table import Table
+from .table_pieces import TURN, WholeTurns
 
 
 class OnSlider(Load):

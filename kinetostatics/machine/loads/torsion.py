@@ -13,7 +13,7 @@ from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
 from .load import Load, Sign, valued
-from .period import TURN
+from .table_pieces import TURN
 
 SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is looked at."""

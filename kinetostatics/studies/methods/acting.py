@@ -5,7 +5,7 @@ from typing import Any
 from ...errors import NotGivenError
 from ...machine.group import FRAME
 from ...machine.loads import Force, PointDamper, PointForce, PointSpring, Torque, TorsionDamper, TorsionSpring
-from ...machine.loads.places import carrier
+from ...machine.loads.points import carrier
 
 
 class Acting:

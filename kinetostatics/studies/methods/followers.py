@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...machine.flat_follower import FlatFollower
+from ...machine.followers.flat import FlatFollower
 
 ITERATIONS = 30
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import NotGivenError
-from ...machine.change_points import SIDES
+from ...machine.groups.change_points import SIDES
 
 __all__ = ["Method", "NotGivenError", "on_a_side", "require_frictionless", "require_moving", "require_one_design"]
 

@@ -22,10 +22,10 @@ from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from ...machine.builders import crank_slider
 from ...machine.crank import Crank
+from ...machine.groups.rocker import RockerGroup
 from ...machine.links import Link
 from ...machine.loads import Force, Gravity, PointDamper, PointSpring
 from ...machine.mechanism import Mechanism
-from ...machine.rocker_group import RockerGroup
 from ...solution.scene import Scene
 from .configurations import Configuration
 from .constraints import Model

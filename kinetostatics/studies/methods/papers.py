@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from ...engines.engines import KERNELS
-from ...machine.cam_roller import CamRoller
-from ...machine.cams import Circle, CosineLaw
+from ...machine.cams.cam_roller import CamRoller
+from ...machine.cams.cams import Circle, CosineLaw
 from ...machine.group import Resolved
+from ...machine.groups.rocker import RockerGroup, RockerMotion
+from ...machine.groups.slider import SliderGroup, SliderMotion
 from ...machine.links import Joint, LinkMotion, Wrench
 from ...machine.loads import ProcessForce, Spring
-from ...machine.rocker_group import RockerGroup, RockerMotion
-from ...machine.slider_group import SliderGroup, SliderMotion
 from ...mechanics.quantities import components
 from ...numbers.planar import added, cross, dot, left, minus, stretched, subtracted, vector
 from .method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design

@@ -5,20 +5,20 @@ from typing import Any
 import numpy as np
 
 from ...errors import NotGivenError
-from ...machine.cam_roller import CamRoller
-from ...machine.cams import Circle, CosineLaw, Harmonic
-from ...machine.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
-from ...machine.cylinder_group import CylinderGroup
-from ...machine.dyad import Dyad
+from ...machine.cams.cam_roller import CamRoller
+from ...machine.cams.cams import Circle, CosineLaw, Harmonic
+from ...machine.crank import Pin
+from ...machine.followers.follower import GuidedFollower
+from ...machine.followers.swinging import SwingingFollower
 from ...machine.group import FRAME
-from ...machine.guided_follower import GuidedFollower
-from ...machine.laws import Cosine
-from ...machine.lever_group import LeverGroup
-from ...machine.pin import Pin
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from ...machine.swinging_follower import SwingingFollower
-from ...machine.yoke_group import YokeGroup
+from ...machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
+from ...machine.groups.cylinder import CylinderGroup
+from ...machine.groups.dyad import Dyad
+from ...machine.groups.lever import LeverGroup
+from ...machine.groups.rocker import RockerGroup
+from ...machine.groups.slider import SliderGroup
+from ...machine.groups.yoke import YokeGroup
+from ...machine.laws.laws import Cosine
 
 
 class Posture:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...machine.cams import Circle, CosineLaw
+from ...machine.cams.cams import Circle, CosineLaw
 
 
 def turned_to_length(vector, angle, length):

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from ...errors import NotGivenError
 from ...machine.group import FRAME
-from ...machine.pairs import Rolling, Sliding, Turning
+from ...machine.links import Rolling, Sliding, Turning
 from .structures import structure
 
 TIMES = 2000

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...machine.cams import Circle, CosineLaw, Harmonic
+from ...machine.cams.cams import Circle, CosineLaw, Harmonic
 from ...machine.group import FRAME
-from ...machine.pairs import Sliding, Turning
+from ...machine.links import Sliding, Turning
 from .method import NotGivenError
 
 LINK = "mass", "along", "across", "inertia"

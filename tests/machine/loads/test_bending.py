@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.bending import STRAIGHT, bending
+from kinetostatics.machine.loads.table_pieces import STRAIGHT, bending
 from support.every import every
 
 TURN = 2 * np.pi

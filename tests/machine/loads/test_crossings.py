@@ -5,8 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.crossings import ASIDE, SAMPLES, crossings
-from kinetostatics.machine.loads.period import TURN
+from kinetostatics.machine.loads.table_pieces import ASIDE, SAMPLES, TURN, crossings
 from support.every import every
 
 

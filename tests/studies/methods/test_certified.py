@@ -8,7 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import KinetostaticsError, MissingLibraryError, QuantityError
-from kinetostatics.machine import cam_roller, rocker_group, slider_group
+from kinetostatics.machine.cams.cams import cam_roller
+from kinetostatics.machine.groups import rocker, slider
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies.methods.certified import Enclosure, certified, enclosure, independent, relative_errors
 from kinetostatics.studies.methods.method import NotGivenError
@@ -181,9 +182,9 @@ def test_what_is_zero_but_for_rounding_is_given_up():
 @pytest.mark.parametrize(
     ("module", "kernel", "field", "name", "quantity"),
     [
-        (slider_group, "place", "sine", "plain", "balancing_torque"),
-        (slider_group, "resolve", "guide_force", "six-bar", "guide_force2"),
-        (rocker_group, "turned_by_crank", "divisor", "six-bar", "O2"),
+        (slider, "place", "sine", "plain", "balancing_torque"),
+        (slider, "resolve", "guide_force", "six-bar", "guide_force2"),
+        (rocker, "turned_by_crank", "divisor", "six-bar", "O2"),
         (cam_roller, "resolve", "slot", "circle", "slot_force"),
     ],
 )

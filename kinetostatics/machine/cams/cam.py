@@ -1,0 +1,248 @@
+"""What every cam has: pressure angle and curvature of the pitch curve, from its radius and derivatives.
+
+A cam as a Fourier series: each harmonic a number of its own, so that designs may vary it.
+"""
+
+from dataclasses import dataclass
+from functools import reduce
+from operator import add
+from typing import Any
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import atan
+from ...numbers.planar import minus, plus, polar_curvature, product, turned, unturned
+from ..crank import ray as ray_at
+from ..links import present
+
+
+class Cam:
+    """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``.
+
+    Examples
+    --------
+    A cam of one's own: r = 0.3 m + 5 mm cos(2 phi).
+
+    >>> import kinetostatics as ks
+    >>> class Oval(ks.cams.Cam):
+    ...     def polar(self, angle, ray):
+    ...         cosine, sine = ray[0] ** 2 - ray[1] ** 2, 2.0 * ray[0] * ray[1]
+    ...         return 0.3 + 0.005 * cosine, -0.01 * sine, -0.02 * cosine
+    >>> cam = Oval()
+    >>> round(float(cam.curvature_radius(0.0)), 6), round(cam.base_radius(0.5), 6)  # m
+    (0.286231, 0.013975)
+    """
+
+    @property
+    def knots(self) -> tuple:
+        """Where its second derivative bends or jumps, each a `Knot`."""
+        return ()
+
+    def polar(self, angle, ray):
+        raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
+
+    def radius(self, phi):
+        """Radius of the pitch curve and its derivatives.
+
+        Parameters
+        ----------
+        phi : array
+            Crank angle, rad.
+
+        Returns
+        -------
+        r, r', r'' : tuple of arrays
+            In m, m/rad, m/rad2.
+        """
+        phi = _array(phi)
+        return self.polar(phi, ray_at(phi))
+
+    def pressure_angle(self, phi):
+        """Angle between the cam normal and the crank ray, atan(r'/r), rad; positive where the radius grows."""
+        r, slope, _ = self.radius(phi)
+        return atan(slope / r)
+
+    def curvature_radius(self, phi):
+        """Signed radius of curvature of the pitch curve, m; negative where it is hollow."""
+        return 1.0 / polar_curvature(*self.radius(phi))
+
+    def profile(self, roller_radius, angle, side="disk"):
+        """Working curve for a roller.
+
+        Parameters
+        ----------
+        roller_radius : float
+            m.
+        angle : int or array
+            Crank angles, rad; a whole number is a count of them over the turn.
+        side : "disk" or "ring"
+            Whether the cam lies inside the pitch curve, so that the roller runs around it, or outside.
+
+        Returns
+        -------
+        Profile
+            Roller centres, working curve, normals, pressure angle, curvature; ``.cutter_path(radius)`` of a cutter
+            other than the roller, ``.exceeded(pressure_angle=..., curvature_radius=...)`` of limits.
+
+        Raises
+        ------
+        ParameterError
+            The roller undercuts the cam or cuts into another part of it, with the crank angles and the radius; the
+            pitch curve does not go around O.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> made = ks.cams.Circle(0.2, (0.02, 0.0)).profile(0.03, 360)
+        >>> round(float(made.curvature_radius[7]), 12)
+        0.17
+        """
+        from .profile import profile
+
+        return profile(self, roller_radius, angle, side)
+
+    def base_radius(self, pressure_angle):
+        """Smallest base circle with which the same rise keeps to a largest pressure angle, rad; m.
+
+        That of r + c, with c = max(abs(r') / tan(pressure_angle) - r): a follower on the crank ray. The mechanism of
+        such a cam has another stroke and another coupler.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> import numpy as np
+        >>> round(ks.cams.CosineLaw(0.3, 2.0).base_radius(np.radians(30.0)), 4)
+        0.02
+        """
+        from .profile import base_radius
+
+        return base_radius(self, pressure_angle)
+
+    def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
+        """Write the cam for the workshop: by the path's ending a drawing 1:1 (.svg), a table (.csv) or a .dxf.
+
+        Parameters
+        ----------
+        path : path
+            Its file is written whole or not at all.
+        roller_radius : float
+            m.
+        cutter_radius : float, optional
+            m; of a cutter other than the roller, whose path is then given too.
+        points : int
+            So many, evenly over the crank angle, from its zero mark on.
+        units : "mm", "cm", "m" or "in"
+            Of what is written.
+        side : "disk" or "ring"
+            As for `profile`.
+        clockwise : bool
+            The sense in which the roller goes around the cam, shown on drawings; crank angles are counted counter-
+            clockwise all the same.
+
+        Raises
+        ------
+        ParameterError
+            The roller undercuts the cam, or the cutter does not fit into a hollow of it.
+        FileError
+            The ending is another, or the file cannot be written.
+        MissingLibraryError
+            A .dxf without ezdxf (extra `workshop`).
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> import tempfile, pathlib
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "cam.csv"
+        >>> ks.cams.CosineLaw(0.3, 2.0).export(path, roller_radius=0.05)
+        >>> print(path.read_text().splitlines()[0])
+        # cam for the workshop: disk, roller radius 50 mm, 3600 points
+        """
+        from .export import export
+
+        export(self, path, roller_radius, cutter_radius, points, units, side, clockwise)
+
+
+def _array(phi):
+    phi = checks.converted("cam", "crank angle", phi, "rad")
+    return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi
+
+
+GRID = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+"""Crank angles at which the smallest radius is looked for, rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonic(checks.Checked, Cam):
+    """Cam whose radius is a Fourier series of the crank angle from the guide.
+
+    r = a0 + a1 cos(psi) + a2 cos(2 psi) + ... + b1 sin(psi) + b2 sin(2 psi) + ...,  psi = phi - guide_angle
+
+    Harmonics that are zero cost nothing; a scene calls the others "cam.cosine.2", "cam.sine.1".
+
+    Parameters
+    ----------
+    cosine : sequence of float or array
+        a0, a1, a2, ... in m; the mean radius a0 is greater than 0.
+    sine : sequence of float or array
+        b1, b2, ... in m.
+    guide_angle : float
+        Direction from which the angle counts, rad from +x.
+
+    Raises
+    ------
+    ParameterError
+        A value is not finite, or the mean radius not positive; when a scene is solved: the radius falls to 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Harmonic(cosine=(0.3, 0.02), sine=(0.0, 0.005))
+    >>> [round(float(part), 6) for part in cam.radius(0.0)]
+    [0.32, 0.01, -0.02]
+    """
+
+    cosine: Any
+    sine: Any = ()
+    guide_angle: Any = 0.0
+
+    ELEMENTWISE = True
+    RULES = checks.Rules(
+        "harmonic cam",
+        cosine=checks.Series("m", letter="a", first=checks.Number("m", low=0.0, strict=True)),
+        sine=checks.Series("m", letter="b", start=1),
+        guide_angle=checks.Number("rad"),
+    )
+
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m."""
+        return (*self.cosine, *self.sine)
+
+    @property
+    def smallest_radius(self):
+        """Smallest distance of the roller centre from O at 720 crank angles, m."""
+        return np.min(self.polar(GRID, ray_at(GRID))[0])
+
+    def polar(self, angle, ray):
+        mean, farther, slope, second = self.about_mean(angle, ray)
+        return mean + farther, slope, second
+
+    def about_mean(self, angle, ray):
+        """The mean radius, what r has besides, r' and r'': sums over the harmonics, from the highest down.
+
+        Their sines and cosines follow from each other; they mostly grow smaller, so that little is lost by rounding.
+        """
+        psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
+        mean, *even = self.cosine
+        terms, wave = [], psi
+        for order in range(1, 1 + max(len(even), len(self.sine))):
+            a, b = (present(part[order - 1]) if order <= len(part) else None for part in (even, self.sine))
+            if a is not None or b is not None:
+                cosine, sine = wave
+                term = plus(product(a, cosine), product(b, sine))
+                slope = float(order) * minus(product(b, cosine), product(a, sine))
+                terms.append((term, slope, float(-order * order) * term))
+            wave = turned(wave, psi)
+        found = (reduce(add, reversed(parts)) for parts in zip(*terms, strict=True))
+        return mean, *(found if terms else [0.0 * psi[0]] * 3)

@@ -1,0 +1,249 @@
+"""Cam roller: a block slides in the slotted crank and carries a roller at A that runs on a fixed cam.
+
+The cam gives the radius r(phi) of the roller centre A along the crank ray (the pitch curve in polar form). The cam
+pushes along the normal of the pitch curve, which leans from the ray by the pressure angle, tan = r'/r; the slot
+pushes across the ray. Equilibrium of the block gives both, and what the slot gives the crank must bear.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import atan, sign, sqrt
+from ...numbers.parameter_tree import say_together
+from ...numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
+from ..crank import ray
+from ..group import FRAME, Group, Output, Point, Resolved
+from ..kinematic_state import Course, Orbit
+from ..links import Joint, Led, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
+from .roller import Roller, Touch
+
+FINE = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+"""Crank angles at which the curvature of cams is looked at, rad."""
+GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles at which cams of the user's own are looked at, rad."""
+OUTPUTS = {
+    "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
+    "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
+}
+PAIRS = {
+    "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
+    "cam": Rolling("block", "A", "cam_force"),
+}
+MOTIONS = {
+    "pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows"),
+    "cam_radius": Output("m", False, "of the pitch curve, from O to the roller centre"),
+}
+TERMS = {
+    "place.radius": ("r", "radius of the pitch curve"),
+    "place.slope": ("r'", "its first derivative by phi"),
+    "place.farther": ("p", "by how much that is more than the mean radius"),
+    "place.curvature": ("r''", "its second derivative by phi"),
+    "departing": ("b", "second derivative of the roller centre plus its place"),
+    "resolve.force": ("Q", "all that acts on the block, with friction"),
+    "resolve.lean": ("tau", "tangent of the pressure angle"),
+    "resolve.outward": ("N", "force on the block along the ray"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class RollerForces(NamedTuple):
+    """`cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle;
+    `on_crank`: wrench about O that the crank must supply to the block.
+    """
+
+    cam: Any
+    slot: Any
+    on_crank: Wrench
+
+
+def place(ray, radius, slope, curvature):
+    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
+    x, y = ray
+    along, across = radius * x, radius * y
+    return Joint(
+        (along, across),
+        (slope * x - across, slope * y + along),
+        subtracted(departure(ray, slope, curvature), (along, across)),
+    )
+
+
+def departure(ray, slope, curvature):
+    """Second derivative of the roller centre plus its place, r'' along the ray and 2 r' across it (kernel)."""
+    x, y = ray
+    sideways = 2.0 * slope
+    departing = (curvature * x - sideways * y, curvature * y + sideways * x)
+    return departing
+
+
+def resolve(ray, radius, slope, load):
+    """Cam and slot force on the block (kernel).
+
+    `load` is what acts on the block, its own and what hangs on it, a wrench about A.
+    """
+    force = vector(load.force)
+    lean = slope / radius
+    outward = dot(force, ray)
+    cam = outward * sqrt(1.0 + lean * lean)
+    slot = -(cross(ray, force) + outward * lean)
+    on_crank = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, load.moment))
+    return RollerForces(cam, slot, on_crank)
+
+
+@dataclass(frozen=True, eq=False)
+class CamRoller(checks.Checked, Group):
+    """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
+
+    Parameters
+    ----------
+    cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or alike
+        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
+    block : Link
+        Block with roller; reference joint A, along the crank ray.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
+
+    Raises
+    ------
+    ParameterError
+        The cam gives no r, r', r''.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> roller = ks.CamRoller(ks.cams.Circle(0.3, centre=(-0.0219, 0.0)), block=ks.Link(20.0))
+    >>> saw = ks.Mechanism("saw with a cam", ks.Crank(), (roller, ks.SliderGroup(2.0219, slider=ks.Link(600.0))))
+    >>> s = ks.solve(saw, 0.0, crank_speed=33.5)
+    >>> print(f"{s.cam_force:.0f} N")  # a ring around the roller pushes slider and block back inward
+    205131 N
+    """
+
+    cam: Any
+    block: Link = Link()
+    roller: Roller | None = None
+
+    TRUSTED = True
+    RULES = checks.Rules(
+        "cam roller",
+        cam=checks.Own(("polar",), "one of ks.cams or alike"),
+        block=checks.Made(Link, "a Link"),
+        roller=checks.Optional(checks.Made(Roller, "a Roller")),
+    )
+
+    @property
+    def links(self):
+        return {"block": self.block}
+
+    @property
+    def references(self):
+        return {"block": "A"}
+
+    @property
+    def lengths(self):
+        return (*getattr(self.cam, "lengths", ()), *self.block.centre)
+
+    @property
+    def knots(self):
+        return getattr(self.cam, "knots", ())
+
+    @property
+    def reaches(self):
+        """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
+        found = getattr(self.cam, "smallest_radius", None)
+        return (np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found,)
+
+    @cached_property
+    def tightest(self):
+        """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
+        with np.errstate(divide="ignore"):
+            curved = abs(1.0 / polar_curvature(*self.cam.polar(FINE, ray(FINE))))
+        return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
+
+    @property
+    def hangs_on(self):
+        return ("O",)
+
+    @property
+    def joints(self):
+        return {"A": Point("block")}
+
+    @property
+    def slots(self):
+        return (Slot("crank", "A"),)
+
+    @property
+    def led(self):
+        return (Led("block", "A", FRAME, "cam_force"),)
+
+    @property
+    def curves(self):
+        return {"A": "pitch curve of the cam"}
+
+    @property
+    def rollers(self):
+        return {"A": None if self.roller is None else self.roller.radius}
+
+    @property
+    def outputs(self):
+        return OUTPUTS
+
+    @property
+    def motions(self):
+        return MOTIONS
+
+    @property
+    def pairs(self):
+        return PAIRS
+
+    @property
+    def contacts(self):
+        return {} if self.roller is None else {"contact_pressure": Touch(self.roller, "cam_force")}
+
+    def relative_radius(self, name, placement, side):
+        return self.contacts[name].body.relative_radius(polar_curvature(*placement.details["cam"]), side)
+
+    def sliding(self, name, placement):
+        return Slide(placement.ray, placement.details["cam"][1])
+
+    def motion(self, name, placement):
+        radius, slope, _ = placement.details["cam"]
+        return radius if name == "cam_radius" else atan(slope / radius)
+
+    def place(self, placement):
+        orbit = None
+        if say_together(type(self.cam), "about_mean", "polar"):
+            mean, farther, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
+            polar, orbit = (mean + farther, *derivatives), Orbit(mean, farther)
+        else:
+            polar = self.cam.polar(placement.angle, placement.ray)
+        self._set(placement, place(placement.ray, *polar), polar)
+        placement.courses["A"] = Course(orbit=orbit, departure=departure(placement.ray, *polar[1:]))
+
+    def closure(self, placement):
+        """Squared cosine of the pressure angle, negative where the radius is."""
+        radius, slope, _ = placement.details["cam"]
+        lean = slope / radius
+        return sign(radius) / (1.0 + lean * lean)
+
+    def requirement(self, placement):
+        return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        radius, slope, _ = placement.details["cam"]
+        found = resolve(placement.ray, radius, slope, loads["block"])
+        forces = {"cam_force": found.cam, "slot_force": found.slot, "slot_moment": minus(None, loads["block"].moment)}
+        return Resolved({}, forces, {"crank": found.on_crank})
+
+    def follow(self, placement, joints):
+        """Place the block at joints found in another way."""
+        joint = joints["A"]
+        radius, slope, outward = (dot(vector(part), placement.ray) for part in joint)
+        self._set(placement, joint, (radius, slope, outward + radius))
+
+    def _set(self, placement, joint, polar):
+        placement.joints["A"] = joint
+        placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
+        placement.details["cam"] = polar

@@ -1,0 +1,332 @@
+"""A cam for the workshop: table (.csv), drawing 1:1 (.svg) and .dxf of its curves, each written whole or not at all.
+
+Drawing of a cam as SVG, one to one: curves, roller, zero mark, sense of rotation, dimensions.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from ...errors import FileError, MissingLibraryError
+from ...numbers import checks
+from ...numbers.files import unwritable, written_whole
+from ...numbers.lazy import cached_property
+from .profile import POSITIVE, SIDES, Profile, profile
+
+MM = 1000.0
+"""Millimetres in a metre: what the drawing is measured in, so that it prints one to one."""
+CLASSES = {"surface": "cam", "pitch": "pitch", "cutter": "cutter"}
+"""How each curve is drawn."""
+INK = (
+    "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
+    ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"
+    ".pitch{stroke:#c22;stroke-width:.3;stroke-dasharray:8 1.5 1 1.5}"
+    ".cutter{stroke:#282;stroke-width:.3;stroke-dasharray:3 1.5}"
+    ".axis{stroke-dasharray:10 1.5 1 1.5;stroke-width:.18}.thin{stroke-width:.18}"
+    "text{font-family:sans-serif;fill:#222}.tip{fill:#222;stroke:none}"
+)
+
+
+def drawn(sheet):
+    """Text of the drawing."""
+    return _Drawing(sheet).text()
+
+
+class _Drawing:
+    """Collects what is drawn, in mm with y upward; the file has y downward."""
+
+    def __init__(self, sheet):
+        self.sheet, self.items = sheet, []
+        self.radius = MM * sheet.radius
+        self.curves = {name: MM * points for name, points in sheet.paths.items()}
+        self.roller = MM * sheet.made.roller_radius
+        every = np.concatenate(list(self.curves.values()), axis=1)
+        self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
+        self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
+
+    def text(self):
+        size = self.size
+        self._curves()
+        self._axes()
+        self._roller()
+        self._sense()
+        self._dimensions()
+        notes = [*self.sheet.notes, "scale 1:1, print without scaling; the bar is 100 mm"]
+        top = self.low[1] - 10 * size
+        for number, note in enumerate(notes):
+            self._words((self.low[0] - 4 * size, top - 1.6 * size * number), note)
+        bottom = top - 1.6 * size * len(notes)
+        x = self.low[0] - 4 * size
+        self._line((x, bottom), (x + 100.0, bottom))
+        for end in (x, x + 100.0):
+            self._line((end, bottom - size / 2), (end, bottom + size / 2))
+        wide = max(self.high[0] + 14 * size, x + 0.55 * size * max(map(len, notes)))
+        left, up, width = x - 2 * size, self.high[1] + 8 * size, wide - x + 4 * size
+        height = up - bottom + 3 * size
+        box = f"{left:.6g} {-up:.6g} {width:.6g} {height:.6g}"
+        return "\n".join(
+            [
+                '<?xml version="1.0" encoding="UTF-8"?>',
+                f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
+                f'viewBox="{box}">',
+                f"<title>{escape(self.sheet.notes[0])}</title>",
+                f"<style>{INK}</style>",
+                *self.items,
+                "</svg>",
+                "",
+            ]
+        )
+
+    # what is drawn
+
+    def _curves(self):
+        """The material of a disk inside its curve, of a ring outside."""
+        if self.sheet.made.side == "ring":
+            reach = 1.05 * np.max(np.hypot(*self.curves["surface"]))
+            self.items.append(f'<circle class="cam" cx="0" cy="0" r="{reach:.6g}"/>')
+        for name in ("surface", "pitch", "cutter"):
+            if name in self.curves:
+                kind = "hole" if name == "surface" and self.sheet.made.side == "ring" else CLASSES[name]
+                self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
+
+    def _axes(self):
+        size, (left, below), (right, above) = self.size, self.low, self.high
+        self._line((left - 2 * size, 0.0), (right + 2 * size, 0.0), "axis")
+        self._line((0.0, below - 2 * size), (0.0, above + 2 * size), "axis")
+        self._words((0.5 * size, -1.5 * size), "O")
+
+    def _roller(self):
+        """The roller where it stands at the zero mark, and the mark."""
+        x, y = self.curves["pitch"][:, 0]
+        self.items.append(f'<circle class="thin" cx="{x:.6g}" cy="{-y:.6g}" r="{self.roller:.6g}"/>')
+        along = np.array([x, y]) / np.hypot(x, y)
+        outer = np.hypot(x, y) + self.roller
+        self._line(outer * along, (outer + 5 * self.size) * along)
+        self._words(outer * along + [0.2 * self.size, -1.3 * self.size], "0° zero mark")
+
+    def _sense(self):
+        """An arc with an arrow, the way the roller goes around."""
+        sign, reach = (-1.0 if self.sheet.clockwise else 1.0), 0.45 * float(self.radius.min())
+        turn = np.radians(sign * np.linspace(20.0, 100.0, 41))
+        arc = reach * np.stack([np.cos(turn), np.sin(turn)])
+        self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
+        self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
+        self._words(arc[:, 20] + [self.size, 0.0], f"roller goes {self.sheet.sense}")
+
+    def _dimensions(self):
+        size, surface, sheet = self.size, self.curves["surface"], self.sheet
+        (left, below), (right, above) = surface.min(axis=1), surface.max(axis=1)
+        base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
+        for x in (left, right):
+            self._line((x, 0.0), (x, base - size), "thin")
+        self._measure((left, base), (right, base), sheet.written((right - left) / MM))
+        for y in (below, above):
+            self._line((0.0, y), (side + size, y), "thin")
+        self._measure((side, below), (side, above), sheet.written((above - below) / MM))
+        for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
+            self._ray(place, name)
+        x, y = self.curves["pitch"][:, 0]
+        self._words((x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.written(2 * self.roller / MM)}")
+
+    def _ray(self, place, name):
+        """A radius of the pitch curve, from O to where it is largest or smallest."""
+        end = self.curves["pitch"][:, place]
+        self._line((0.0, 0.0), end, "thin")
+        self._tip(end, end)
+        degrees = np.degrees(self.sheet.made.crank_angle[place])
+        text = f"{name} R {self.sheet.written(self.radius[place] / MM)} at {degrees:.4g}°"
+        share = 0.3 if name == "largest" else 0.45
+        self._words(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size], text)
+
+    # strokes
+
+    def _measure(self, start, stop, text):
+        """A dimension line with two tips and its text."""
+        start, stop = np.array(start), np.array(stop)
+        self._line(start, stop, "thin")
+        self._tip(stop, stop - start)
+        self._tip(start, start - stop)
+        upright = abs(stop[1] - start[1]) > abs(stop[0] - start[0])
+        x, y = start + (0.8 if upright else 0.5) * (stop - start)  # clear of the zero mark
+        self._words((x + (0.6 * self.size if upright else 0.0), y + (0.0 if upright else 0.5 * self.size)), text)
+
+    def _line(self, start, stop, kind="thin"):
+        (x1, y1), (x2, y2) = start, stop
+        self.items.append(f'<line class="{kind}" x1="{x1:.6g}" y1="{-y1:.6g}" x2="{x2:.6g}" y2="{-y2:.6g}"/>')
+
+    def _tip(self, point, direction):
+        ahead = np.asarray(direction) / np.hypot(*direction) * self.size
+        beside = np.array([-ahead[1], ahead[0]]) / 5
+        corners = np.stack([point, point - ahead + beside, point - ahead - beside], axis=1)
+        self.items.append(f'<path class="tip" d="{_path(corners)}"/>')
+
+    def _words(self, place, text):
+        x, y = place
+        self.items.append(f'<text x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}">{escape(text)}</text>')
+
+
+def _path(points, closed=True):
+    """Path through points (2, N) in mm, to a nanometre."""
+    steps = " L ".join(f"{x:.6f} {-y:.6f}" for x, y in points.T)
+    return f"M {steps}{' Z' if closed else ''}"
+
+
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+"""Metres in each unit of what is written."""
+DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
+MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """What is written of a cam: its profile, the cutter, the unit and the sense of rotation."""
+
+    made: Profile
+    cutter_radius: float | None
+    units: str
+    clockwise: bool
+
+    @cached_property
+    def paths(self):
+        """Points (2, N) by the name of each curve, m, the cutter's where there is one."""
+        found = {"pitch": self.made.pitch, "surface": self.made.surface}
+        if self.cutter_radius is not None:
+            found["cutter"] = self.made.cutter_path(self.cutter_radius)
+        return found
+
+    @cached_property
+    def curves(self):
+        """The same in the unit."""
+        return {name: self.measured(points) for name, points in self.paths.items()}
+
+    def measured(self, length):
+        """A length in m in the unit."""
+        return length / UNITS[self.units]
+
+    def written(self, length):
+        """A length in m as text with the unit."""
+        return f"{self.measured(length):.6g} {self.units}"
+
+    @property
+    def radius(self):
+        """Radius of the pitch curve at each point, m."""
+        return np.hypot(*self.made.pitch)
+
+    @property
+    def sense(self):
+        return "clockwise" if self.clockwise else "counter-clockwise"
+
+    @property
+    def notes(self):
+        """What the workshop must know, as lines."""
+        made, sharpest, hollow = self.made, self.made.smallest_curvature_radius, self.made.smallest_hollow
+        cutter = "" if self.cutter_radius is None else f", cutter radius {self.written(self.cutter_radius)}"
+        lines = [
+            f"cam for the workshop: {made.side}, roller radius {self.written(made.roller_radius)}{cutter}, "
+            f"{made.crank_angle.size} points",
+            f"crank angles counter-clockwise from the zero mark, the +x axis; the roller goes around {self.sense}",
+            f"largest pressure angle {np.degrees(made.largest_pressure_angle.value):.4g} deg at "
+            f"{np.degrees(made.largest_pressure_angle.angle):.4g} deg",
+            "sharpest part of the working curve: "
+            + ("none convex" if sharpest is None else f"radius {self.written(sharpest.value)}")
+            + ("" if hollow is None else f"; tightest hollow: radius {self.written(-hollow.value)}"),
+        ]
+        error = getattr(made.cam, "force_error", None)
+        if error is not None:
+            lines.append(f"from a measured table: forces are uncertain by {error:.2g} of the largest")
+        return lines
+
+
+def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
+    """Write a cam; what ``cam.export`` does, where it is told."""
+    radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
+    found = checks.singles(
+        "cam export",
+        _points_problem(points),
+        checks.choice("units", units, tuple(UNITS)),
+        checks.choice("side", side, tuple(SIDES)),
+        checks.truth("clockwise", clockwise),
+        None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
+        **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
+    )
+    problem = unwritable(path, endings=tuple(WRITERS))
+    if problem or Path(path).suffix.lower() not in WRITERS:
+        raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
+    made = profile(cam, found["roller_radius"], int(points), side)
+    sheet = Sheet(made, found.get("cutter_radius"), units, clockwise)
+    with written_whole(path) as temporary:
+        WRITERS[Path(path).suffix.lower()](sheet, temporary)
+
+
+def _points_problem(points):
+    wrong = checks.count("points", points)
+    if wrong or 8 <= points <= MOST_POINTS:
+        return wrong
+    return f"points must be from 8 to {MOST_POINTS}, got {points}"
+
+
+def _to_csv(sheet, path):
+    """Roller centres, working curve and cutter; the first two columns are what ``Sampled.from_csv`` reads."""
+    unit = sheet.units
+    columns = {"angle [deg]": np.degrees(sheet.made.crank_angle), f"radius [{unit}]": sheet.measured(sheet.radius)}
+    names = {"pitch": "roller", "surface": "surface", "cutter": "cutter"}
+    for name, points in sheet.curves.items():
+        columns |= {f"{names[name]}_{axis} [{unit}]": part for axis, part in zip("xy", points, strict=True)}
+    columns["pressure_angle [deg]"] = np.degrees(sheet.made.pressure_angle)
+    columns[f"curvature_radius [{unit}]"] = sheet.measured(sheet.made.curvature_radius)
+    rows = zip(*(part.tolist() for part in columns.values()), strict=True)
+    lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+LAYERS = {"surface": ("SURFACE", 7), "pitch": ("PITCH", 1), "cutter": ("CUTTER", 3)}
+"""Layer and colour of each curve."""
+
+
+def _to_dxf(sheet, path):
+    """Closed polylines of the curves, the roller at the zero mark, O, and notes, each on a layer of its own."""
+    try:
+        import ezdxf
+    except ImportError:
+        raise MissingLibraryError(
+            'a .dxf needs ezdxf, which is not installed: pip install "kinetostatics[workshop]"; .csv and .svg work '
+            "without"
+        ) from None
+    drawing = ezdxf.new("R2010", units=DXF_UNITS[sheet.units])
+    space = drawing.modelspace()
+    for name, points in sheet.curves.items():
+        layer, colour = LAYERS[name]
+        drawing.layers.add(layer, color=colour)
+        space.add_lwpolyline(points.T.tolist(), close=True, dxfattribs={"layer": layer})
+    drawing.layers.add("NOTES", color=5)
+    notes = {"layer": "NOTES"}
+    x, y = sheet.measured(np.array(sheet.made.pitch[:, 0])).tolist()
+    reach, roller = float(np.hypot(x, y)), sheet.measured(sheet.made.roller_radius)
+    space.add_circle((x, y), roller, dxfattribs=notes)
+    space.add_line((0.0, 0.0), (1.2 * x, 1.2 * y), dxfattribs=notes)
+    space.add_point((0.0, 0.0), dxfattribs=notes)
+    size = reach / 25
+    turn = np.radians(np.linspace(10.0, 60.0, 26) * (-1.0 if sheet.clockwise else 1.0))
+    arc = 0.4 * reach * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    ahead = (arc[-1] - arc[-2]) / np.hypot(*(arc[-1] - arc[-2])) * size
+    beside = np.array([-ahead[1], ahead[0]]) / 3
+    space.add_lwpolyline(arc.tolist(), dxfattribs=notes)
+    space.add_lwpolyline(
+        [arc[-1] - ahead + beside, arc[-1], arc[-1] - ahead - beside],
+        dxfattribs=notes,
+    )
+    space.add_text("0", height=size, dxfattribs=notes).set_placement((1.22 * x, 1.22 * y))
+    low = float(min(points.min() for points in sheet.curves.values()))
+    for number, note in enumerate(sheet.notes):
+        space.add_text(note, height=0.6 * size, dxfattribs=notes).set_placement((low, low - (3 + number) * size))
+    drawing.saveas(path)
+
+
+def _to_svg(sheet, path):
+
+    Path(path).write_text(drawn(sheet), encoding="utf-8")
+
+
+WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}

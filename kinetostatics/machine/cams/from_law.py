@@ -1,0 +1,357 @@
+"""The cam that makes the slider follow a law of the whole turn: regular through its singular angles, where one exists.
+
+In the guide's own axes, with phi the crank angle from its direction, x(phi) the law and e the offset, B = (x, e) is
+d = x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
+
+    r = x cos(phi) + e sin(phi) - w,   w^2 = (L - d) (L + d)
+
+B is ahead of A at phi = 0 and past it half a turn on, so w must change its sign: smoothly only where it has a double
+zero, at phi1 with d = max d = L and at phi2 with d = min d = -L. With h1 = phi - phi1 and h2 = phi - phi2
+
+    L - d = h1^2 q1,   L + d = h2^2 q2,   q1 = - integral over s from 0 to 1 of (1 - s) d''(phi1 + s h1)
+
+whose derivatives follow from d''' alone: q' = - integral of (1 - s) s d''', h q'' = integral of (3 s^2 - 2 s) d'''. So
+nothing cancels at the singular angles, and w is as smooth around them as the law.
+
+Which cam makes the slider follow a law: the one coupler length with which it is smooth, or why there is none.
+
+The coupler is across the crank ray where d, how far the slider is off that ray, is largest and where it is least
+(`law_cam`): a smooth cam needs a coupler as long as both.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import ParameterError
+from ...numbers import checks
+from ...numbers.lazy import cached_property
+from ..laws.law import TURN, bends_of, knots_of, law_problem
+from .cam import Cam
+
+GRID = np.linspace(-np.pi, np.pi, 2881)
+"""Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
+NEAR = 0.5
+"""Distance from a singular angle, rad, up to which L -+ d are found by quadrature; farther they lose no digits."""
+PANELS = np.linspace(-NEAR, NEAR, 5)
+TINY = 1e-60
+"""Distance from a singular angle, rad, below which there is only the angle itself."""
+PLACES, WEIGHTS = (part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True))
+
+
+class Turning(NamedTuple):
+    """A place where the coupler is across the ray: crank angle from the guide, rad, and d there, without sign, m."""
+
+    angle: float
+    length: float
+
+
+class Across(NamedTuple):
+    """d with three derivatives by the crank angle, m."""
+
+    value: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+
+
+def across(law, offset, phi):
+    """How far the slider is off the crank ray, d = x sin(phi) - e cos(phi), and its derivatives."""
+    x, v, a, j = law(phi)
+    s, c = np.sin(phi), np.cos(phi)
+    return Across(
+        x * s - offset * c,
+        v * s + x * c + offset * s,
+        (a - x) * s + 2.0 * v * c + offset * c,
+        (j - 3.0 * v) * s + (3.0 * a - x) * c - offset * s,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class LawCam(Cam):
+    """Cam that makes the slider follow a law of the whole turn; made by `from_law`.
+
+    Attributes
+    ----------
+    law : Law
+    coupler_length : float
+        The one with which the cam is smooth, m.
+    guide_angle, guide_offset : float
+        rad and m.
+    far, near : Turning
+        Where the coupler is across the ray: in the half turn left of the guide, and right of it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
+    >>> type(cam).__name__, round(cam.coupler_length, 8)
+    ('LawCam', 2.02190518)
+    """
+
+    law: Any
+    coupler_length: float
+    guide_angle: float
+    guide_offset: float
+    far: Turning
+    near: Turning
+
+    TABULATED = True
+    RULES = checks.Rules("cam from a law")  # no number of it is a parameter by itself
+
+    @property
+    def singular_angles(self):
+        """Crank angles at which the coupler is across the crank ray, rad from +x."""
+        return tuple((self.guide_angle + turning.angle) % TURN for turning in (self.far, self.near))
+
+    @cached_property
+    def knots(self):
+        return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in bends_of(self.law))
+
+    @property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value; None unless the law is from a table."""
+        return getattr(self.law, "force_error", None)
+
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m."""
+        return (self.coupler_length, float(np.max(np.abs(self.law(GRID)[0]))))
+
+    @cached_property
+    def smallest_radius(self):
+        """Smallest distance of the roller centre from O on a grid of an eighth of a degree, m."""
+        return float(np.min(self.radius(GRID)[0]))
+
+    def polar(self, angle, ray):
+        shape = np.shape(angle)
+        phi = np.mod(np.atleast_1d(np.asarray(angle, dtype=float)) - self.guide_angle + np.pi, TURN) - np.pi
+        x, v, a, _ = self.law(phi)
+        s, c = np.sin(phi), np.cos(phi)
+        e = self.guide_offset
+        along = x * c + e * s, (v + e) * c - x * s, (a - x) * c - (2.0 * v + e) * s
+        return tuple((one - other).reshape(shape) for one, other in zip(along, self._reach(phi), strict=True))
+
+    def _reach(self, phi):
+        """Signed reach w and two derivatives: by d itself, and near each singular angle from there."""
+        d, first, second, _ = across(self.law, self.guide_offset, phi)
+        one, other = self.far, self.near
+        square = (one.length - d) * (other.length + d)
+        sign = np.where((phi < one.angle) & (phi > other.angle), 1.0, -1.0)
+        with np.errstate(all="ignore"):  # at the singular angles themselves, where it is replaced
+            w = sign * np.sqrt(np.maximum(square, 0.0))
+            slope = -d * first / w
+            found = [w, slope, -(first * first + d * second + slope * slope) / w]
+        for turning, side in ((one, 1.0), (other, -1.0)):
+            h = np.mod(phi - turning.angle + np.pi, TURN) - np.pi
+            here = np.abs(h) < NEAR
+            if np.any(here):
+                around = self._around(turning, side, h[here], d[here], first[here], second[here])
+                for part, value in zip(found, around, strict=True):
+                    part[here] = value
+        return found
+
+    def _around(self, turning, side, h, d, first, second):
+        """Reach w and two derivatives at distances h from a singular angle; `side` is the sign of d there.
+
+        w = -side h sqrt(q p), p = L + side d.
+        """
+        q, slope, bend = self._quotient(turning, side, h)
+        p = self.coupler_length + side * d
+        root = np.sqrt(q * p)
+        product = slope * p + q * side * first  # (q p)'
+        root_slope = product / (2.0 * root)
+        # h (q p)'' = h q'' p + 2 h q' p' + h q p''
+        twice = bend * p + 2.0 * h * slope * side * first + h * q * side * second
+        root_bend = twice / (2.0 * root) - h * root_slope * root_slope / root
+        return -side * h * root, -side * (root + h * root_slope), -side * (2.0 * root_slope + root_bend)
+
+    def _quotient(self, turning, side, h):
+        """q, q' and h q'' at distances h, by moments of d'' and d''' from the singular angle on."""
+        edges, sums = self._moments[turning]
+        ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
+        start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)
+        whole, bent, sloped, curved = sums[:, start] + self._moments_between(turning, edges[start], h)
+        middle = np.abs(h) < TINY
+        span = np.where(middle, 1.0, h)
+        q = -side * (span * whole - bent) / span**2
+        slope = -side * (span * sloped - curved) / span**3
+        bend = -side * (3.0 * curved - 2.0 * span * sloped) / span**3
+        if np.any(middle):
+            at = across(self.law, self.guide_offset, np.array(turning.angle))
+            q, slope = np.where(middle, -side * at.second / 2, q), np.where(middle, -side * at.third / 6, slope)
+            bend = np.where(middle, 0.0, bend)
+        return q, slope, bend
+
+    @cached_property
+    def _moments(self):
+        """By singular angle: edges of panels and knots of the law around it, and the moments from it to each."""
+        found = {}
+        for turning in (self.far, self.near):
+            knots = np.mod(np.array(knots_of(self.law)) - turning.angle + np.pi, TURN) - np.pi
+            edges = np.unique(np.concatenate([PANELS, knots[np.abs(knots) < NEAR]]))
+            each = self._moments_between(turning, edges[:-1], edges[1:])
+            sums = np.concatenate([np.zeros((4, 1)), np.cumsum(each, axis=-1)], axis=-1)
+            found[turning] = edges, sums - sums[:, [np.searchsorted(edges, 0.0)]]
+        return found
+
+    def _moments_between(self, turning, start, stop):
+        """Integrals of d'', u d'', u d''' and u^2 d''' from `start` to `stop`, distances u from a singular angle."""
+        width = (stop - start)[..., None]
+        u = start[..., None] + width * PLACES
+        found = across(self.law, self.guide_offset, turning.angle + u)
+        second, third = found.second * WEIGHTS * width, found.third * WEIGHTS * width
+        return np.sum([second, u * second, u * third, u * u * third], axis=-1)
+
+
+SAME = 1e-10
+"""How far the two lengths may differ, relative to them."""
+
+
+def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
+    """Cam that makes the slider of a cam-balanced crank-slider follow a law exactly, of assembly +1.
+
+    Parameters
+    ----------
+    law : Law
+        Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction:
+        from `laws`, or a function that gives position and three derivatives of a whole turn.
+    coupler_length : float, optional
+        m; computed unless told. A smooth cam exists for one length only.
+    guide_angle : float
+        Direction of the guide from +x, rad.
+    guide_offset : float
+        Signed distance of the guide from O along its left normal, m.
+
+    Returns
+    -------
+    LawCam
+        Runs in every engine, its radii computed beforehand as those of sampled cams.
+
+    Raises
+    ------
+    ParameterError
+        No smooth cam makes this law: the coupler would have to be of two lengths; with both, their crank angles, and
+        the phase of the law that makes them one, if there is one. Or the coupler has another length, or the law leads
+        the cam through O or the slider behind the roller.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
+    >>> round(cam.coupler_length, 10)
+    2.0219051769
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length)
+    >>> round(float(ks.solve(saw, 1.0, crank_speed=30.0).slider_position), 9)  # 2 + 0.3 cos(1)
+    2.162090692
+    """
+    values = checks.singles(
+        "from_law",
+        law_problem(law),
+        guide_angle=(guide_angle, "rad", {}),
+        guide_offset=(guide_offset, "m", {}),
+        coupler_length=(1.0 if coupler_length is None else coupler_length, "m", {"low": 0.0, "strict": True}),
+    )
+    offset = values["guide_offset"]
+    far, near = turnings(law, offset)
+    if abs(far.length - near.length) > SAME * far.length:
+        raise ParameterError(_of_two_lengths(law, offset, far, near))
+    length = (far.length + near.length) / 2
+    if coupler_length is not None and abs(values["coupler_length"] - length) > 1e-9 * length:
+        raise ParameterError(
+            f"from_law: a smooth cam makes this law with a coupler of {length:.10g} m only, where it is across the ray "
+            f"at {_degrees(far)} and {_degrees(near)} deg from the guide, got {values['coupler_length']:.10g} m; leave "
+            "coupler_length out to have it computed"
+        )
+    cam = LawCam(law, length, values["guide_angle"], offset, far, near)
+    checks.require("from_law", *_no_cam(cam))
+    return cam
+
+
+def turnings(law, offset):
+    """Where d is largest, and where least."""
+    grid = np.unique(np.concatenate([GRID, np.mod(np.array(knots_of(law)) + np.pi, TURN) - np.pi]))
+    values = across(law, offset, grid).value
+    return _extreme(law, offset, grid, values, 1.0), _extreme(law, offset, grid, values, -1.0)
+
+
+def _extreme(law, offset, grid, values, side):
+    from scipy.optimize import brentq
+
+    def slope(angle):
+        return float(across(law, offset, np.array(angle)).first)
+
+    place = int(np.argmax(side * values))
+    angle, low, high = grid[place], grid[place - 1], grid[(place + 1) % grid.size]
+    low, high = (low - TURN if low > angle else low), (high + TURN if high < angle else high)
+    if slope(low) * slope(high) < 0:
+        angle = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
+    return Turning(float(angle), float(side * across(law, offset, np.array(angle)).value))
+
+
+def phase_of(law, offset, most=np.pi / 4):
+    """Least phase by which the law must come later so that one coupler length serves, rad; None up to `most`."""
+    from scipy.optimize import brentq
+
+    def excess(phase):
+        far, near = turnings(lambda phi: law(phi - phase), offset)
+        return far.length - near.length
+
+    start = excess(0.0)
+    for reach in most * 2.0 ** np.arange(-8, 1):
+        for phase in (reach, -reach):
+            if start * excess(phase) <= 0:
+                return brentq(excess, *sorted((0.0, phase)), xtol=1e-16, rtol=1e-15)
+    return None
+
+
+def _of_two_lengths(law, offset, far, near):
+    phase = phase_of(law, offset)
+    remedy = "no phase of the law repairs it"
+    if phase is not None:
+        remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: law.shifted({phase!r})"
+        if not hasattr(law, "shifted"):
+            remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: lambda phi: law(phi - {phase!r})"
+    return (
+        f"from_law: no smooth cam makes this law: the coupler would have to be {far.length:.10g} m long at "
+        f"{_degrees(far)} deg from the guide, and {near.length:.10g} m at {_degrees(near)} deg, where it is across the "
+        f"ray; {remedy}"
+    )
+
+
+def _degrees(turning):
+    return f"{np.degrees(turning.angle) % 360:.6g}"
+
+
+def _no_cam(cam):
+    """Why the law is no motion of a slider ahead of a roller that goes around O, as sentences."""
+    radius = cam.radius(GRID + cam.guide_angle)[0]
+    position = cam.law(GRID)[0]
+    ahead = np.array(position - radius * np.cos(GRID))
+    worst = int(np.argmin(radius))
+    if not np.all(np.isfinite(radius)):
+        place = int(np.argmax(~np.isfinite(radius)))
+        yield f"the law has no cam at {np.degrees(GRID[place]) % 360:.4g} deg from the guide"
+    elif radius[worst] <= 0:
+        yield (
+            f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
+            f"{np.degrees(GRID[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
+        )
+    elif np.min(ahead) <= 0:
+        place = int(np.argmin(ahead))
+        yield (
+            f"the slider must stay ahead of the roller along the guide, but is {-ahead[place]:.6g} m behind it at "
+            f"{np.degrees(GRID[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn the guide"
+        )
+
+
+def _remedy(position):
+    """What leads the pitch curve of a law around O: the roller, and with it the slider, is farthest on the guide."""
+    farthest = GRID[int(np.argmax(position))]
+    if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
+        return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"
+    return (
+        f"the slider must be farthest near 0 deg from the guide, but is so at {np.degrees(farthest) % 360:.4g}: take "
+        f"law.shifted({-float(farthest)!r})"
+    )

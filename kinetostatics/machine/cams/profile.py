@@ -1,0 +1,310 @@
+"""What a cam is cut to: the working curve for a roller, the path of a cutter, and what limits both.
+
+With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
+a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
+positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring
+where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+"""
+
+import warnings
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import HintWarning, ParameterError
+from ...numbers import checks
+from ...numbers.lazy import cached_property
+from ...numbers.planar import polar_curvature
+from .. import plausibility
+from ..crank import ray as ray_at
+from ..laws.law import TURN
+
+SAMPLES = 1440
+"""Crank angles a turn at which extremes are bracketed."""
+GRID = np.linspace(0.0, TURN, SAMPLES, endpoint=False)
+"""Crank angles at which a chain of points is looked at, rad."""
+RIVALS = 4
+"""Highest samples between whose neighbours the peak is sought."""
+SIDES = {"disk": -1.0, "ring": 1.0}
+"""Side of the pitch curve on which the cam is: inside, outside."""
+POSITIVE = {"low": 0.0, "strict": True}
+CUT = 1e-3
+"""Share of the roller by which it may reach into another part of the cam: what a chain of points leaves open."""
+
+
+class Peak(NamedTuple):
+    """A largest or smallest value over the turn, and the crank angle where it is, rad.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.02, slider=ks.Link(600.0))
+    >>> found = ks.design.contact(ks.Scene(saw, 10.0).solve(4), 0.05, 0.04, 210e9, 0.3).largest_pressure
+    >>> print(f"{found.value / 1e6:.1f} MPa")
+    532.4 MPa
+    """
+
+    value: float
+    angle: float
+
+
+def highest(function, start=0.0, span=TURN):
+    """Largest value of a function of arrays of crank angles over the turn, between samples too."""
+    from scipy.optimize import minimize_scalar
+
+    step = span / SAMPLES
+    angle = start + step * np.arange(SAMPLES)
+    values = np.asarray(function(angle), dtype=float)
+    tops = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
+    found = []
+    for place in tops[np.argsort(-values[tops])][:RIVALS]:
+        best = minimize_scalar(
+            lambda x: -float(function(np.array([x]))[0]),
+            bounds=(angle[place] - step, angle[place] + step),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        found += [Peak(float(-best.fun), float(best.x % span)), Peak(float(values[place]), float(angle[place]))]
+    return max(found, key=lambda peak: peak.value)
+
+
+def lowest(function):
+    """Smallest value of a function of arrays of crank angles over the turn."""
+    peak = highest(lambda angle: -np.asarray(function(angle)))
+    return Peak(-peak.value, peak.angle)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Working curve of a cam for a roller; made by ``cam.profile``.
+
+    Attributes
+    ----------
+    cam : Cam
+    roller_radius : float
+        m.
+    crank_angle : array (N,)
+        rad.
+    side : "disk" or "ring"
+        Whether the cam is inside the pitch curve or around it.
+    pitch, surface, normal : array (2, N)
+        Centre of the roller, where it touches the cam, and unit vector from inside the pitch curve outward; m.
+    pressure_angle : array (N,)
+        Between the normal and the crank ray, rad.
+    curvature_radius : array (N,)
+        Of the working curve, m: positive where it is convex to the roller, negative where it is hollow.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> made = ks.cams.Circle(0.3, (-0.02, 0.0)).profile(0.05, 360)
+    >>> made.surface.shape, round(float(made.curvature_radius[0]), 9)  # m: a circle again
+    ((2, 360), 0.25)
+    """
+
+    cam: Any
+    roller_radius: float
+    crank_angle: np.ndarray = field(repr=False)
+    side: str
+    pitch: np.ndarray = field(repr=False)
+    surface: np.ndarray = field(repr=False)
+    normal: np.ndarray = field(repr=False)
+    pressure_angle: np.ndarray = field(repr=False)
+    curvature_radius: np.ndarray = field(repr=False)
+
+    def cutter_path(self, cutter_radius):
+        """Centre of a cutter of another radius than the roller's that cuts the same working curve, (2, N), m.
+
+        Raises
+        ------
+        ParameterError
+            The cutter does not fit into a hollow of the working curve, or cuts into another part of it.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> made = ks.cams.Circle(0.3).profile(0.05, 4)
+        >>> abs(made.cutter_path(0.02)[:, 0]).round(6)  # m: the disk's 0.25 m and the cutter's radius
+        array([0.27, 0.  ])
+        """
+        radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, "m", POSITIVE))["cutter_radius"]
+        hollow = self.smallest_hollow
+        if hollow is not None and radius >= -hollow.value:
+            raise ParameterError(
+                f"cutter_path: a cutter of radius {radius:.6g} m does not fit into the hollow of the {self.side} at "
+                f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
+            )
+        side = SIDES[self.side]
+        _, normal, made = _curves(self.cam, self.roller_radius, GRID, self.side)
+        nearest = _nearest(made - side * radius * normal, made)
+        if nearest.value < radius * (1.0 - CUT):
+            raise ParameterError(
+                f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}: its centre "
+                f"comes as near as {nearest.value:.6g} m to the working curve at crank angle "
+                f"{np.degrees(nearest.angle):.6g} deg; take a smaller"
+            )
+        return self.surface - side * radius * self.normal
+
+    @cached_property
+    def largest_pressure_angle(self):
+        """Largest size of the pressure angle over the turn, rad, and where."""
+        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
+
+    @cached_property
+    def smallest_curvature_radius(self):
+        """Smallest radius of the working curve where it is convex to the roller, m, and where; None if nowhere."""
+        sharpest = highest(self._surface_curvature)
+        return Peak(1.0 / sharpest.value, sharpest.angle) if sharpest.value > 0 else None
+
+    @cached_property
+    def smallest_hollow(self):
+        """Radius of the tightest hollow of the working curve, m, negative, and where; None if there is none."""
+        deepest = lowest(self._surface_curvature)
+        return Peak(1.0 / deepest.value, deepest.angle) if deepest.value < 0 else None
+
+    @cached_property
+    def largest_roller_radius(self):
+        """Radius of the roller from which the cam would be undercut, m, by the pitch curve's curvature; inf without."""
+        sharpest = highest(lambda angle: _toward(self.cam, angle, self.side))
+        return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
+
+    def exceeded(self, *, pressure_angle=None, curvature_radius=None):
+        """What exceeds limits, as sentences: of the pressure angle, rad, and of the smallest convex radius, m."""
+        limits = {
+            "pressure_angle": (pressure_angle, "rad", POSITIVE),
+            "curvature_radius": (curvature_radius, "m", POSITIVE),
+        }
+        given = checks.singles("exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None})
+        pressure_angle, curvature_radius = map(given.get, limits)
+        found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
+        if pressure_angle is not None and peak.value > pressure_angle:
+            found.append(
+                f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at crank angle "
+                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(pressure_angle):.6g}"
+            )
+        if curvature_radius is not None and sharpest is not None and sharpest.value < curvature_radius:
+            found.append(
+                f"the working curve is as sharp as {sharpest.value:.6g} m at crank angle "
+                f"{np.degrees(sharpest.angle):.6g} deg, less than {curvature_radius:.6g}"
+            )
+        return tuple(found)
+
+    def _surface_curvature(self, angle):
+        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDES[self.side])
+
+
+def curvature(cam, angle):
+    """Curvature of the pitch curve at crank angles, 1/m, positive where it is convex seen from outside."""
+    return polar_curvature(*cam.radius(angle))
+
+
+def surface_curvature(bend, roller_radius, side):
+    """Curvature of the working curve on a side of the pitch curve, 1/m, positive where it is convex to the roller."""
+    return -side * bend / (1.0 + side * bend * roller_radius)
+
+
+def _toward(cam, angle, side):
+    """Curvature of the pitch curve toward the side of the cam, which the roller must fit into, 1/m."""
+    return -SIDES[side] * curvature(cam, angle)
+
+
+def profile(cam, roller_radius, angle, side="disk"):
+    """Working curve of a cam; what ``cam.profile`` returns, where it is told."""
+    radius = checks.singles(
+        "cam profile", checks.choice("side", side, tuple(SIDES)), roller_radius=(roller_radius, "m", POSITIVE)
+    )["roller_radius"]
+    angle = _angles(angle)
+    checks.require("cam profile", *_cut_away(cam, radius, side))
+    pitch, normal, made = _curves(cam, radius, angle, side)
+    r, slope, _ = cam.radius(angle)
+    with np.errstate(divide="ignore"):
+        curved = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDES[side])
+    return Profile(cam, radius, angle, side, pitch, made, normal, np.arctan2(slope, r), curved)
+
+
+def _curves(cam, radius, angle, side):
+    """Pitch curve, outward normal and working curve at crank angles."""
+    r, slope, _ = cam.radius(angle)
+    x, y = ray_at(angle)
+    length = np.hypot(r, slope)
+    normal = np.stack([r * x + slope * y, r * y - slope * x]) / length
+    pitch = np.stack([r * x, r * y])
+    return pitch, normal, pitch + SIDES[side] * radius * normal
+
+
+def _angles(angle):
+    if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
+        checks.require("cam profile", checks.count("angle", angle, size=checks.ANGLE))
+        return np.linspace(0.0, TURN, int(angle), endpoint=False)
+    found = checks.examined("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
+    angles = np.atleast_1d(np.asarray(found["angle"], dtype=float))
+    for text in plausibility.of_angles(angles):
+        warnings.warn(HintWarning("cam profile", text), stacklevel=4)
+    return angles
+
+
+def _cut_away(cam, radius, side):
+    """Why a roller cannot run on this side of the pitch curve, as sentences, with the crank angles."""
+    least = lowest(lambda angle: cam.radius(angle)[0])
+    if not least.value > 0:
+        yield (
+            f"the pitch curve must go around O, but its radius falls to {least.value:.6g} m at crank angle "
+            f"{np.degrees(least.angle):.6g} deg"
+        )
+        return
+    sharpest = highest(lambda angle: _toward(cam, angle, side))
+    if sharpest.value * radius >= 1.0:
+        where = " and ".join(_intervals(GRID, _toward(cam, GRID, side) * radius >= 1.0)) or "there alone"
+        yield (
+            f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
+            f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
+            "the roller's must be less"
+        )
+        return
+    pitch, _, made = _curves(cam, radius, GRID, side)
+    nearest = _nearest(pitch, made)
+    if nearest.value < radius * (1.0 - CUT):
+        yield (
+            f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
+            f"{np.degrees(nearest.angle):.6g} deg its centre comes as near as {nearest.value:.6g} m later; "
+            "take a smaller"
+        )
+    elif side == "disk" and least.value <= radius:
+        yield (
+            f"a roller of radius {radius:.6g} m covers O, as its centre comes as near as {least.value:.6g} m at crank "
+            f"angle {np.degrees(least.angle):.6g} deg; take a smaller"
+        )
+
+
+def _nearest(centres, made):
+    """Least distance of a working curve from centres of what runs on it, m, and the crank angle of that point."""
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(centres.T).query(made.T)
+    worst = int(np.argmin(distance))
+    return Peak(float(distance[worst]), float(GRID[worst]))
+
+
+def _intervals(grid, marked):
+    """Crank angles between which samples around the turn are marked, in degrees, as texts."""
+    if marked.all():
+        return ["all over the turn"]
+    order = np.roll(np.arange(grid.size), -int(np.argmin(marked)))
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked[order].astype(int), [0]])))
+    return [
+        f"from {np.degrees(grid[order[start]]):.4g} to {np.degrees(grid[order[stop - 1]]):.4g} deg"
+        for start, stop in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def base_radius(cam, pressure_angle):
+    """Smallest base circle of a cam of the same rise; what ``cam.base_radius`` returns, where it is told."""
+    rule = {**POSITIVE, "high": np.pi / 2}
+    largest = checks.singles("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
+
+    def lacking(angle):
+        r, slope, _ = cam.radius(angle)
+        return np.abs(slope) / np.tan(largest) - r
+
+    return lowest(lambda angle: cam.radius(angle)[0]).value + highest(lacking).value

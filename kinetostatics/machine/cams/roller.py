@@ -1,0 +1,171 @@
+"""What presses on a cam along a line: a roller, or the flat face of a follower, with its size and materials.
+
+Two cylinders pressed together: line contact by Hertz (Johnson, *Contact Mechanics*, 1985, section 4.2).
+
+With 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, F the force, w the width, and 1/Re the sum of both curvatures
+
+    p0 = sqrt(F E* / (pi w Re)),   half width b = sqrt(4 F Re / (pi w E*))
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import sqrt
+from ...numbers.lazy import cached_property
+
+
+def modulus(one, other):
+    """E* of two materials together, Pa, from (Young's modulus, Poisson's ratio) of each."""
+    return 1.0 / (_compliance(*one) + _compliance(*other))
+
+
+def _compliance(young, ratio):
+    return (1.0 - ratio * ratio) / young
+
+
+def pressure(force, width, modulus, radius):
+    """Largest pressure in the contact, Pa; NaN where the radius is negative, as no body has such a surface."""
+    return sqrt(abs(force) * modulus / (math.pi * width * radius))
+
+
+def half_width(force, width, modulus, radius):
+    """Half the width of the contact, m."""
+    return sqrt(4.0 * abs(force) * radius / (math.pi * width * modulus))
+
+
+def relative_radius(bend, roller_radius, side):
+    """Radius of the cylinder that presses a plane as a roller does its cam, m, from the pitch curve's curvature.
+
+    The working curve is the pitch curve moved by the roller's radius R, so that Re = R (1 - kappa R) on a disk inside
+    it, side -1, and R (1 + kappa R) on a ring around it, side +1.
+    """
+    return roller_radius * (1.0 + side * bend * roller_radius)
+
+
+SIZE = checks.Number("m", low=0.0, strict=True)
+MODULUS = checks.Number("Pa", low=0.0, strict=True, usual=checks.Usual(1e13, "is it in GPa, or in N/mm2?", least=1e6))
+RATIO = checks.Number("1", low=0.0)
+MATERIALS = {
+    "youngs_modulus": MODULUS,
+    "poissons_ratio": RATIO,
+    "cam_youngs_modulus": checks.Optional(MODULUS),
+    "cam_poissons_ratio": checks.Optional(RATIO),
+}
+LARGEST_RATIO = 0.5
+
+
+class Touch(NamedTuple):
+    """A line contact of a group: `body`, a `Roller` or `Face`, pressed by the force of that name."""
+
+    body: Any
+    force: str
+
+
+class Pressed(checks.Checked):
+    """What both have in common: a width, and materials of their own and of the cam."""
+
+    width: Any
+    youngs_modulus: Any
+    poissons_ratio: Any
+    cam_youngs_modulus: Any
+    cam_poissons_ratio: Any
+
+    def _compressible(self):
+        """Say where a material would grow under pressure."""
+        for name in ("poissons_ratio", "cam_poissons_ratio"):
+            ratio = getattr(self, name)
+            if ratio is not None and checks.known(ratio) and np.any(over := np.asarray(ratio) > LARGEST_RATIO):
+                yield checks.Problem(f"{name} must be at most {LARGEST_RATIO:g}, got {np.max(ratio):.6g}", over)
+
+    @cached_property
+    def modulus(self):
+        """E* of both materials together, Pa; what is not told of the cam is as of this."""
+        own = self.youngs_modulus, self.poissons_ratio
+        of_cam = self.cam_youngs_modulus, self.cam_poissons_ratio
+        return modulus(own, [mine if other is None else other for mine, other in zip(own, of_cam, strict=True)])
+
+    def pressure(self, force, radius):
+        """Largest Hertz pressure, Pa, under a force, N, from the radius of the relative curvature, m."""
+        return pressure(force, self.width, self.modulus, radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Roller(Pressed):
+    """Roller on a cam, of what its contact pressure takes: with it a cam has the output "contact_pressure".
+
+    Parameters
+    ----------
+    radius, width : float or array
+        Of the roller, m; the width is that of the contact.
+    youngs_modulus : float or array
+        Pa.
+    poissons_ratio : float or array
+        At most 0.5.
+    cam_youngs_modulus, cam_poissons_ratio : float or array, optional
+        Of the cam; as of the roller unless told.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have. When a scene is solved: the roller undercuts the side of the cam that carries it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.CosineLaw(0.3, 2.0)
+    >>> roller = ks.Roller(0.05, 0.04, 210e9, 0.3)
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0), roller=roller)
+    >>> solution = ks.solve(saw, 0.5, crank_speed=10.0, loads=ks.Spring.balancing(600.0, 11.0, 2.0))
+    >>> print(f"{float(solution.contact_pressure) / 1e6:.1f} MPa")
+    249.0 MPa
+    """
+
+    radius: Any
+    width: Any
+    youngs_modulus: Any
+    poissons_ratio: Any
+    cam_youngs_modulus: Any = None
+    cam_poissons_ratio: Any = None
+
+    RULES = checks.Rules("roller", Pressed._compressible, radius=SIZE, width=SIZE, **MATERIALS)
+
+    def relative_radius(self, bend, side):
+        """Of both curvatures together, m, from that of the pitch curve; the cam is inside it (-1) or around it (+1)."""
+        return relative_radius(bend, self.radius, side)
+
+
+@dataclass(frozen=True, eq=False)
+class Face(Pressed):
+    """Flat face on a cam, of what its contact pressure takes; as `Roller`, without a radius.
+
+    Parameters
+    ----------
+    width : float or array
+        Of the contact, m.
+    youngs_modulus, poissons_ratio, cam_youngs_modulus, cam_poissons_ratio
+        As for `Roller`.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> steel_on_cast_iron = ks.Face(0.02, 210e9, 0.3, cam_youngs_modulus=110e9, cam_poissons_ratio=0.25)
+    >>> print(f"{steel_on_cast_iron.modulus / 1e9:.2f} GPa")
+    77.78 GPa
+    """
+
+    width: Any
+    youngs_modulus: Any
+    poissons_ratio: Any
+    cam_youngs_modulus: Any = None
+    cam_poissons_ratio: Any = None
+
+    RULES = checks.Rules("face", Pressed._compressible, width=SIZE, **MATERIALS)

@@ -1,0 +1,164 @@
+"""A cam from a table: a spline through its points, or as near as their noise allows, and how far it can be trusted."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import NotGivenError
+from ...numbers import checks
+from ...numbers.arithmetic import is_foreign_array
+from ...numbers.lazy import cached_property
+from ..laws.turn_table import TurnTable
+from .cam import Cam
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Sampled(Cam):
+    """Cam from a table of angles and radii, by a periodic quintic spline.
+
+    The spline has four continuous derivatives, so accelerations and forces are smooth. It goes through every point, or,
+    where the noise of the radii is stated, is the smoothest (FITPACK's) that differs from them by that noise.
+
+    Parameters
+    ----------
+    angle : array (N,)
+        Rad, rising, within one turn, end excluded; need not be evenly spaced.
+    radius : array (N,)
+        Radii of the pitch curve, m.
+    noise : float, optional
+        Standard deviation of the radii, m: of a measurement, or of radii rounded to a step 0.29 of it.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 8 points, angles not rising or more than one turn, a radius not positive or not finite, noise that
+        the radii cannot have.
+
+    Warns
+    -----
+    UserWarning
+        The table is too coarse or too noisy: `force_error` is a hundredth or more. Or the noise stated is more than
+        three times what the radii show, or less than a third.
+
+    Examples
+    --------
+    Radii rounded to 1 um, read as they are and smoothed:
+
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> import numpy as np
+    >>> angle = np.radians(np.arange(360))
+    >>> radius = np.round(ks.cams.CosineLaw(0.3, 2.0).radius(angle)[0], 6)
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     rough = ks.cams.Sampled(angle, radius)
+    >>> smooth = ks.cams.Sampled(angle, radius, noise=0.29e-6)
+    >>> f"{rough.force_error:.0%}, {smooth.force_error:.2%}"
+    '23%, 0.04%'
+    """
+
+    angle: Any
+    samples: Any
+    smoothing: Any
+
+    TABULATED = True
+    RULES = checks.Rules("sampled cam")  # no number of it is a parameter by itself
+
+    def __init__(self, angle, radius, noise=None):
+        table = TurnTable.of("sampled cam", angle, radius, "radius", noise, positive=True)
+        object.__setattr__(self, "angle", table.angle)
+        object.__setattr__(self, "samples", table.values)
+        object.__setattr__(self, "smoothing", table.smoothing)
+        object.__setattr__(self, "_table", table)
+        table.warn_if_uncertain("sampled cam", "r''", "radii", self.force_error)
+
+    def __repr__(self):
+        way = "through" if self.smoothing is None else f"smoothed by {self.smoothing:.3g} m from"
+        return f"<Sampled cam {way} {self.angle.size} points, forces within {self.force_error:.2g} of the largest>"
+
+    @classmethod
+    def from_csv(cls, path, noise=None):
+        """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length.
+
+        Parameters
+        ----------
+        path : str or path
+            Its first lines may be comments that begin with ``#``.
+        noise : float, optional
+            As for the cam itself, m.
+
+        Returns
+        -------
+        Sampled
+
+        Raises
+        ------
+        CaseError
+            The file cannot be read, or makes no table.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> import kinetostatics as ks
+        >>> angle = np.arange(0.0, 360.0, 5.0)
+        >>> radius = 300.0 - 20.0 * np.cos(np.radians(angle))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder, "measured.csv")
+        ...     np.savetxt(path, np.c_[angle, radius], header="angle [deg], radius [mm]", delimiter=",", comments="")
+        ...     cam = ks.cams.Sampled.from_csv(path)
+        >>> round(float(cam.radius(0.0)[0]), 9)  # m
+        0.28
+        """
+        from ...numbers.files import read_columns
+
+        angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
+        return cls(angle, radius, noise)
+
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m: its largest radius."""
+        return (self.samples.max(),)
+
+    @property
+    def smallest_radius(self):
+        """Smallest distance of the roller centre from O in the table, m."""
+        return self.samples.min()
+
+    @cached_property
+    def _table(self):
+        return TurnTable(self.angle, self.samples, self.smoothing)
+
+    def polar(self, angle, ray):
+        try:
+            return tuple(spline(angle) for spline in self._table.splines[:3])
+        except TypeError as error:
+            if not is_foreign_array(angle):
+                raise
+            raise NotGivenError(
+                "a sampled cam is read by a spline of SciPy's, which cannot take crank angles without values, as under "
+                'jax.jit: ks.compile(scene, ..., engine="jax") reads it beforehand; or give a cam with a law'
+            ) from error
+
+    @property
+    def noise(self):
+        """Standard deviation of the radii about a smooth curve, m; of radii rounded to a step, 0.29 of it."""
+        return self._table.noise
+
+    @property
+    def second_derivative_error(self):
+        """Expected largest error of r'' over the turn, m/rad2, from noise and coarseness of the table."""
+        return self._table.second_derivative_error
+
+    @cached_property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
+
+        The error of the acceleration of the roller centre, relative to its largest value over the turn at even speed,
+        is that of inertia forces. Springs or counterweights that balance them leave a fraction, but the error whole:
+        the figure is for a machine in which they leave a seventh, and on the safe side for others.
+        """
+        r, slope, second = (spline(self.angle) for spline in self._table.splines[:3])
+        largest = np.max(np.hypot(second - r, 2 * slope)) - self.second_derivative_error
+        return self._table.force_error(max(largest, np.max(r)))

@@ -1,0 +1,254 @@
+"""Swinging roller follower on a cam that turns with the crank: an arm about a fixed pivot, pressed outward by the cam.
+
+The arm stands at the angle beta(phi) from the line from its pivot Q to O, to the side that its assembly says; with l
+the arm along p, the roller centre is P = Q + l p, and seen from the cam it moves by w = P' - left(P) with the crank
+angle. The cam pushes across that, by left(w) / |w|, whose lever about Q is l times the cosine of the pressure angle,
+
+    cosine = -(Q x p) / |w|,   Q x p = assembly |Q| sin(beta)
+
+(Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7). Moments about the pivot give the contact force; of
+what acts on the arm about it, M, the crank feels the moment -M dtheta/dphi, whatever the cam looks like.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import atan, cos, sin
+from ...numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
+from ..cams.roller import Roller
+from ..group import FRAME, Bar, Output, Point, Resolved
+from ..links import Joint, Link, LinkMotion, Turning, Wrench, between
+from . import follower
+
+TERMS = {
+    "distance": ("a", "from O to the pivot"),
+    "inward": ("n", "unit vector from the pivot to O"),
+    "reach": ("h", "from the pivot to the roller centre"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class SwingingMotion(NamedTuple):
+    """A placed follower; `across`: the way of the roller centre along the cam, turned outward; `lever`: Q x p."""
+
+    arm: LinkMotion
+    roller: Joint
+    across: Any
+    lever: Any
+
+
+class SwingingForces(NamedTuple):
+    """`contact`: cam on roller, outward positive; `pivot`: ground on arm; `on_arm`: of the crank."""
+
+    contact: Any
+    pivot: Any
+    on_arm: Wrench
+
+
+def place(swing, pivot, arm_length, side):
+    """Arm at its angle from the line of centres with two derivatives (kernel)."""
+    angle, first, second = swing
+    distance = length(pivot)
+    inward = (-pivot[0] / distance, -pivot[1] / distance)
+    direction = turned(inward, (cos(angle), -side * sin(angle)))
+    ratio, slope = -side * first, -side * second
+    reach = stretched(arm_length, direction)
+    aside = left(reach)
+    roller = Joint(
+        added(pivot, reach),
+        stretched(ratio, aside),
+        subtracted(stretched(slope, aside), stretched(ratio * ratio, reach)),
+    )
+    arm = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
+    return _met(arm, roller, side * distance * sin(angle))
+
+
+def _met(arm, roller, lever):
+    return SwingingMotion(arm, roller, left(subtracted(roller.first, left(roller.position))), lever)
+
+
+def resolve(motion, arm_length, load):
+    """Forces on the arm (kernel); `load` is all that acts on it but they, a wrench about the pivot."""
+    couple = number(load.moment)
+    force = couple / (arm_length * motion.lever)
+    pressed = stretched(force, motion.across)
+    return SwingingForces(
+        contact=force * length(motion.across),
+        pivot=subtracted(subtracted(None, pressed), load.force),
+        on_arm=Wrench(pressed, -couple * motion.arm.ratio),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SwingingFollower(follower.Follower):
+    """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, as a law says.
+
+    Parameters
+    ----------
+    cam : Law
+        Angle at the pivot from the direction to O to the roller centre, rad, between 0 and pi, by the crank angle from
+        +x: one of `laws`, with rad for m, or a function that gives position and three derivatives. What the cam looks
+        like follows: `disk`.
+    arm_length : float or array
+        From pivot to roller centre, m.
+    pivot : (x, y)
+        Fixed pivot, m.
+    assembly : +1 or -1
+        +1: the roller centre to the left of the direction from O to the pivot.
+    arm : Link
+        Reference joint `pivot_name`, along the direction to the roller centre; torsion springs and other loads act on
+        it by its name.
+    pin, pivot_name : str
+        Names of the roller centre and of the pivot.
+    label : str
+        Put behind the names of link and forces of a second swinging follower in one mechanism.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
+
+    Raises
+    ------
+    ParameterError
+        The law is none, or a value no machine can have; when it is solved: the arm crosses the line of centres.
+
+    Notes
+    -----
+    "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
+    follower would lift off. `pivot_name`, a vector in N, ground on arm. "pressure_angle" (rad), of the contact force
+    from the way of the roller centre. With a roller "contact_pressure" (Pa), where the force is negative on a ring
+    around the pitch curve.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> swing = ks.laws.cosine(0.1, 0.5)
+    >>> follower = ks.SwingingFollower(swing, 0.1, (0.12, 0.0), arm=ks.Link(2.0, (0.05, 0.0), 0.002))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    >>> s = ks.solve(machine, np.pi / 2, crank_speed=10.0, loads=ks.Torque(30.0, on="arm"))
+    >>> round(float(s.balancing_torque), 9)  # the spring's 30 N m on an arm that turns by 0.1 rad a rad
+    -3.0
+    """
+
+    cam: Any
+    arm_length: Any
+    pivot: Any
+    assembly: int = 1
+    arm: Link = Link()
+    pin: str = "R"
+    pivot_name: str = "Q"
+    label: str = ""
+    roller: Roller | None = None
+
+    def _pivot_apart(self):
+        """Say where the pivot is at O."""
+        x, y = self.pivot
+        if checks.known(x * x + y * y) and np.any(at := np.hypot(x, y) == 0.0):
+            yield checks.Problem("the follower's pivot must not be at O", at)
+
+    TRUSTED = True
+    LAW = ("beta", "rad")
+    PATHS: ClassVar = {"pivot": "follower_pivot"}
+    RULES = checks.Rules(
+        "swinging follower",
+        _pivot_apart,
+        **follower.RULES,
+        arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
+        pivot=checks.Pair("m", "follower pivot"),
+        assembly=checks.Sign(),
+        arm=checks.Made(Link, "a Link"),
+        pivot_name=checks.Name(),
+        roller=checks.Optional(checks.Made(Roller, "a Roller")),
+    )
+
+    @property
+    def links(self):
+        return {self.moved: self.arm}
+
+    @property
+    def references(self):
+        return {self.moved: self.pivot_name}
+
+    @property
+    def bars(self):
+        return (Bar(self.pivot_name, self.pin, self.moved, self.arm_length),)
+
+    @property
+    def lengths(self):
+        return (self.arm_length, *self.pivot, *self.arm.centre)
+
+    @property
+    def moved(self):
+        """Name of the link that the cam moves."""
+        return "arm" + self.label
+
+    @property
+    def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
+        return self.roller
+
+    @property
+    def joints(self):
+        return {self.pin: Point(self.moved, self.arm_length), self.pivot_name: Point(FRAME, *self.pivot)}
+
+    @property
+    def outputs(self):
+        return {**self.contact_force, self.pivot_name: Output("N", True, f"ground on {self.moved}")}
+
+    @property
+    def motions(self):
+        text = "of the contact force from the way of the roller centre, without sign"
+        return {"pressure_angle" + self.label: Output("rad", False, text)}
+
+    @property
+    def pairs(self):
+        return {self.pivot_name: Turning(self.moved, self.pivot_name)}
+
+    @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
+
+    def pitch(self, law):
+        """Roller centre and two derivatives at the crank angles of a law's values, complex."""
+        placed = place(law[:3], self.pivot, self.arm_length, self.assembly).roller
+        return tuple(x + 1j * y for x, y in placed)
+
+    def motion(self, name, placement):
+        found = placement.details[self.moved]
+        sine = dot(found.arm.direction, found.across)
+        return atan(abs(sine / found.lever))
+
+    def place(self, placement):
+        swing = self.cam.polar(placement.angle, placement.ray)
+        self._set(placement, place(swing, self.pivot, self.arm_length, self.assembly))
+
+    def follow(self, placement, joints):
+        """Place the arm at its roller centre found in another way."""
+        roller = joints[self.pin]
+        arm = between(Joint(self.pivot, None, None), roller, self.arm_length)
+        self._set(placement, _met(arm, roller, cross(self.pivot, arm.direction)))
+
+    def _set(self, placement, motion):
+        placement.joints[self.pin] = motion.roller
+        placement.joints[self.pivot_name] = motion.arm.joint
+        placement.links[self.moved] = motion.arm
+        placement.details[self.moved] = motion
+
+    def closure(self, placement):
+        """Squared cosine of the pressure angle, negative where the arm is on the other side of the line of centres."""
+        found = placement.details[self.moved]
+        return self.assembly * found.lever * abs(found.lever) / dot(found.across, found.across)
+
+    def requirement(self, placement):
+        return (
+            f"the {self.moved} must stay on its side of the line from O to {self.pivot_name}, its angle from it "
+            "between 0 and pi"
+        )
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        found = resolve(placement.details[self.moved], self.arm_length, loads[self.moved])
+        return Resolved(
+            {self.pivot_name: found.pivot}, {"contact_force" + self.label: found.contact}, {"crank": found.on_arm}
+        )

@@ -1,0 +1,522 @@
+"""Change points: where all links of a linkage lie in one line, found when it is made, and passed as inertia carries it.
+
+Crank a, coupler b, rocker h and ground d of a four-bar; psi, the crank angle from the direction O -> O2, is never
+reduced to one turn. With A -> O2 of length e, four times the area of the triangle A B O2 is the root of
+((b+h)^2 - e^2) (e^2 - (b-h)^2), and
+
+    e^2 = (d+a)^2 - 4 a d cos^2(psi/2) = (d-a)^2 + 4 a d sin^2(psi/2)
+
+so that one factor is a whole square where a + d = b + h ("far": A is farthest from O2), the other where
+|d - a| = |b - h| ("near"). Its root with its sign, cos(psi/2) or sin(psi/2), is smooth through the change point, and is
+divided out of the rates. Where both hold the linkage is a parallelogram or a kite, whose other branch is its mirror
+image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(psi/2) is divided out of e as well.
+
+All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
+((d-a) cos(psi/2), -(d+a) sin(psi/2)).
+
+A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
+|d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
+normal of that frame.
+
+Groups on branches that pass their change points: kernels in half angles, smooth through those points.
+
+Which change points there are, and the notation, is told in `change_points`.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import ParameterError
+from ...numbers import checks
+from ...numbers.arithmetic import apart, cos, divisor, root, sin, sqrt, total
+from ...numbers.parameter_tree import with_fields
+from ...numbers.planar import added, cross, dot, length_and_rest, minus, number, stretched, subtracted, turned, unturned
+from ..links import Joint, LinkMotion, present, tip
+
+SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
+"""Words for an assembly that passes change points, and the side that it has where there is none."""
+FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
+BOTH = "both"
+"""Slider group with a coupler as long as the crank, on a guide through O."""
+OPPOSITE = "opposite"
+"""Slotted lever like one of the kind "near", mirrored."""
+TWICE = (FAR, NEAR, MEETING, OPPOSITE)
+"""Kinds of which a branch closes after two turns."""
+ULPS = 8
+"""Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
+CALLED = {
+    "": "none",
+    FAR: "a + d = b + h",
+    NEAR: "|d - a| = |b - h|",
+    MEETING: "a = d and b = h",
+    PARALLEL: "a = h and b = d",
+    KITE: "a = b and d = h",
+    RHOMBUS: "a = b = h = d",
+}
+"""Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
+SLIDING = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
+"""Kinds of slider groups: crank a, coupler l, offset e of the guide."""
+SLOTTED = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+"""Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
+FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
+"""Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
+
+
+def of_rocker_group(group, throws):
+    """How a rocker group on a pin of a crank passes its change points: its kind, and where O2 stands; "" without any.
+
+    Raises
+    ------
+    ParameterError
+        It hangs on no crank pin, or the designs of a batch are not all of one kind.
+    """
+    a, x, y, b, h = _known("rocker group", group, throws, group.pivot, group.coupler_length, group.rocker_length)
+    d = np.sqrt(x * x + y * y)
+    unit = _unit(a, b, h, d)
+    far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
+    far, near = far & (d > unit), near & (d > unit)
+    meeting = near & (abs(d - a) <= unit)
+    kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
+    cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
+    kind = np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], "")
+    return _joined("rocker group", kind, CALLED, _facing(x, y))
+
+
+def of_slider_group(group, throws):
+    """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    x, y = group.guide.direction
+    a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
+    unit = _unit(a, b, abs(e))
+    far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
+    kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
+    return _joined("slider group", kind, SLIDING, _facing(x, y))
+
+
+def of_lever_group(group, throws):
+    """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
+    d = np.sqrt(x * x + y * y)
+    unit = _unit(a, abs(o), d)
+    near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
+    near, opposite = near & (d > unit), opposite & (d > unit)
+    kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
+    return _joined("lever group", kind, SLOTTED, _facing(x, y))
+
+
+def _known(owner, group, throws, start, *lengths):
+    """Distance of the pin from O, a direction as the pin sees it at crank angle 0, and lengths, all beyond double."""
+    problem, throw = None, throws.get(group.on)
+    if throw is None:
+        where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
+        problem = f"assembly {group.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
+    elif not all(map(checks.known, (*throw.at, *start, *lengths))):
+        problem = f"assembly {group.assembly!r} needs lengths that are known when the mechanism is made"
+    checks.require(owner, f"{problem}; give +1 or -1" if problem else None)
+    parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
+    *at, x, y = np.broadcast_arrays(*parts)[:4]
+    radius, direction = throw._replace(at=at).polar
+    x, y = unturned((x, y), direction)
+    if direction is not None:
+        y = np.where(abs(y) <= _unit(x), 0.0, y)
+    return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
+
+
+def _unit(*lengths):
+    return ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
+
+
+def _facing(x, y):
+    return np.where(x >= 0, 0, np.where(y >= 0, 1, -1))
+
+
+def _joined(owner, kind, called, facing):
+    """Kind and facing in one text, where all designs have the same."""
+    problems = [_several(kind, "change points", called)]
+    if kind.flat[0]:
+        problems.append(_several(facing, "directions", FACING))
+    checks.require(owner, *problems)
+    return f"{kind.flat[0]} {facing.flat[0]}" if kind.flat[0] else ""
+
+
+def _several(found, what, called):
+    """What is wrong with designs that are not of one kind, or None."""
+    kinds, counts = np.unique(found, return_counts=True)
+    if kinds.size == 1:
+        return None
+    texts = "; ".join(called[kind] for kind in kinds.tolist())
+    return checks.Problem(
+        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {ULPS} ulp "
+        "of the longest length); make a batch of each",
+        found != kinds[counts.argmax()],
+    )
+
+
+def kink(group, throws):
+    """What a chosen side makes of the motion at change points, in words; "" where there are none."""
+    if type(group.assembly) is not int or group.on not in throws:
+        return ""
+    try:
+        passing = replace(group, assembly="open").on_crank(throws)
+        angles = passing.change_points(throws)
+    except ParameterError:  # a batch of several kinds, or of several change points
+        return ""
+    if not angles:
+        return ""
+    named = dict.fromkeys(angles, "a kink")
+    if parted(passing.passage)[0] in (MEETING, RHOMBUS):
+        at = angles[0] if len(angles) == 1 else _first(throws[group.on], group.pivot) % (2 * math.pi)
+        named[at] = f"a jump, as {group.on} meets the pivot"
+    texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
+    return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
+
+
+def _first(throw, start):
+    """Crank angle at which a pin of the crank stands in a direction, rad."""
+    x, y = unturned(start, throw.polar[1])
+    return math.atan2(y, x)
+
+
+def parted(passage):
+    """Kind, and where the direction from which the crank angle is halved points."""
+    kind, facing = passage.split()
+    return kind, int(facing)
+
+
+def turns(passage):
+    """Turns after which a branch closes."""
+    return 2 if passage and parted(passage)[0] in TWICE else 1
+
+
+def angles(group, throws, start):
+    """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
+    if not group.passage:
+        return ()
+    throw = throws[group.on]
+    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+    checks.require("change points", several if any(map(np.ndim, (*start, *throw.at))) else None)
+    kind, first = parted(group.passage)[0], _first(throw, start)
+    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
+    turn = 2 * math.pi
+    return tuple(
+        sorted((first + angle) % turn % turn for angle in at)
+    )  # what lies just below 0 is rounded up to a turn
+
+
+class Passer:
+    """What groups that may pass change points have in common.
+
+    They give ``found_on(throws)``, how they pass them as `passage` tells, and ``start``, the direction from which their
+    crank angle is halved.
+    """
+
+    assembly: Any
+    passage: Any
+    on: str
+    is_close: bool
+    through: bool
+    found_on: Any
+    start: Any
+
+    @property
+    def side(self):
+        """+1 or -1: its side where no change point is passed."""
+        return SIDES.get(self.assembly, self.assembly)
+
+    def on_crank(self, throws):
+        passage = self.found_on(throws) if self.through else ""
+        throw = throws.get(self.on)
+        is_close = not passage and throw is not None and self.comes_close(throw)
+        if passage == self.passage and is_close is self.is_close:
+            return self
+        return with_fields(self, passage=passage, is_close=is_close)
+
+    def comes_close(self, throw):
+        """Whether it only just clears a limit position, where other formulas save digits."""
+        return False
+
+    def kink(self, throws):
+        return kink(self, throws)
+
+    @property
+    def turns(self):
+        return turns(self.passage)
+
+    def change_points(self, throws):
+        return angles(self, throws, self.start)
+
+
+SMALLEST = 2.0**-27
+"""Root of a margin that is not divided by less."""
+UNSEEN = 2.0**-984
+"""Distance that makes the smallest number there is of a zero, and changes no other."""
+TERMS = {
+    "cosine": ("c", "cosine of half the crank angle from the line to the pivot, or of a quarter"),
+    "sine": ("s", "sine of that"),
+    "height": ("w", "root of the closure"),
+    "square": ("D", "square of the distance of the joint from the pivot, or of the reach"),
+    "turning": ("q", "rate of the line from the joint to the pivot, or of what is mirrored in it"),
+    "rate": ("z", "rate of the links besides"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class PassedMotion(NamedTuple):
+    """A rocker group placed on a branch through its change points; `closure` leaves these out.
+
+    The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
+    """
+
+    coupler: LinkMotion
+    rocker: LinkMotion
+    pin: Joint
+    closure: Any
+    factor: Any
+    distance: Any
+
+
+# How a linkage passes its change points: a text, which belongs to its structure
+
+
+class _Half(NamedTuple):
+    """Half of the crank angle from O -> O2 as a unit vector, and the frame that it has turned: another unit vector."""
+
+    cosine: Any
+    sine: Any
+    frame: Any
+
+
+def _half(angle, pivot, ground, facing):
+    half = 0.5 * angle
+    ray, start = (cos(half), sin(half)), _start(pivot, ground, facing)
+    cosine, sine = unturned(ray, start)
+    return _Half(cosine, sine, turned(ray, start))
+
+
+def _start(pivot, ground, facing):
+    """Unit vector at half the angle of O -> O2; None: at zero."""
+    x, y = pivot
+    if not facing and present(y) is None:
+        return None
+    reach = ground - x if facing else ground + x
+    size = sqrt(2.0 * ground * reach)
+    return (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
+
+
+def _quarter(angle, pivot, ground, facing):
+    """A quarter of the crank angle from O -> O2 as a unit vector."""
+    quarter = 0.25 * angle
+    ray, start = (cos(quarter), sin(quarter)), _start(pivot, ground, facing)
+    return unturned(ray, start and _start(start, 1.0, 0))
+
+
+def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
+    """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
+    throw, (d, rest) = placement.course(on).throw, length_and_rest(pivot)
+    (a, direction), slack = throw.polar, throw.radius_and_rest[1]
+    b, h, fixed, pivot = coupler_length, rocker_length, pivot, unturned(pivot, direction)
+    less, short = minus(None, rest), minus(None, slack)
+    m = total(d, -a, rest, short)
+    kind, facing = parted(passage)
+    if kind in TWICE:
+        half = _half(placement.angle, pivot, d, facing)
+        if kind == FAR:
+            constant = total(d, h, -a, -b, rest, short) * total(d, b, -a, -h, rest, short)
+        else:
+            constant = total(b, h, -d, -a, less, short) * (b + h + d + a)
+        lengths = a, b, h, d, constant
+        found = _meeting(half, *lengths, side) if kind == MEETING else _single(half, kind, *lengths, m, side)
+    elif side > 0 and kind != KITE:
+        found = _translated(placement.ray, pivot, d)
+    elif side < 0 and kind != PARALLEL:
+        found = _folded(placement.ray, pivot, d)
+    else:
+        found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
+    coupler, rocker, *rest = found
+    coupler, rocker = ((turned(link[0], direction), *link[1:]) for link in (coupler, rocker))
+    return _placed(placement.joints[on], fixed, h, coupler, rocker, *rest)
+
+
+def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, distance):
+    """Joint B and both links, from direction, ratio and its slope of each."""
+    return PassedMotion(
+        LinkMotion(joint, *coupler),
+        LinkMotion(Joint(pivot, None, None), *rocker),
+        tip(pivot, rocker_length, *rocker),
+        closure,
+        factor,
+        apart(distance, UNSEEN),
+    )
+
+
+def slid(placement, on, coupler_length, guide, passage, side):
+    """Reach of a coupler along the guide, rate of the coupler and its slope, what to divide by, and closure (kernel).
+
+    With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
+    sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
+    """
+    kind, facing = parted(passage)
+    throw = placement.course(on).throw
+    (a, direction), slack = throw.polar, throw.radius_and_rest[1]
+    b, e = coupler_length, number(guide.offset)
+    x, y = unturned((1.0, 0.0) if guide.direction is None else guide.direction, direction)
+    if kind == BOTH:
+        along = dot((x, y), placement.ray)
+        ratio = -1.0 if side > 0 else 1.0
+        return side * a * along, ratio, None, (float(side), apart(along, UNSEEN)), 1.0
+    half = _half(placement.angle, (y, -x), 1.0, facing)
+    constant = total(b, e if kind == NEAR else -e, -a, minus(None, slack))
+    passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
+    square, size = constant + 2.0 * a * other * other, 2.0 * b
+    height = root(square, size)
+    divided = divisor(height, SMALLEST * sqrt(size))
+    reach = side * sqrt(2.0 * a)
+    bend = 0.5 * reach * constant / (divided * divided * divided) * passed
+    return (
+        reach * passed * height,
+        -reach * other / divided,
+        -bend if kind == FAR else bend,
+        (reach / b * divided, apart(passed, UNSEEN)),
+        square / size,
+    )
+
+
+def slotted(placement, on, pivot, offset, passage, side):
+    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel).
+
+    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. What to divide by is the
+    reach: a factor and the distance from the change point.
+
+    With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
+    by a quarter of the angle: it is small where A passes close by the pivot.
+    """
+    kind, facing = parted(passage)
+    a, ahead = placement.course(on).throw.polar
+    d, pivot = length_and_rest(pivot)[0], unturned(pivot, ahead)
+    half = _half(placement.angle, pivot, d, facing)
+    if kind == MEETING:
+        direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
+    else:
+        way, mean, middle = 1.0 if kind == NEAR else -1.0, 0.5 * (a + d), sqrt(a * d)
+        cosine, sine = _quarter(placement.angle, pivot, d, facing)
+        passed = cosine if way * side > 0 else sine
+        square, least = 2.0 * passed * passed, 0.25 * offset * offset / (mean + middle)
+        near = least + middle * square
+        direction = (0.5 * offset * half.sine / near, side * (mean * square - least) / near)
+        lag = 0.25 * way * offset / near
+        slope = -0.5 * way * side * middle * half.sine / near * lag
+        factor, closure = 2.0 * side * middle, near / (a + d)
+    divided = factor, apart(half.sine, UNSEEN)
+    return turned(turned(direction, half.frame), ahead), minus(0.5, lag), slope, factor * half.sine, divided, closure
+
+
+def grown(parts, divisor):
+    """Components of a force over a factor and the distance from a change point (kernel).
+
+    Each by itself: there the whole is infinite, but a component that vanishes stays zero.
+    """
+    factor, distance = divisor
+    return tuple(part / factor / distance for part in parts)
+
+
+def _translated(ray, pivot, ground):
+    """Parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank."""
+    along = (pivot[0] / ground, pivot[1] / ground)
+    return (along, None, None), (ray, 1.0, None), 1.0, 1.0, cross(along, ray)
+
+
+def _folded(ray, pivot, ground):
+    """Folded kite: B stays on O, the coupler on the crank, the rocker on the ground."""
+    back = (-pivot[0] / ground, -pivot[1] / ground)
+    return ((-ray[0], -ray[1]), 1.0, None), (back, None, None), 1.0, 1.0, cross(back, ray)
+
+
+def _mirrored(half, kind, a, d, m, side):
+    """Antiparallelogram or open kite: the folded kite, or the parallelogram, mirrored in the line A O2."""
+    cosine, sine, frame = half
+    n = d + a
+    x, y = m * cosine, n * sine
+    square = x * x + y * y
+    mirror = ((x * x - y * y) / square, -2.0 * x * y / square)
+    ground, crank = turned(turned(mirror, (cosine, sine)), frame), turned(turned(mirror, (cosine, -sine)), frame)
+    turning = -m * n / square
+    slope = -4.0 * a * d * sine * cosine / square * turning
+    as_ground, as_crank = (1.0 + turning, slope), (turning, slope)
+    if kind == PARALLEL:
+        coupler, rocker = (ground, *as_ground), (crank, *as_crank)
+    else:
+        coupler, rocker = (subtracted(None, crank), *as_crank), (subtracted(None, ground), *as_ground)
+    return coupler, rocker, square / (n * n), 2.0 * side, sine * cosine
+
+
+def _swung(kind, half, a, d, size, constant, side):
+    """Root of the factor that is no whole square, and what follows from it.
+
+    That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
+    `PassedMotion`.
+    """
+    cosine, sine, _ = half
+    passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
+    square = constant + 4.0 * a * d * other * other
+    height = root(square, size)
+    divided = divisor(height, SMALLEST * sqrt(size))
+    reach = sqrt(a * d)
+    rate = side * reach * other / divided
+    bend = 0.5 * side * reach * constant / (divided * divided * divided) * passed
+    return height, square / size, rate, bend if kind == FAR else -bend, side * reach / (0.25 * size) * divided, passed
+
+
+def _single(half, kind, a, b, h, d, constant, m, side):
+    """One change point, with A clear of O2."""
+    cosine, sine, frame = half
+    n, gap, both = d + a, b - h, b + h
+    height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
+    x, y = m * cosine, n * sine
+    square = x * x + y * y
+    if kind == NEAR:  # with A almost on O2 links turn fast
+        closure = closure * square / (n * n)
+    share = gap * both / square
+    aside = 2.0 * side * sqrt(a * d) * passed * height / square
+    reach = ((1.0 + share) * x + aside * y, aside * x - (1.0 + share) * y)
+    arm = ((share - 1.0) * x + aside * y, aside * x - (share - 1.0) * y)
+    turning, change = -0.5 * m * n / square, 4.0 * a * d * sine * cosine / square
+    lost = change * share * rate
+    coupler = (
+        turned((reach[0] / (2.0 * b), reach[1] / (2.0 * b)), frame),
+        0.5 + turning - (1.0 - share) * rate,
+        -change * turning - (1.0 - share) * bend - lost,
+    )
+    rocker = (
+        turned((arm[0] / (2.0 * h), arm[1] / (2.0 * h)), frame),
+        0.5 + turning + (1.0 + share) * rate,
+        -change * turning + (1.0 + share) * bend - lost,
+    )
+    return coupler, rocker, closure, factor, passed
+
+
+def _meeting(half, a, b, h, d, constant, side):
+    """Deltoid of equal crank and ground: A meets O2, but B goes on."""
+    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, constant, side)
+    x, y = side * height, (d + a) * half.sine
+    coupler = turned((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
+    rocker = turned((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
+    return coupler, rocker, closure, factor, passed
+
+
+def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
+    """Force of the coupler on the rocker, by moments of both (kernel); infinite at a change point.
+
+    Their sum is divided as a whole, so that what does not grow there is not lost in what does.
+    """
+    q, p = motion.coupler.direction, motion.rocker.direction
+    along = rocker_load.moment, coupler_load.moment
+    parts = (
+        stretched(None if moment is None else moment / length, direction)
+        for moment, length, direction in zip(along, (rocker_length, coupler_length), (q, p), strict=True)
+    )
+    whole = added(*parts)
+    if whole is None:
+        return (0.0, 0.0)
+    return grown(whole, (motion.factor, motion.distance))

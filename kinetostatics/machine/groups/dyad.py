@@ -1,0 +1,207 @@
+"""Dyad (RRR): two links from two moving joints to a pin between them, in either assembly.
+
+Seen from the second joint it is a rocker group whose pivot stands still: the intersection of two circles, the ratios of
+both links and all forces are those of `rocker_group`, of the motion of the first joint relative to the second.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.planar import added, cross, dot, subtracted
+from ..group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from ..links import Joint, Link, Turning, Wrench, between
+from . import rocker
+from .rocker import RockerMotion
+
+
+class Ends:
+    """Rule of the two joints that a dyad hangs on."""
+
+    rule = checks.Name()
+
+    def quick(self, value):
+        named = type(value) is tuple and len(value) == 2 and all(self.rule.quick(name) is name for name in value)
+        return value if named and value[0] != value[1] else checks.UNSURE
+
+    def taken(self, value, field=""):
+        if not isinstance(value, tuple | list) or len(value) != 2:
+            return value, f"{field} must be the names of two joints, got {checks.shown(value)}"
+        found = [self.rule.taken(name, f"{field} {place}") for place, name in enumerate(value, 1)]
+        problem = found[0][1] or found[1][1]
+        if problem is None and value[0] == value[1]:
+            problem = f"{field} must name two different joints, got {value[0]!r} twice"
+        return tuple(name for name, _ in found), problem
+
+
+def place(first, second, length1, length2, assembly):
+    """Both links for the joints that they begin at (kernel)."""
+    passing = (subtracted(first.first, second.first), subtracted(first.second, second.second))
+    seen = rocker.place(Joint(first.position, *passing), length1, length2, second.position, assembly)
+    pin = Joint(seen.pin.position, added(seen.pin.first, second.first), added(seen.pin.second, second.second))
+    return seen._replace(coupler=seen.coupler._replace(joint=first), rocker=seen.rocker._replace(joint=second), pin=pin)
+
+
+@dataclass(frozen=True, eq=False)
+class Dyad(checks.Checked, Group):
+    """Two links from the joints `on` to a joint `pin` that they share, as between two arms of a Watt chain.
+
+    Parameters
+    ----------
+    length1, length2 : float or array
+        From the first and from the second joint to the pin, m.
+    on : (str, str)
+        Names of the joints it hangs on, which may both move.
+    pin : str
+        Name of the joint it adds.
+    assembly : +1 or -1
+        +1: the pin to the left of the direction from the first joint to the second.
+    dyad1, dyad2 : Link
+        Reference joints are those they hang on, directions run from there to the pin.
+    label : str
+        Put behind the names of links and forces of a second dyad in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or the same joint twice.
+
+    Notes
+    -----
+    Reactions, vectors in N: "dyad1_B" on the first link from what carries B (the name of the joint it hangs on),
+    "dyad2_C" on the second likewise, and `pin`, of the first link on the second.
+
+    Examples
+    --------
+    Two cranks of one shaft, and a rod on each:
+
+    >>> import kinetostatics as ks
+    >>> parts = ks.Pin(on="crank", at=(0.0, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"))
+    >>> s = ks.solve(ks.Mechanism("rigid triangle", ks.Crank(0.1), parts), 0.0, crank_speed=10.0)
+    >>> bool(abs(s.rate("dyad1") - 10.0) < 1e-12)
+    True
+    """
+
+    length1: Any
+    length2: Any
+    on: Any = ("B", "C")
+    pin: str = "D"
+    assembly: int = 1
+    dyad1: Link = Link()
+    dyad2: Link = Link()
+    label: str = ""
+
+    TRUSTED = True
+    PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
+    RULES = checks.Rules(
+        "dyad",
+        length1=checks.Number("m", low=0.0, strict=True),
+        length2=checks.Number("m", low=0.0, strict=True),
+        on=Ends(),
+        pin=checks.Name(),
+        assembly=checks.Sign(),
+        dyad1=checks.Made(Link, "a Link"),
+        dyad2=checks.Made(Link, "a Link"),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def hangs_on(self):
+        return self.on
+
+    @property
+    def names(self):
+        return [*super().names, *self.on]
+
+    @property
+    def links(self):
+        return {self._link1: self.dyad1, self._link2: self.dyad2}
+
+    @property
+    def references(self):
+        return dict(zip(self.links, self.on, strict=True))
+
+    @property
+    def bars(self):
+        first, second = self.on
+        return Bar(first, self.pin, self._link1, self.length1), Bar(second, self.pin, self._link2, self.length2)
+
+    @property
+    def lengths(self):
+        return (self.length1, self.length2, *self.dyad1.centre, *self.dyad2.centre)
+
+    @property
+    def _link1(self):
+        return "dyad1" + self.label
+
+    @property
+    def _link2(self):
+        return "dyad2" + self.label
+
+    @property
+    def _inner(self):
+        """Names of the reactions at the joints it hangs on."""
+        return tuple(f"{link}_{joint}" for link, joint in self.references.items())
+
+    @property
+    def joints(self):
+        return {self.pin: Point(self._link2, self.length2)}
+
+    @property
+    def outputs(self):
+        inner = (joint_reaction(link, joint) for link, joint in self.references.items())
+        pin = Output("N", True, f"{self._link1} on {self._link2}")
+        return {**dict(zip(self._inner, inner, strict=True)), self.pin: pin}
+
+    @property
+    def pairs(self):
+        inner = zip(self._inner, self.references.items(), strict=True)
+        return {
+            **{name: Turning(link, joint) for name, (link, joint) in inner},
+            self.pin: Turning(self._link2, self.pin, self._link1),
+        }
+
+    def rigid_on(self, owners):
+        """Both links on two joints of one link: a triangle that does not move in itself."""
+        return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
+
+    def place(self, placement):
+        first, second = (placement.joints[name] for name in self.on)
+        self._set(placement, place(first, second, self.length1, self.length2, self.assembly))
+
+    def follow(self, placement, joints):
+        """Place both links at joints found in another way."""
+        pin = joints[self.pin]
+        first, second = (
+            between(placement.joints[name], pin, length)
+            for name, length in zip(self.on, (self.length1, self.length2), strict=True)
+        )
+        sine, cosine = cross(first.direction, second.direction), dot(first.direction, second.direction)
+        self._set(placement, RockerMotion(first, second, pin, sine, cosine, sine, None))
+
+    def _set(self, placement, motion):
+        placement.joints[self.pin] = motion.pin
+        placement.links[self._link1] = motion.coupler
+        placement.links[self._link2] = motion.rocker
+        placement.details[self._link1] = motion
+
+    def closure(self, placement):
+        """Squared sine of the angle between the links."""
+        return placement.details[self._link1].closure
+
+    def requirement(self, placement):
+        low, high = abs(self.length1 - self.length2), self.length1 + self.length2
+        return (
+            f"{separation(placement, *self.on)} lie between the difference and the sum of the lengths of "
+            f"{self._link1} and {self._link2}, {np.min(low):.6g} and {np.max(high):.6g} m"
+        )
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        found = rocker.resolve(
+            placement.details[self._link1], self.length1, self.length2, loads[self._link1], loads[self._link2]
+        )
+        inner = dict(zip(self._inner, (found.inner, found.pivot), strict=True))
+        demands = {name: Wrench(force, None) for name, force in zip(self.on, inner.values(), strict=True)}
+        return Resolved({**inner, self.pin: found.pin}, {}, demands)

@@ -1,0 +1,311 @@
+"""Lever group (RPR): block on a pin, sliding in a straight slot of a lever that turns about a fixed pivot.
+
+With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
+s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
+and s is a product, so no digit is lost where it vanishes, which divides rates and forces.
+
+Where the crank is as long as the pivot's distance, A meets the pivot: on a chosen side the lever turns about there at
+once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import apart, divisor, root, sqrt
+from ...numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench, present
+from . import change_points, near_dead_centre
+
+SMALLEST = 2.0**-53
+"""Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""
+TERMS = {
+    "d": ("d", "from the pivot to the joint"),
+    "square": ("D", "square of that distance"),
+    "distance": ("a", "that distance"),
+    "reach": ("w", "coordinate of the joint along the slot"),
+    "along": ("t", "derivative by phi of the joint along the slot"),
+    "across": ("n", "derivative by phi of the joint across the slot"),
+    "sliding": ("z", "rate at which the joint slides along the slot"),
+    "swing": ("q", "what turning and sliding together add across the slot"),
+    "resolve.moment": ("K", "moment of both links about the pivot"),
+    "resolve.on_block": ("Q", "force of the slot on what slides in it"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class LeverMotion(NamedTuple):
+    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by, never zero.
+
+    `closure` is the reach squared over the squares of distance and speed of the pin: small where the lever spins fast.
+    On a branch through a change point `divisor` is two factors, of which the second is smallest there, and `closure`
+    leaves that out.
+    """
+
+    lever: LinkMotion
+    block: LinkMotion
+    reach: Any
+    divisor: Any
+    closure: Any
+
+
+class LeverForces(NamedTuple):
+    """`inner`: on the block at its joint; `slot`: lever on block, along the lever's left normal; `pivot`: ground on
+    lever.
+    """
+
+    inner: Any
+    slot: Any
+    pivot: Any
+
+
+def place(joint, pivot, offset, assembly):
+    """Lever and block for a given joint (kernel); an offset of None is zero."""
+    d = (apart(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
+    square = dot(d, d)
+    distance = sqrt(square)
+    if offset is None:
+        reach = divided = assembly * distance
+        reach_square = square
+        direction = (d[0] / reach, d[1] / reach)
+    else:
+        reach_square = (distance - offset) * (distance + offset)
+        size = root(reach_square, square)
+        reach, divided = assembly * size, assembly * divisor(size, SMALLEST * distance)
+        direction = unturned((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
+    first, second = vector(joint.first), vector(joint.second)
+    along, across = unturned(first, direction)
+    ratio = across / divided
+    sliding = plus(along, product(offset, ratio))
+    swing = minus(2.0 * sliding, product(offset, ratio)) * ratio
+    ratio_slope = (cross(direction, second) - swing) / divided
+    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, ratio_slope)
+    closure = reach_square / (square + dot(first, first))
+    return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
+
+
+def passed(placement, on, pivot, offset, slotted, *branch):
+    """The same for the pin `on` of a crank, from what `slotted` finds on a branch (kernel)."""
+    direction, ratio, slope, *rest = slotted(placement, on, pivot, offset, *branch)
+    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
+    return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
+
+
+def resolve(motion, lever_load, block_load):
+    """Forces on lever and block (kernel).
+
+    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
+    together about the pivot give the force across the slot.
+    """
+    moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
+    if isinstance(motion.divisor, tuple):
+        slot, *on_block = change_points.grown((moment, *stretched(moment, across)), motion.divisor)
+    else:
+        slot = moment / motion.divisor
+        on_block = stretched(slot, across)
+    return LeverForces(
+        inner=subtracted(subtracted(None, on_block), block_load.force),
+        slot=slot,
+        pivot=subtracted(on_block, lever_load.force),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class LeverGroup(checks.Checked, change_points.Passer, Group):
+    """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
+
+    With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
+    from pivot to pin must stay above the offset.
+
+    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point, where the
+    block stands at the foot of the pivot on the slot, or at the pivot.
+
+    Parameters
+    ----------
+    pivot : (x, y)
+        Fixed pivot of the lever, m.
+    on, pivot_name : str
+        Names of the joint it hangs on and of the joint it adds.
+    offset : float or array
+        Of the slot's axis to the left of the pivot, m; 0: the slot points at the pivot.
+    lever : Link
+        Reference joint `pivot_name`, along the slot toward the block (of assembly +1).
+    block : Link
+        Reference joint `on`, along the slot as the lever; it turns with it.
+    label : str
+        Put behind the names of links and forces of a second lever group in one mechanism.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
+        direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
+        crank as long as the pivot's distance turns half as fast as that, and keep their side where there are none.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+
+    Notes
+    -----
+    Reactions: `on` (N) on the block, from what carries the joint; `pivot_name` (N), ground on lever; "slot_force" (N),
+    lever on block along the lever's left normal, and "slot_moment" (N m) about `on`. "block_position" (m) is the
+    coordinate of the block along the slot, from the foot of the pivot; negative where the slot points away from it.
+
+    Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
+
+    Examples
+    --------
+    The lever of a crank shaper swings by asin(r / d) to each side:
+
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2))
+    >>> s = ks.solve(shaper, np.radians(30.0), crank_speed=6.0)
+    >>> bool(abs(s.rate("lever")) < 1e-15)
+    False
+    >>> dead = ks.solve(shaper, -np.arcsin(0.5), crank_speed=6.0)
+    >>> bool(abs(dead.rate("lever")) < 1e-14)
+    True
+    """
+
+    pivot: Any
+    on: str = "A"
+    offset: Any = 0.0
+    lever: Link = Link()
+    block: Link = Link()
+    pivot_name: str = "O2"
+    label: str = ""
+    assembly: int = 1
+    passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
+
+    TRUSTED = True
+    PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
+    RULES = checks.Rules(
+        "lever group",
+        pivot=checks.Pair("m", "lever pivot"),
+        on=checks.Name(),
+        offset=checks.Number("m", "slot offset"),
+        lever=checks.Made(Link, "a Link"),
+        block=checks.Made(Link, "a Link"),
+        pivot_name=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
+    )
+
+    def found_on(self, throws):
+        """How it passes its change points on a crank with these throws."""
+        return change_points.of_lever_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
+        return near_dead_centre.is_near(throw, self.offset, self.pivot)
+
+    @property
+    def start(self):
+        """Direction, as a vector, from which its words of assembly are counted."""
+        return self.pivot
+
+    @property
+    def links(self):
+        return {self._lever: self.lever, self._block: self.block}
+
+    @property
+    def references(self):
+        return {self._lever: self.pivot_name, self._block: self.on}
+
+    @property
+    def slots(self):
+        return (Slot(self._lever, self.on, offset=self.offset),)
+
+    @property
+    def lengths(self):
+        return (*self.pivot, self.offset, *self.lever.centre, *self.block.centre)
+
+    @property
+    def _lever(self):
+        return "lever" + self.label
+
+    @property
+    def _block(self):
+        return "block" + self.label
+
+    @property
+    def joints(self):
+        return {self.pivot_name: Point(FRAME, *self.pivot)}
+
+    @property
+    def outputs(self):
+        label, lever, block = self.label, self._lever, self._block
+        return {
+            self.on + label: joint_reaction(block, self.on),
+            self.pivot_name: Output("N", True, f"ground on {lever}"),
+            "slot_force" + label: Output("N", False, f"{lever} on {block} along the left normal of the {lever}"),
+            "slot_moment" + label: Output("N m", False, f"{lever} on {block} about {self.on}"),
+        }
+
+    @property
+    def motions(self):
+        text = f"of {self.on} along the slot, from the foot of {self.pivot_name}"
+        return {f"{self._block}_position": Output("m", False, text)}
+
+    @property
+    def pairs(self):
+        label = self.label
+        return {
+            self.on + label: Turning(self._block, self.on),
+            self.pivot_name: Turning(self._lever, self.pivot_name),
+            "slot" + label: Sliding(self._block, self.on, self._lever, "slot_force" + label, "slot_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        motion, offset = placement.details[self._lever], present(self.offset)
+        rate = plus(slid(motion), product(offset, motion.lever.ratio))
+        return Slide(motion.lever.direction, rate, minus(None, offset))
+
+    def motion(self, name, placement):
+        return placement.details[self._lever].reach
+
+    def place(self, placement):
+        """Add the pivot, lever and block."""
+        given = self.pivot, present(self.offset)
+        if self.passage:
+            motion = passed(placement, self.on, *given, change_points.slotted, self.passage, self.side)
+        elif self.is_close:
+            motion = passed(placement, self.on, *given, near_dead_centre.slotted, self.side)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side)
+        placement.joints[self.pivot_name] = motion.lever.joint
+        placement.links[self._lever] = motion.lever
+        placement.links[self._block] = motion.block
+        placement.details[self._lever] = motion
+
+    def follow(self, placement, joints):
+        """Place lever and block: no joint of theirs moves that could be found in another way."""
+        self.place(placement)
+
+    def closure(self, placement):
+        return placement.details[self._lever].closure
+
+    def requirement(self, placement):
+        """Say what distance must hold for the block to be in the slot, with its numbers."""
+        offset = np.max(np.abs(self.offset))
+        return f"{separation(placement, self.on, self.pivot_name)} be greater than the slot's offset, {offset:.6g} m"
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        found = resolve(placement.details[self._lever], loads[self._lever], loads[self._block])
+        return Resolved(
+            {self.on + self.label: found.inner, self.pivot_name: found.pivot},
+            {
+                "slot_force" + self.label: found.slot,
+                "slot_moment" + self.label: number(minus(None, loads[self._block].moment)),
+            },
+            {self.on: Wrench(found.inner, None)},
+        )
+
+
+def slid(motion):
+    """Rate of the pin along the lever."""
+    return dot(vector(motion.block.joint.first), motion.lever.direction)

@@ -1,0 +1,315 @@
+"""Rocker group (RRR): coupler from a pin to a rocker about a fixed pivot, in either assembly.
+
+With d the vector from joint A to the pivot O2, a = |d|, coupler length c and rocker length h, joint B stands from A at
+(a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
+that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
+area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
+
+On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import apart, divisor, root, sqrt
+from ...numbers.parameter_tree import with_fields
+from ...numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
+from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from ..kinematic_state import Course, Swing
+from ..links import Joint, Link, LinkMotion, Turning, Wrench, between, tip
+from . import change_points, near_dead_centre
+from .near_dead_centre import axis_of, straightened
+
+SMALLEST = 2.0**-53
+"""Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
+TERMS = {
+    "d": ("d", "from the inner joint to the pivot"),
+    "square": ("D", "square of that distance"),
+    "a": ("a", "that distance"),
+    "heron": ("H", "square of four times the area of the triangle of both links, by Heron"),
+    "size": ("S", "four times that area"),
+    "along": ("xi", "share of d by which the pin lies along it"),
+    "across": ("eta", "share of d by which the pin lies across it, to the left"),
+    "reach": ("w", "from the inner joint to the pin"),
+    "divided": ("sigma", "sine of the transmission angle"),
+    "cosine": ("kappa", "cosine of the transmission angle"),
+    "lag": ("q", "length of the first link times the square of its ratio"),
+    "swing_lag": ("z", "length of the second link times the square of its ratio"),
+    "along_coupler": ("U", "force of the pin on the second link along the first"),
+    "along_rocker": ("V", "force of the pin on the second link along itself"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class RockerMotion(NamedTuple):
+    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared.
+
+    `divisor` is the sine to divide by, which never vanishes.
+    """
+
+    coupler: LinkMotion
+    rocker: LinkMotion
+    pin: Joint
+    sine: Any
+    cosine: Any
+    divisor: Any
+    closure: Any
+
+
+class RockerForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the rocker; `pivot`: ground on rocker."""
+
+    inner: Any
+    pin: Any
+    pivot: Any
+
+
+def place(joint, coupler_length, rocker_length, pivot, assembly):
+    """Coupler and rocker for a given inner joint (kernel)."""
+    c, h = coupler_length, rocker_length
+    d = (apart(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
+    square = dot(d, d)
+    a = sqrt(square)
+    gap = c - h
+    heron = (a + c + h) * (a + gap) * (a - gap) * (c + h - a)
+    product = 2.0 * c * h
+    unit = product * product
+    size = root(heron, unit)
+    area, divided = assembly * size, assembly * divisor(size, SMALLEST * product) / product
+    along, across = (square + gap * (c + h)) / (2.0 * square), area / (2.0 * square)
+    reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
+    q = (reach[0] / c, reach[1] / c)
+    p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
+    sine = area / product
+    cosine = (c * c + h * h - square) / product
+
+    first, second = vector(joint.first), vector(joint.second)
+    ratio = -dot(first, p) / (c * divided)
+    swing = -dot(first, q) / (h * divided)
+    lag, swing_lag = c * ratio * ratio, h * swing * swing
+    ratio_slope = (lag * cosine - swing_lag - dot(second, p)) / (c * divided)
+    swing_slope = (lag - swing_lag * cosine - dot(second, q)) / (h * divided)
+
+    pin = tip(pivot, h, p, swing, swing_slope)
+    coupler = LinkMotion(joint, q, ratio, ratio_slope)
+    rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
+    return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
+
+
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close, knuckle):
+    """The same for a pin of the crank, which may come close to the pivot (kernel)."""
+    joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
+    coupler, (p, *rates), *rest = near_dead_centre.place(placement, on, *given, assembly, is_close)
+    if knuckle:
+        p = straightened(p, coupler[0], joint, *given, knuckle)
+    pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
+    return RockerMotion(LinkMotion(joint, *coupler), LinkMotion(fixed, p, *rates), pin, *rest)
+
+
+def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
+    """Forces on rocker and coupler (kernel).
+
+    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of the coupler
+    about A and of the rocker about O2 give the pin force by its parts along both links.
+    """
+    q, p = motion.coupler.direction, motion.rocker.direction
+    along_coupler = number(quotient(rocker_load.moment, rocker_length)) / motion.divisor
+    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
+    return balanced(added(stretched(along_coupler, q), stretched(along_rocker, p)), coupler_load, rocker_load)
+
+
+def balanced(pin, coupler_load, rocker_load):
+    """All forces for a given pin force."""
+    pivot = subtracted(subtracted(None, pin), rocker_load.force)
+    return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
+
+
+@dataclass(frozen=True, eq=False)
+class RockerGroup(checks.Checked, change_points.Passer, Group):
+    """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
+
+    Parameters
+    ----------
+    coupler_length, rocker_length : float or array
+        m.
+    pivot : (x, y)
+        Fixed pivot O2, m.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
+        behind the direction O -> O2, "crossed" is the other way round there; on A, or another pin of the crank, they go
+        on through change points as inertia carries them, and keep their side where there are none.
+    coupler, rocker : Link
+    on, pin, pivot_name : str
+        Names of the joint it hangs on and of the joints it adds.
+    label : str
+        Put behind the names of links and forces of a second rocker group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on rocker; `pivot_name`,
+    ground on rocker.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> bars = ks.Mechanism("four-bar", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),))
+    >>> s = ks.solve(bars, 0.7, crank_speed=10.0)
+    >>> round(float(np.hypot(*(s.position("B") - s.position("A")))), 12)
+    0.4
+    """
+
+    coupler_length: Any
+    rocker_length: Any
+    pivot: Any
+    assembly: int = 1
+    coupler: Link = Link()
+    rocker: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    pivot_name: str = "O2"
+    label: str = ""
+    passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
+    knuckle: str = field(default="", init=False, repr=False)
+
+    TRUSTED = True
+    PATHS: ClassVar = {"pivot": "rocker_pivot"}
+    RULES = checks.Rules(
+        "rocker group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
+        pivot=checks.Pair("m", "rocker pivot"),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
+        coupler=checks.Made(Link, "a Link"),
+        rocker=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        pivot_name=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    def found_on(self, throws):
+        """How it passes its change points on a crank with these throws."""
+        return change_points.of_rocker_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the pin comes close to the pivot."""
+        return near_dead_centre.is_near(throw, 0.0, self.pivot)
+
+    def beside(self, groups, throws):
+        """The group as it is beside others: whether it is a knuckle with one, and along which axis."""
+        knuckle = axis_of(self, groups, throws)
+        return self if knuckle == self.knuckle else with_fields(self, knuckle=knuckle)
+
+    @property
+    def start(self):
+        """Direction, as a vector, from which its words of assembly are counted."""
+        return self.pivot
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._rocker: self.rocker}
+
+    @property
+    def references(self):
+        return {self._coupler: self.on, self._rocker: self.pivot_name}
+
+    @property
+    def bars(self):
+        return (
+            Bar(self.on, self.pin, self._coupler, self.coupler_length),
+            Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
+        )
+
+    @property
+    def lengths(self):
+        return (self.coupler_length, self.rocker_length, *self.pivot, *self.coupler.centre, *self.rocker.centre)
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _rocker(self):
+        return "rocker" + self.label
+
+    @property
+    def joints(self):
+        return {self.pin: Point(self._rocker, self.rocker_length), self.pivot_name: Point(FRAME, *self.pivot)}
+
+    @property
+    def outputs(self):
+        return {
+            self.on + self.label: joint_reaction(self._coupler, self.on),
+            self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
+            self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
+        }
+
+    @property
+    def pairs(self):
+        return {
+            self.on + self.label: Turning(self._coupler, self.on),
+            self.pin: Turning(self._rocker, self.pin, self._coupler),
+            self.pivot_name: Turning(self._rocker, self.pivot_name),
+        }
+
+    def place(self, placement):
+        """Add joints B and O2, coupler and rocker."""
+        given = self.coupler_length, self.rocker_length, self.pivot
+        if self.passage:
+            motion = change_points.place(placement, self.on, *given, self.passage, self.side)
+        elif placement.course(self.on).throw is not None:
+            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.knuckle)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side)
+        self._set(placement, motion)
+
+    def follow(self, placement, joints):
+        """Place coupler and rocker at joints found in another way."""
+        pin, pivot = joints[self.pin], Joint(self.pivot, None, None)
+        coupler = between(placement.joints[self.on], pin, self.coupler_length)
+        rocker = between(pivot, pin, self.rocker_length)
+        sine, cosine = cross(coupler.direction, rocker.direction), dot(coupler.direction, rocker.direction)
+        self._set(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
+
+    def _set(self, placement, motion):
+        placement.joints[self.pin] = motion.pin
+        placement.joints[self.pivot_name] = motion.rocker.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._rocker] = motion.rocker
+        swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
+        placement.courses[self.pin] = Course(swing=swing)
+        placement.details[self._rocker] = motion
+
+    def closure(self, placement):
+        return placement.details[self._rocker].closure
+
+    def requirement(self, placement):
+        """Say what distances must hold for B to be reached, with their numbers."""
+        low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
+        return (
+            f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
+            f"rocker lengths, {np.min(low):.6g} and {np.max(high):.6g} m"
+        )
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        motion, lengths = placement.details[self._rocker], (self.coupler_length, self.rocker_length)
+        acting = loads[self._coupler], loads[self._rocker]
+        if isinstance(motion, change_points.PassedMotion):
+            found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
+        else:
+            found = resolve(motion, *lengths, *acting)
+        return Resolved(
+            {self.on + self.label: found.inner, self.pin: found.pin, self.pivot_name: found.pivot},
+            {},
+            {self.on: Wrench(found.inner, None)},
+        )

@@ -1,0 +1,329 @@
+"""Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
+
+With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
+d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
+dead centres, whatever the inclination of the guide.
+
+Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on a chosen side the slider turns back
+there, the words "open" and "crossed" let it run on (`change_points`).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import divisor, root
+from ...numbers.planar import (
+    added,
+    cross,
+    dot,
+    minus,
+    number,
+    plus,
+    product,
+    quotient,
+    subtracted,
+    turned,
+    unturned,
+    vector,
+)
+from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
+from ..guide import Guide, guide_outputs, slid
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, between
+from . import change_points, near_dead_centre
+
+SMALLEST = 2.0**-27
+"""Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
+TERMS = {
+    "position": ("p", "inner joint along the guide (x) and across it (y)"),
+    "first": ("p'", "first derivative by phi of that"),
+    "second": ("p''", "second derivative by phi of that"),
+    "across": ("d", "from the inner joint across to the guide"),
+    "along": ("w", "reach of the coupler along the guide"),
+    "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
+    "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
+    "resolve.along": ("U", "force of the pin on the slider along the guide"),
+    "resolve.across": ("V", "force of the pin on the slider across the guide"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class SliderMotion(NamedTuple):
+    """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
+
+    `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
+    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes
+    from the second derivative of the travel; None where that was not found so.
+    """
+
+    coupler: LinkMotion
+    slider: LinkMotion
+    sine: Any
+    cosine: Any
+    divisor: Any
+    closure: Any
+    travel: Joint
+    drawn_in: Any = None
+
+
+class SliderForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide*`: ground on slider."""
+
+    inner: Any
+    pin: Any
+    guide: Any
+    guide_force: Any
+    guide_moment: Any
+
+
+def place(joint, coupler_length, guide, assembly, swing=None):
+    """Coupler and slider for a given inner joint, and its swing (kernel); None is +x, no offset, no swing."""
+    position = unturned(joint.position, guide.direction)
+    first = unturned(vector(joint.first), guide.direction)
+    second = unturned(vector(joint.second), guide.direction)
+
+    across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
+    square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
+    reach = root(square, unit)
+    along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
+    ratio = -first[1] / divided
+    ratio_slope = (ratio * ratio * across - second[1]) / divided
+    reached = along, ratio, ratio_slope, divided / coupler_length, square / unit
+    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
+
+
+def passed(placement, on, coupler_length, guide, slid, *branch):
+    """The same for the pin `on` of a crank, from what `slid` finds on a branch (kernel)."""
+    joint = placement.joints[on]
+    position = unturned(joint.position, guide.direction)
+    first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
+    reached = slid(placement, on, coupler_length, guide, *branch)
+    across = minus(guide.offset, position[1])
+    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
+
+
+def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, ratio_slope, divided, closure):
+    """Coupler and slider, from the coupler's reach along the guide and across it and its rate."""
+    position, first, second = along_guide
+    sine, cosine = across / coupler_length, along / coupler_length
+    drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
+    travel = Joint(position[0] + along, first[0] - ratio * across, second[0] - drawn_in)
+    coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
+    slider = slid(joint.position, (along, across), travel, guide)
+    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel, drawn_in)
+
+
+def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
+    """Forces on slider and coupler, from the slider inwards (kernel).
+
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, those
+    of further groups among them. The slider's balance along the guide gives the pin force along it, moments of the
+    coupler about its inner joint the pin force across; the guide carries the rest.
+    """
+    on_slider = unturned(vector(slider_load.force), guide.direction)
+    along = -plus(on_slider[0], push)
+    across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
+    if isinstance(motion.divisor, tuple):
+        aside = change_points.grown(turned((0.0, across), guide.direction), motion.divisor)
+        (across,) = change_points.grown((across,), motion.divisor)
+        pin = added(turned((along, 0.0), guide.direction), aside)
+        carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
+    else:
+        across = across / motion.divisor
+        pin = turned((along, across), guide.direction)
+        carried = turned((0.0, -(on_slider[1] + across)), guide.direction)
+    return SliderForces(
+        inner=subtracted(pin, coupler_load.force),
+        pin=pin,
+        guide=carried,
+        guide_force=-(on_slider[1] + across),
+        guide_moment=number(minus(None, slider_load.moment)),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reaching, Group):
+    """Coupler from joint `on` to a slider at joint `pin` on `guide`.
+
+    Parameters
+    ----------
+    coupler_length : float or array
+        m.
+    guide : Guide
+    assembly : +1, -1, "open" or "crossed"
+        +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
+        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
+        keep their side where there are none.
+    coupler, slider : Link
+    on, pin : str
+        Names of the joint it hangs on and of the joint it adds.
+    label : str
+        Put behind the names of links and forces of a second slider group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on slider; "guide", ground
+    on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about `pin`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> rod = ks.SliderGroup(0.2, ks.Guide.at(0.0, 0.01), slider=ks.Link(mass=1.0))
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05), (rod,))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=10.0).slider_position), 6)
+    0.24975
+    """
+
+    coupler_length: Any
+    guide: Guide = Guide()
+    assembly: int = 1
+    coupler: Link = Link()
+    slider: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    label: str = ""
+    passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
+
+    TRUSTED = True
+    PATHS: ClassVar = {"guide": ""}
+    RULES = checks.Rules(
+        "slider group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        guide=checks.Made(Guide, "made by Guide.at or .through"),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
+        coupler=checks.Made(Link, "a Link"),
+        slider=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    def found_on(self, throws):
+        """How it passes its change points on a crank with these throws."""
+        return change_points.of_slider_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the coupler, nearly as long as it must be, comes to stand nearly across the guide."""
+        return near_dead_centre.is_small(throw, self.guide.guide_offset, self.coupler_length)
+
+    @property
+    def start(self):
+        """Direction, as a vector, from which its words of assembly are counted."""
+        x, y = self.guide.direction
+        return y, -x
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._slider: self.slider}
+
+    @property
+    def references(self):
+        return {self._coupler: self.on, self._slider: self.pin}
+
+    @property
+    def bars(self):
+        return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
+
+    @property
+    def lengths(self):
+        return (self.coupler_length, self.guide.guide_offset, *self.coupler.centre, *self.slider.centre)
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _slider(self):
+        return "slider" + self.label
+
+    @property
+    def joints(self):
+        return {self.pin: Point(self._slider)}
+
+    @property
+    def guides(self):
+        return {self._slider: self.guide}
+
+    @property
+    def outputs(self):
+        return {
+            self.on + self.label: joint_reaction(self._coupler, self.on),
+            self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
+            **guide_outputs(self._slider, self.pin, self.label),
+        }
+
+    @property
+    def pairs(self):
+        label = self.label
+        return {
+            self.on + label: Turning(self._coupler, self.on),
+            self.pin: Turning(self._slider, self.pin, self._coupler),
+            "guide" + label: Sliding(self._slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        return Slide(self.guide.line.direction, placement.travels[self._slider].first)
+
+    def place(self, placement):
+        given = self.coupler_length, self.guide.line
+        if self.passage:
+            motion = passed(placement, self.on, *given, change_points.slid, self.passage, self.side)
+        elif self.is_close:
+            motion = passed(placement, self.on, *given, near_dead_centre.slid, self.side)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
+        self._set(placement, motion)
+
+    def follow(self, placement, joints):
+        """Place coupler and slider at joints found in another way."""
+        pin, direction = joints[self.pin], self.guide.direction
+        coupler = between(placement.joints[self.on], pin, self.coupler_length)
+        sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
+        travel = Joint(*(dot(direction, part) for part in pin))
+        slider = LinkMotion(pin, direction, None, None)
+        self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, None, travel))
+
+    def _set(self, placement, motion):
+        placement.joints[self.pin] = motion.slider.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._slider] = motion.slider
+        placement.travels[self._slider] = motion.travel
+        placement.details[self._slider] = motion
+
+    def closure(self, placement):
+        return placement.details[self._slider].closure
+
+    def requirement(self, placement):
+        distance = abs(placement.details[self._slider].sine * self.coupler_length)
+        return (
+            f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
+            f"{self._coupler} length, {_span(self.coupler_length)} m"
+        )
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        found = resolve(
+            placement.details[self._slider],
+            self.coupler_length,
+            self.guide.line,
+            loads[self._coupler],
+            loads[self._slider],
+            along.get(self._slider),
+        )
+        return Resolved(
+            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: found.guide},
+            {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
+            {self.on: Wrench(found.inner, None)},
+        )
+
+
+def _span(length):
+    low, high = np.min(length), np.max(length)
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

@@ -1,0 +1,261 @@
+"""Yoke group (RPP): block on a pin, sliding in the straight slot of a slider on a straight guide (Scotch yoke).
+
+In the axes of the guide, at offset e, a slot at the angle beta through joint A at (x, y) meets the guide at
+x - (y - e) cot(beta): the travel is linear in the motion of A, so there is neither dead centre nor limit position.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import cos, sin
+from ...numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
+from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction
+from ..guide import Guide, guide_outputs, slid
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench
+
+PARALLEL = 1e-9
+"""Sine of the slot's angle from which on it counts as parallel to the guide."""
+TERMS = {
+    "lean": ("lambda", "cotangent of the angle of the slot"),
+    "rise": ("h", "height of the joint over the guide"),
+    "back": ("b", "from the joint back to the pin along the guide"),
+    "resolve.along": ("Q", "force on the slider along its guide"),
+    "resolve.across": ("V", "force on the slider across its guide"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+class YokeMotion(NamedTuple):
+    """A placed yoke group; `rise` is the height of joint A over the guide, `slot` the slot's (cosine, sine)."""
+
+    block: LinkMotion
+    slider: LinkMotion
+    travel: Joint
+    rise: Any
+    slot: Any
+
+
+class YokeForces(NamedTuple):
+    """`inner`: on the block at its joint; `slot_*`: slider on block; `guide_*`: ground on slider."""
+
+    inner: Any
+    slot_force: Any
+    slot_moment: Any
+    guide_force: Any
+    guide_moment: Any
+
+
+def place(joint, guide, slot_angle):
+    """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None zero."""
+    slot = cos(slot_angle), sin(slot_angle)
+    lean = slot[0] / slot[1]
+    (x, y), first, second = (unturned(vector(part), guide.direction) for part in joint)
+    rise = minus(y, guide.offset)
+    back = -lean * rise
+    travel = Joint(x + back, first[0] - lean * first[1], second[0] - lean * second[1])
+    slider = slid(joint.position, (back, -rise), travel, guide)
+    return YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot)
+
+
+def _block(joint, slot, guide):
+    return LinkMotion(joint, turned(slot, guide.direction), None, None)
+
+
+def resolve(motion, guide, block_load, slider_load, push):
+    """Forces on slider and block, from the slider inwards (kernel).
+
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, those
+    of further groups among them. The slider's balance along the guide gives the slot force, which stands across the
+    slot; the block hands its couple to the slot, the slider both to the guide.
+    """
+    cosine, sine = motion.slot
+    along, across = unturned(vector(slider_load.force), guide.direction)
+    slot = -plus(along, push) / sine
+    couple = minus(None, block_load.moment)
+    on_block = stretched(slot, turned((-sine, cosine), guide.direction))
+    return YokeForces(
+        inner=subtracted(subtracted(None, on_block), block_load.force),
+        slot_force=slot,
+        slot_moment=number(couple),
+        guide_force=cosine * slot - across,
+        guide_moment=plus(minus(couple, slider_load.moment), motion.rise / sine * slot),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class YokeGroup(checks.Checked, Group):
+    """Block on joint `on` in the slot of a slider on `guide`: a Scotch yoke.
+
+    The slider's joint `pin` stands where the line through `on` along the slot meets the guide.
+
+    Parameters
+    ----------
+    guide : Guide
+    slot_angle : float or array
+        From the guide's direction, counter-clockwise, rad; not 0 or pi.
+    on, pin : str
+        Names of the joint it hangs on and of the joint it adds.
+    slider : Link
+        Reference joint `pin`, along the guide.
+    block : Link
+        Reference joint `on`, along the slot; it does not turn.
+    label : str
+        Put behind the names of links and forces of a second yoke group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        The slot is parallel to the guide, or a value no machine can have.
+
+    Notes
+    -----
+    Reactions: `on` (N) on the block, from what carries the joint; "slot_force" (N), slider on block along the slot's
+    left normal, and "slot_moment" (N m) about `on`; "guide_force" (N), ground on slider along the guide's left normal,
+    and "guide_moment" (N m) about `pin`; "guide", the same force as a vector.
+
+    Examples
+    --------
+    >>> import math
+    >>> import kinetostatics as ks
+    >>> yoke = ks.YokeGroup(ks.Guide.at(0.0), slider=ks.Link(mass=5.0))
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.1), (yoke,))
+    >>> round(float(ks.solve(pump, math.pi / 3, crank_speed=10.0).slider_position), 12)
+    0.05
+    """
+
+    guide: Guide = Guide()
+    slot_angle: Any = np.pi / 2
+    on: str = "A"
+    pin: str = "B"
+    slider: Link = Link()
+    block: Link = Link()
+    label: str = ""
+
+    def _slot_across(self):
+        """Say where the slot is parallel to the guide."""
+        if checks.known(self.slot_angle) and np.any(parallel := np.abs(np.sin(self.slot_angle)) < PARALLEL):
+            angle = np.broadcast_to(self.slot_angle, np.shape(parallel))[parallel].flat[0]
+            yield checks.Problem(
+                f"slot_angle {angle:.6g} rad makes the slot parallel to the guide; it must differ from 0 and pi, as "
+                "pi/2 does",
+                parallel,
+            )
+
+    TRUSTED = True
+    PATHS: ClassVar = {"guide": ""}
+    RULES = checks.Rules(
+        "yoke group",
+        _slot_across,
+        guide=checks.Made(Guide, "made by Guide.at or .through"),
+        slot_angle=checks.Number("rad"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        slider=checks.Made(Link, "a Link"),
+        block=checks.Made(Link, "a Link"),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def links(self):
+        return {self._block: self.block, self._slider: self.slider}
+
+    @property
+    def references(self):
+        return {self._block: self.on, self._slider: self.pin}
+
+    @property
+    def slots(self):
+        return (Slot(self._slider, self.on, angle=self.slot_angle),)
+
+    @property
+    def lengths(self):
+        return (self.guide.guide_offset, *self.slider.centre, *self.block.centre)
+
+    @property
+    def _block(self):
+        return "block" + self.label
+
+    @property
+    def _slider(self):
+        return "slider" + self.label
+
+    @property
+    def joints(self):
+        return {self.pin: Point(self._slider)}
+
+    @property
+    def guides(self):
+        return {self._slider: self.guide}
+
+    @property
+    def outputs(self):
+        label, block, slider = self.label, self._block, self._slider
+        return {
+            self.on + label: joint_reaction(block, self.on),
+            "slot_force" + label: Output("N", False, f"{slider} on {block} along the slot's left normal"),
+            "slot_moment" + label: Output("N m", False, f"{slider} on {block} about {self.on}"),
+            **guide_outputs(slider, self.pin, label),
+        }
+
+    @property
+    def pairs(self):
+        label, block, slider = self.label, self._block, self._slider
+        return {
+            self.on + label: Turning(block, self.on),
+            "guide" + label: Sliding(slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
+            "slot" + label: Sliding(block, self.on, slider, "slot_force" + label, "slot_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        motion = placement.details[self._slider]
+        if name == "guide" + self.label:
+            return Slide(self.guide.line.direction, motion.travel.first)
+        climbing = unturned(vector(motion.block.joint.first), self.guide.line.direction)[1]
+        return Slide(motion.block.direction, climbing / motion.slot[1])
+
+    def place(self, placement):
+        self._set(placement, place(placement.joints[self.on], self.guide.line, self.slot_angle))
+
+    def follow(self, placement, joints):
+        """Place block and slider at joints found in another way."""
+        joint, pin, guide = placement.joints[self.on], joints[self.pin], self.guide.line
+        travel = Joint(*(unturned(vector(part), guide.direction)[0] for part in pin))
+        rise = minus(unturned(joint.position, guide.direction)[1], guide.offset)
+        slot = cos(self.slot_angle), sin(self.slot_angle)
+        slider = LinkMotion(pin, self.guide.direction, None, None)
+        self._set(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
+
+    def _set(self, placement, motion):
+        placement.joints[self.pin] = motion.slider.joint
+        placement.links[self._block] = motion.block
+        placement.links[self._slider] = motion.slider
+        placement.travels[self._slider] = motion.travel
+        placement.details[self._slider] = motion
+
+    def closure(self, placement):
+        """Squared sine of the slot's angle: it closes at all crank angles that are numbers."""
+        sine = placement.details[self._slider].slot[1]
+        return sine * sine + 0.0 * placement.angle
+
+    def requirement(self, placement):
+        return f"the slot of the {self._slider} must not be parallel to its guide"
+
+    def elongation(self, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
+        motion = placement.details[self._slider]
+        along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
+        return (along - free_position) - motion.slot[0] / motion.slot[1] * motion.rise
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        label, guide = self.label, self.guide.line
+        found = resolve(
+            placement.details[self._slider], guide, loads[self._block], loads[self._slider], along.get(self._slider)
+        )
+        scalars = {name + label: value for name, value in found._asdict().items() if name != "inner"}
+        on_slider = turned((0.0, found.guide_force), guide.direction)
+        return Resolved(
+            {self.on + label: found.inner, "guide" + label: on_slider}, scalars, {self.on: Wrench(found.inner, None)}
+        )

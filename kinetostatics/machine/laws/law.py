@@ -1,0 +1,183 @@
+"""What a law of motion is: a position as function of the crank angle with three exact derivatives.
+
+A law of motion in pieces: Chebyshev polynomials on panels, with their derivatives.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import ParameterError
+from ...numbers import checks
+from ...numbers.panels import Panels
+from .curves import Motion
+
+TURN = 2 * np.pi
+STEPS = 720
+"""Parts of the turn in which the derivatives of a law are added up."""
+PLACES, WEIGHTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]), np.array([5.0, 8.0, 5.0]) / 18.0
+"""Of Gauss's quadrature over a part of 1."""
+MOST_JUMPS = 0.1
+"""Share of these parts in which something may jump."""
+
+
+BESIDE = 1e-7
+"""Angles on both sides of a knot, rad, at which it is looked at."""
+JUMP = 1e-4
+"""Share of its largest value by which an acceleration or a jerk jumps at a knot that is none by rounding."""
+
+
+class Knot(NamedTuple):
+    """A crank angle, rad, at which the jerk of a law `jumps`, or its acceleration does too."""
+
+    angle: float
+    jumps: bool
+
+
+class Law:
+    """A position over the whole turn, m, with three derivatives by the crank angle: ``law(phi)``.
+
+    A law of one's own needs no more than to be called so; `knots` says at which angles its jerk or its acceleration
+    jumps, if it does.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> def law(phi):  # a law of one's own: mid-stroke 2 m, the cosine and a little of the third order
+    ...     c1, s1, c3, s3 = np.cos(phi), np.sin(phi), np.cos(3 * phi), np.sin(3 * phi)
+    ...     return 2 + 0.3 * c1 + 1e-4 * c3, -0.3 * s1 - 3e-4 * s3, -0.3 * c1 - 9e-4 * c3, 0.3 * s1 + 27e-4 * s3
+    >>> round(ks.cams.from_law(law).coupler_length, 6)
+    2.021864
+    """
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Crank angles at which the jerk may jump, rad."""
+        return ()
+
+    def __call__(self, phi) -> Motion:
+        raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
+
+    def shifted(self, phase):
+        """The same law, later by a phase, rad.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> law = ks.laws.cosine(0.3, 2.0)
+        >>> round(float(law.shifted(0.5)(0.5).position), 9), round(float(law(0.0).position), 9)
+        (2.3, 2.3)
+        """
+        return Shifted(self, **checks.singles("law", phase=(phase, "rad", {})))
+
+
+@dataclass(frozen=True, eq=False)
+class Shifted(Law):
+    """A law that comes later by a phase, rad."""
+
+    law: Any
+    phase: float
+
+    @property
+    def knots(self):
+        return tuple(knot + self.phase for knot in knots_of(self.law))
+
+    @property
+    def force_error(self):
+        return getattr(self.law, "force_error", None)
+
+    def __call__(self, phi):
+        return self.law(angles(phi) - self.phase)
+
+
+def knots_of(law):
+    """Angles at which the jerk of a law jumps, or may; none where it does not say."""
+    return tuple(getattr(law, "knots", ()))
+
+
+def bends_of(law):
+    """Knots of a law at which its acceleration or its jerk jumps, each a `Knot`; not those that are smooth."""
+    angle = np.unique(np.mod(np.array(knots_of(law), dtype=float), TURN))
+    if not angle.size:
+        return ()
+    largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, STEPS))[2:]]
+    before, after = (_parts(law, np.mod(angle + side * BESIDE, TURN))[2:] for side in (-1.0, 1.0))
+    jumps = [np.abs(there - here) > JUMP * size for here, there, size in zip(before, after, largest, strict=True)]
+    return tuple(Knot(float(place), bool(jumps[0][k])) for k, place in enumerate(angle) if jumps[0][k] or jumps[1][k])
+
+
+def angles(phi):
+    """Crank angles as an array, one for a single number."""
+    phi = checks.converted("law", "crank angle", phi, "rad")
+    if isinstance(phi, np.ndarray) and phi.size:
+        checks.require("law", checks.count("the number of crank angles", phi.size, size=phi.itemsize))
+    try:
+        return np.asarray(phi, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(f"law: crank angles must be numbers, rad, got {checks.shown(phi)}") from None
+
+
+def law_problem(law):
+    """What is wrong with a law, as a sentence, or None."""
+    if not callable(law) or isinstance(law, type):
+        return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
+    angle = np.array([-1.0, 0.5, 0.5 + TURN])
+    try:
+        given = law(angle)
+        if any(map(checks.is_quantity, given)):
+            return "law must give plain numbers, m and derivatives by rad, got quantities with units"
+        parts = _parts(law, angle)
+    except Exception as error:  # of the user's own function
+        return f"law must give position and three derivatives of arrays of crank angles; it fails with: {error}"
+    if len(parts) != len(Motion._fields):
+        return f"law must give 4 arrays, position to jerk, got {len(parts)}"
+    if not all(np.isfinite(part).all() for part in parts):
+        return "law must give finite values"
+    position = parts[0]
+    if abs(position[2] - position[1]) > 1e-9 * max(abs(position[1]), 1e-30):
+        return f"law must repeat after a turn, but gives {position[1]:.9g} m at 0.5 rad and {position[2]:.9g} a turn on"
+    return _derivative_problem(law)
+
+
+def _parts(law, angle):
+    return [np.broadcast_to(np.asarray(part, dtype=float), angle.shape) for part in law(angle)]
+
+
+def _derivative_problem(law):
+    """Whether each part of a law is what the next adds up to, but for a few steps with a jump between them."""
+    edges = np.linspace(0.0, TURN, STEPS + 1)
+    width = edges[1]
+    ends = _parts(law, edges)
+    inner = _parts(law, np.add.outer(PLACES * width, edges[:-1]))
+    for order, (kind, changes) in enumerate(zip(Motion._fields, Motion._fields[1:], strict=False)):
+        sums = width * WEIGHTS @ inner[order + 1]
+        grown = np.diff(ends[order])
+        allowed = 0.05 * width * np.max(np.abs(inner[order + 1])) + 1e-12 * np.max(np.abs(ends[order]))
+        wrong = np.abs(grown - sums) > allowed
+        if np.mean(wrong) > MOST_JUMPS:
+            place = int(np.argmax(np.abs(grown - sums)))
+            return (
+                f"law must give exact derivatives by the crank angle in rad, but at {np.degrees(edges[place]):.4g} deg "
+                f"its {kind} changes by {grown[place] / width:.6g} per rad, while its {changes} is "
+                f"{sums[place] / width:.6g}"
+            )
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class PanelLaw(Law):
+    """A law of the whole turn from polynomials on panels of it."""
+
+    panels: Panels
+
+    @property
+    def knots(self):
+        return tuple(self.panels.edges[:-1].tolist())
+
+    def __repr__(self):
+        return f"<Law in {len(self.panels.coefficients)} pieces>"
+
+    def __call__(self, phi):
+        return Motion(*self.panels.at(angles(phi), 3))

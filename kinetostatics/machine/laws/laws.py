@@ -1,0 +1,521 @@
+"""Segments of a turn in which a position goes from one value to another: the standard curves of cam design.
+
+Laws of motion: a position as function of the crank angle with three exact derivatives, whole turns and segments.
+
+cosine, joined, table             laws of the whole turn: law(phi) -> position, velocity, acceleration, jerk by phi
+harmonic, cycloidal, polynomial,
+modified_sine, modified_trapezoid,
+dwell                             segments of a turn, for `joined`; alone they are laws of their own angle
+
+A cam that makes a slider follow a law of the whole turn comes from ``cams.from_law``.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ...errors import ParameterError
+from ...numbers import checks
+from . import curves
+from .curves import Motion
+from .law import TURN, Law, angles
+from .turn_table import TurnTable
+
+WHOLE = 1e-12
+"""How far segments may be from a whole turn, relative to it."""
+POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> rise = ks.laws.cycloidal(1.7, 2.3, np.pi)
+    >>> [round(float(part), 6) for part in rise.at(np.pi / 2)]
+    [2.0, 0.381972, 0.0, -0.763944]
+    """
+
+    start: float
+    end: float
+    angle: float
+    rise: Any
+
+    @property
+    def coefficients(self):
+        """Largest velocity, acceleration and jerk of the curve, as for a stroke of 1 in an angle of 1."""
+        return self.rise.coefficients
+
+    @property
+    def knots(self):
+        """Angles from its start at which its acceleration or jerk jumps, rad."""
+        return tuple(self.angle * part for part in self.rise.breaks)
+
+    def __call__(self, phi) -> Motion:
+        """Motion at angles from the start of the segment, rad."""
+        phi = angles(phi)
+        beyond = WHOLE * TURN
+        if np.any((phi < -beyond) | (phi > self.angle + beyond)):
+            raise ParameterError(
+                f"segment: angles must lie from 0 to its {self.angle:.9g} rad, got {np.min(phi):.6g} to "
+                f"{np.max(phi):.6g}; joined(...) makes a law of the whole turn"
+            )
+        return self.at(phi)
+
+    def at(self, phi):
+        """The same, nothing checked."""
+        stroke, share = self.end - self.start, 1.0 / self.angle
+        found = self.rise(np.clip(phi * share, 0.0, 1.0))
+        position = self.start + stroke * found.position
+        scales = (stroke * share**order for order in (1, 2, 3))
+        return Motion(position, *(scale * part for scale, part in zip(scales, found[1:], strict=True)))
+
+
+def _segment(owner, start, end, angle, rise):
+    given = {
+        "start": (start, "m", {}),
+        "end": (end, "m", {}),
+        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
+    }
+    return Segment(**checks.singles(owner, **given), rise=rise)
+
+
+def harmonic(start, end, angle):
+    """Segment: simple harmonic motion, half a cosine; its acceleration jumps at both ends beside a dwell.
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.laws.harmonic(0.0, 1.0, 1.0).coefficients.velocity
+    1.5707963267948966
+    """
+    return _segment("harmonic", start, end, angle, curves.HARMONIC)
+
+
+def cycloidal(start, end, angle):
+    """Segment: cycloidal motion, a sine of acceleration.
+
+    Peak velocity 2, acceleration 2 pi, jerk 4 pi^2 of a stroke of 1 in an angle of 1.
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> [round(part, 4) for part in ks.laws.cycloidal(0.0, 1.0, 1.0).coefficients]
+    [2.0, 6.2832, 39.4784]
+    """
+    return _segment("cycloidal", start, end, angle, curves.CYCLOIDAL)
+
+
+def modified_sine(start, end, angle):
+    """Segment: modified sine, low velocity (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> [round(part, 4) for part in ks.laws.modified_sine(0.0, 1.0, 1.0).coefficients]
+    [1.7596, 5.528, 69.4664]
+    """
+    return _segment("modified_sine", start, end, angle, curves.MODIFIED_SINE)
+
+
+def modified_trapezoid(start, end, angle):
+    """Segment: modified trapezoid, low acceleration (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> [round(part, 4) for part in ks.laws.modified_trapezoid(0.0, 1.0, 1.0).coefficients]
+    [2.0, 4.8881, 61.426]
+    """
+    return _segment("modified_trapezoid", start, end, angle, curves.MODIFIED_TRAPEZOID)
+
+
+def polynomial(start, end, angle, powers="3-4-5"):
+    """Segment: sum of powers of the angle, whose coefficients follow from rest at both ends.
+
+    Parameters
+    ----------
+    start, end, angle : float
+        As for `harmonic`.
+    powers : "3-4-5", "4-5-6-7" or sequence of int
+        Two powers or more, from 2 to 15, rising; the lowest n leaves n - 1 derivatives zero at the start, so many
+        powers as many less one at the end.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        As for `harmonic`, or the powers are none.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> [round(part, 4) for part in ks.laws.polynomial(0.0, 1.0, 1.0).coefficients]
+    [1.875, 5.7735, 60.0]
+    """
+    found: Any = POLYNOMIALS.get(powers) if isinstance(powers, str) else powers
+    rising = isinstance(found, list | tuple) and all(isinstance(n, int | np.integer) and 2 <= n <= 15 for n in found)
+    if not rising or len(found) < 2 or any(one >= other for one, other in pairwise(found)):
+        names = " or ".join(map(repr, POLYNOMIALS))
+        raise ParameterError(
+            f"polynomial: powers must be {names}, or two or more whole numbers from 2 to 15, rising, got "
+            f"{checks.shown(powers)}"
+        )
+    return _segment("polynomial", start, end, angle, curves.Powers(tuple(map(int, found))))
+
+
+def dwell(position, angle):
+    """Segment: rest at a position.
+
+    Parameters
+    ----------
+    position : float
+        m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> print(*ks.laws.dwell(0.1, 1.0)(0.5))
+    0.1 0.0 0.0 0.0
+    """
+    given = {
+        "position": (position, "m", {}),
+        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
+    }
+    found = checks.singles("dwell", **given)
+    return Segment(found["position"], found["position"], found["angle"], curves.Rest())
+
+
+__all__ = [
+    "Law",
+    "Motion",
+    "Segment",
+    "cosine",
+    "cycloidal",
+    "dwell",
+    "harmonic",
+    "joined",
+    "modified_sine",
+    "modified_trapezoid",
+    "polynomial",
+    "table",
+]
+
+JUMP = 1e-9
+"""Jump between segments, relative to the largest of its kind, that counts as rounding."""
+KINDS = {"velocity": "m/rad", "acceleration": "m/rad2"}
+
+
+@dataclass(frozen=True, eq=False)
+class Cosine(Law):
+    """mean + amplitude cos(phi - phase); made by `cosine`."""
+
+    amplitude: float
+    mean: float
+    phase: float = 0.0
+
+    def __call__(self, phi):
+        psi = angles(phi) - self.phase
+        even, odd = self.amplitude * np.cos(psi), self.amplitude * np.sin(psi)
+        return Motion(self.mean + even, -odd, -even, odd)
+
+
+def cosine(amplitude, mean, phase=0.0):
+    """Law of the whole turn: position = mean + amplitude cos(phi - phase), the simple harmonic motion.
+
+    Parameters
+    ----------
+    amplitude : float
+        Half the stroke, m.
+    mean : float
+        Mid-stroke, m.
+    phase : float
+        Crank angle of the farthest position, rad.
+
+    Returns
+    -------
+    Law
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the amplitude not greater than 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> [round(float(part), 9) for part in ks.laws.cosine(0.3, 2.0)(0.0)]
+    [2.3, -0.0, -0.3, 0.0]
+    """
+    rules = {
+        "amplitude": (amplitude, "m", {"low": 0.0, "strict": True}),
+        "mean": (mean, "m", {}),
+        "phase": (phase, "rad", {}),
+    }
+    return Cosine(**checks.singles("cosine law", **rules))
+
+
+# Segments one after the other
+
+
+@dataclass(frozen=True, eq=False)
+class Joined(Law):
+    """Segments that fill a turn; made by `joined`."""
+
+    segments: tuple[Segment, ...]
+
+    @property
+    def starts(self):
+        return np.concatenate([[0.0], np.cumsum([part.angle for part in self.segments])])
+
+    @property
+    def knots(self):
+        return tuple(
+            start + knot for start, part in zip(self.starts, self.segments, strict=False) for knot in part.knots
+        )
+
+    def __call__(self, phi):
+        phi = np.mod(angles(phi), TURN)
+        starts = self.starts
+        place = np.clip(np.searchsorted(starts, phi, side="right") - 1, 0, len(self.segments) - 1)
+        found = np.empty((4, *phi.shape))
+        for number in np.unique(place):
+            here = place == number
+            found[:, here] = self.segments[number].at(phi[here] - starts[number])
+        return Motion(*found)
+
+
+def joined(*segments, smooth="acceleration"):
+    """Law of the whole turn from segments, one after the other from crank angle 0: rise, dwell, return ...
+
+    Parameters
+    ----------
+    segments : Segment
+        As of `cycloidal`, `dwell` and the others; together they take a turn.
+    smooth : "acceleration" or "velocity"
+        What must not jump from one segment to the next, and all below it. A jump of the acceleration is one of the
+        forces: allowed by "velocity".
+
+    Returns
+    -------
+    Law
+
+    Raises
+    ------
+    ParameterError
+        The segments do not fill a turn, or something jumps between them: each place with both numbers.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> import numpy as np
+    >>> rise = ks.laws.cycloidal(1.7, 2.3, np.pi / 2)
+    >>> back = ks.laws.modified_sine(2.3, 1.7, np.pi)
+    >>> law = ks.laws.joined(rise, ks.laws.dwell(2.3, np.pi / 4), back, ks.laws.dwell(1.7, np.pi / 4))
+    >>> round(float(law(2.0).position), 12)
+    2.3
+    """
+    if len(segments) == 1 and isinstance(segments[0], list | tuple):
+        segments = tuple(segments[0])
+    wrong = [
+        f"segment {n} must be made by ks.laws, got {checks.shown(part)}"
+        for n, part in enumerate(segments, 1)
+        if not isinstance(part, Segment)
+    ]
+    checks.require("joined", *wrong, checks.choice("smooth", smooth, tuple(KINDS)), None if segments else "no segments")
+    total = sum(part.angle for part in segments)
+    if abs(total - TURN) > WHOLE * TURN:
+        remedy = f"a dwell of {TURN - total:.9g} rad is missing" if total < TURN else "shorten them"
+        raise ParameterError(
+            f"joined: segments must fill a turn of {TURN:.9g} rad, but take {total:.9g} ({np.degrees(total):.6g} deg); "
+            f"{remedy}"
+        )
+    checks.require("joined", *_jumps(segments, smooth))
+    return Joined(segments)
+
+
+def _jumps(segments, smooth):
+    """What jumps from each segment to the next, the first again behind the last, as sentences."""
+    angle, kinds = 0.0, {"position": "m", **KINDS}
+    largest = [
+        max(float(np.max(np.abs(part))) for part in parts)
+        for parts in zip(*(segment.at(np.linspace(0.0, segment.angle, 65)) for segment in segments), strict=True)
+    ]
+    for number, (one, other) in enumerate(pairwise((*segments, segments[0])), 1):
+        angle += one.angle
+        before, after = one.at(np.array(one.angle)), other.at(np.array(0.0))
+        for (kind, unit), here, there, size in zip(kinds.items(), before, after, largest, strict=False):
+            if abs(there - here) > JUMP * size:
+                yield (
+                    f"the {kind} jumps at {np.degrees(angle):.6g} deg, from {here:.9g} to {there:.9g} {unit}, behind "
+                    f"segment {number} of {len(segments)}" + _remedy(kind)
+                )
+            if kind == smooth:
+                break
+
+
+def _remedy(kind):
+    if kind == "position":
+        return "; let it start where the one before ends"
+    if kind == "velocity":
+        return ""
+    return '; take a cycloidal or modified curve there, or allow it by smooth="velocity"'
+
+
+# Tables
+
+
+@dataclass(frozen=True, eq=False)
+class Tabled(Law):
+    """A spline through a table over the turn; made by `table`."""
+
+    rows: TurnTable
+
+    @property
+    def knots(self):
+        return tuple(np.unique(np.mod(self.rows.splines[0].t, TURN)).tolist())
+
+    @property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table."""
+        largest = float(np.max(np.abs(self.rows.splines[2](self.rows.angle)))) - self.rows.second_derivative_error
+        return self.rows.force_error(largest)
+
+    def __repr__(self):
+        return f"<Law through {self.rows.angle.size} points, forces within {self.force_error:.2g} of the largest>"
+
+    def __call__(self, phi):
+        phi = angles(phi)
+        return Motion(*(spline(phi) for spline in self.rows.splines))
+
+
+def table(angle, position, noise=None):
+    """Law of the whole turn from a table, by a periodic quintic spline.
+
+    Parameters
+    ----------
+    angle : array (N,)
+        Rad, rising, within one turn, end excluded; need not be evenly spaced.
+    position : array (N,)
+        m.
+    noise : float, optional
+        Standard deviation of the positions, m (of positions rounded to a step 0.29 of it): the spline then passes as
+        smoothly as it explains. Without it the spline goes through every point.
+
+    Returns
+    -------
+    Law
+        Its `force_error` is what forces are uncertain by, relative to the largest.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 8 points, angles not rising or more than one turn, a value that is not finite, or noise that the
+        positions cannot have.
+
+    Warns
+    -----
+    UserWarning
+        The table is too coarse or too noisy: `force_error` is a hundredth or more. Or the noise stated is more than
+        three times what the positions show, or less than a third.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> import numpy as np
+    >>> angle = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
+    >>> law = ks.laws.table(angle, 2.0 + 0.3 * np.cos(angle))
+    >>> round(float(law(1.0).velocity), 9)
+    -0.252441295
+    """
+    rows = TurnTable.of("table of a law", angle, position, "position", noise)
+    law = Tabled(rows)
+    rows.warn_if_uncertain("table of a law", "x''", "positions", law.force_error)
+    return law
+
+
+def __dir__():
+    return __all__

@@ -1,0 +1,333 @@
+"""Tables of values for loads: by crank angle, or by the travel of a slider."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...errors import CaseError, ParameterError
+from ...numbers import checks
+from ...numbers.parameter_tree import with_fields
+from ..sense import require_sense
+from . import table_pieces
+from .table_pieces import TURN, WholeTurns, bending, crossings, left_out
+
+OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
+"""By what a table may be over: the heading of such a column, and its unit."""
+LARGEST_AREA = checks.Usual(5.0, "is it in cm2, or in mm2?")
+"""Area, m2, beyond which no piston goes: one of 2.5 m in diameter."""
+VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
+"""Heading of a column of values, by unit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a table, in order: arrays (N,); `back` is None where both strokes have the same values."""
+
+    x: Any
+    y: Any
+    back: Any = None
+
+    TABULATED = True
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Table:
+    """Values for any load: linear between rows by crank angle, or by the travel of a slider.
+
+    It passes through every row, adds no extrema between them, and has a kink at each; a jump is two rows close
+    together. It is a function of the crank angle once read: extremes, means, `Solution.at` and sweeps take it, programs
+    give derivatives through its travel.
+
+    Parameters
+    ----------
+    x : array (N,)
+        Crank angles, rad, over one period, whose end may be given too, with the value of the start; or coordinates of
+        the slider's pin along its guide (B . guide direction), m. Rising or falling.
+    y : array (N,)
+        Values in the unit of the load, N or N m; quantities of pint are for loads of their dimension only.
+    over : "angle" or "travel"
+    back : array (N,), optional
+        Over travel, the values of the stroke with negative velocity of the slider along its guide: an indicator
+        diagram. At the ends of the stroke the value jumps where both differ there.
+    period : float
+        Crank angle after which a table over the angle repeats, rad: 2 pi or a whole multiple of it.
+    slider : str, optional
+        Over travel, the slider it is read by: unless told the one that the load acts on, or the only one there is.
+
+    Raises
+    ------
+    ParameterError
+        Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
+        ends; over travel: fewer than two rows, coordinates that do not rise. When it is read: a travel outside of it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> gas = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0])
+    >>> s = ks.solve(pump, [1.0, 5.0], crank_speed=100.0, loads=ks.ProcessForce(gas))
+    >>> [round(float(torque), 3) for torque in s.balancing_torque]
+    [0.0, 22.287]
+    """
+
+    rows: Any = field(repr=False)
+    over: str = "angle"
+    slider: Any = None
+    period: float = field(default=TURN, metadata={"structural": True})
+    unit: str = field(default="", metadata={"structural": True})
+
+    RULES = checks.Rules("table")
+
+    def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
+        given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
+        unit = table_pieces.unit_of(y) or table_pieces.unit_of(back)
+        value = checks.Number(unit or "N", table=True)
+        found = checks.examined(
+            "table",
+            {"x": checks.Number(OVER[over][1] if over in OVER else "rad", table=True)}
+            | dict.fromkeys(tuple(given)[1:], value),
+            given,
+            checks.choice("over", over, tuple(OVER)),
+            WholeTurns().taken(period, "period")[1],
+            None if slider is None else checks.Name().taken(slider, "slider")[1],
+            None if back is None or over == "travel" else 'back is for a table over="travel"',
+            None if slider is None or over == "travel" else 'slider is for a table over="travel"',
+        )
+        try:
+            arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
+        except TypeError as error:
+            raise ParameterError(
+                "table: its rows have no values yet, as under jax.jit or jax.grad: give plain numbers, and let JAX "
+                "trace crank angles and numbers of the mechanism; tables have no derivatives by their rows"
+            ) from error
+        shapes = {values.shape for values in arrays.values()}
+        fits = len(shapes) == 1 and arrays["x"].ndim == 1
+        checks.require("table", None if fits else f"{' and '.join(arrays)} must be 1-D, of one length")
+        checks.require("table", table_pieces.order_problem(arrays["x"], over))
+        if arrays["x"][0] > arrays["x"][-1]:
+            arrays = {name: values[::-1] for name, values in arrays.items()}
+        period = WholeTurns().taken(period)[0]
+        if over == "angle":
+            checks.require("table", table_pieces.problem(arrays["x"], arrays["y"], period))
+            if table_pieces.closes(arrays["x"], period):
+                arrays = {name: values[:-1] for name, values in arrays.items()}
+        else:
+            short = None if period == TURN else "over travel the period is one turn"
+            checks.require("table", table_pieces.travel_problem(arrays["x"]), short)
+        for values in arrays.values():
+            values.setflags(write=False)
+        for name, part in {
+            "rows": Rows(**arrays),
+            "over": over,
+            "slider": slider,
+            "period": period,
+            "unit": unit,
+        }.items():
+            object.__setattr__(self, name, part)
+
+    @classmethod
+    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None):
+        """Read a table with two or three columns, each headed by its name and a unit that converts.
+
+        Parameters
+        ----------
+        path : path
+            First column ``crank_angle [deg]`` or ``travel [mm]``; then ``force [kN]``, ``torque [N m]``, or with an
+            `area` ``pressure [bar]``; over travel the same for the stroke back, if any, headed ``force_back [kN]``
+            and so on. Before the heading there may be lines of comment that begin with ``#``.
+        unit : "N" or "N m"
+            Of the load.
+        area : float, optional
+            m2, by which pressures become forces along the guide; negative where they push against its direction.
+        period, slider
+            As of the table.
+        over : "angle" or "travel", optional
+            Which column to take where the file has both; unless told, the travel.
+
+        Returns
+        -------
+        Table
+
+        Raises
+        ------
+        CaseError
+            The file cannot be read, or makes no table.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> diagram = ks.shipped_cases()["compressor"].parent / "compressor_indicator.csv"  # travel [mm] ...
+        >>> pressure = ks.ProcessForce(ks.Table.from_csv(diagram, area=-20e-4))
+        >>> pump = ks.crank_slider(0.05, 0.198, slider=ks.Link(1.2))
+        >>> s = ks.solve(pump, 0.1, crank_speed=100.0, loads=[pressure])
+        >>> round(float(s.balancing_torque), 1)
+        1.5
+        """
+        from ...numbers.files import headings, read_columns
+
+        problems = (
+            checks.choice("unit", unit, ("N", "N*m", "N m")),
+            None if over is None else checks.choice("over", over, tuple(OVER)),
+            "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
+        )
+        number = {} if area is None else {"area": (area, "m**2", {"usual": LARGEST_AREA})}
+        area = checks.singles("table", *problems, **number).get("area")
+        names = [name for name, _ in headings(path)]
+        if area is None and "pressure" in names and VALUES[unit] not in names:
+            raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
+        over = over or ("travel" if OVER["travel"][0] in names else "angle")
+        column, own = OVER[over]
+        of = unit.replace(" ", "*") if area is None else "Pa"
+        value = VALUES[of]
+        back = over == "travel" and f"{value}_back" in names
+        if problem := table_pieces.unread_problem(names, value, over):
+            raise CaseError(path, [problem])
+        x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
+        y, back, *_ = *(part if area is None else area * part for part in values), None
+        try:
+            return with_fields(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
+        except ParameterError as error:
+            raise CaseError(path, [str(error)]) from None
+
+    @property
+    def x(self):
+        """Crank angles, rad, or coordinates along the guide, m."""
+        return self.rows.x
+
+    @property
+    def y(self):
+        """Values in the unit of the load."""
+        return self.rows.y
+
+    @property
+    def back(self):
+        """Values of the stroke with negative velocity; None where there are no others."""
+        return self.rows.back
+
+    @property
+    def strokes(self):
+        """Values of both strokes, or of one where they are the same."""
+        return [self.y] if self.back is None else [self.y, self.back]
+
+    @property
+    def largest(self):
+        """Value of largest magnitude, with its sign."""
+        values = np.concatenate(self.strokes)
+        return float(values[np.argmax(np.abs(values))])
+
+    def of(self, slider):
+        """The table read by the travel of a slider unless it names one itself."""
+        return self if self.over == "angle" or self.slider is not None else with_fields(self, slider=slider)
+
+    def problems(self, mechanism):
+        """What is wrong with it on a mechanism, as sentences."""
+        if self.over == "angle":
+            return
+        sliders = tuple(mechanism.guides)
+        if self.slider is not None:
+            yield checks.choice("table over travel: slider", self.slider, sliders)
+        elif len(sliders) != 1:
+            there = f"sliders {', '.join(map(repr, sliders))}: say which, slider=..." if sliders else "no slider"
+            yield f"table over travel: the mechanism has {there}"
+
+    def __call__(self, motion):
+        return self.read(motion, self.pieces(motion))
+
+    def place(self, motion):
+        """What it is read by: crank angle, or travel of the slider."""
+        return motion.crank_angle if self.over == "angle" else motion.travel(self._slider(motion))
+
+    def read(self, motion, pieces):
+        """Values at a motion of whatever numbers that runs through these pieces."""
+        start, value, slope = pieces
+        is_angle = self.over == "angle"
+        beyond = motion.crank_angle - start if is_angle else motion.elongation(start, self._slider(motion))
+        return value + slope * beyond
+
+    def _slider(self, motion):
+        return self.slider or next(iter(motion.mechanism.guides))
+
+    def pieces(self, motion, number=lambda given: given):
+        """Where the piece of the table starts at each crank angle, the value there, and its slope.
+
+        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
+
+        Raises
+        ------
+        ParameterError
+            The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
+        """
+        place = self.place(motion)
+        returning = None if self.back is None else self.returns(motion)
+        xp, place, returning = table_pieces.looked_at(place, returning)
+        x, y, period = number(self.x), number(self.y), number(self.period)
+        if self.over == "angle":
+            turns = xp.floor((place - self.x[0]) / self.period)
+            piece = table_pieces.piece_at(xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period)
+            start, value, slope = table_pieces.pieces_at(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
+            return start + number(turns) * period, value, slope
+        piece = table_pieces.piece_at(xp, self.x, place)
+        strokes = [y] if self.back is None else [y, number(self.back)]
+        start, value, slope = table_pieces.pieces_at(xp, x, strokes, piece, returning)
+        if xp is np:
+            table_pieces.require_inside(self.x, place, motion)
+            if self.by_sense:
+                require_sense("table over travel: it has other values for the stroke back", motion)
+            return start, value, slope
+        return start, xp.where(table_pieces.outside(self.x, place), xp.nan, value), slope
+
+    def rate(self, motion):
+        """Rate of the slider along its guide by the crank angle, m."""
+        return motion.placement.travels[self._slider(motion)].first
+
+    @property
+    def by_sense(self):
+        """Whether its values depend on which way the crank turns."""
+        return self.back is not None
+
+    def returns(self, motion):
+        """Whether the slider is on its stroke with negative velocity, or begins it where the crank stands."""
+        return motion.crank_sense * self.rate(motion) < 0
+
+    def period_on(self, mechanism):
+        """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
+        return self.period if self.over == "angle" else TURN * mechanism.turns
+
+    def kinks(self, motion):
+        """Crank angles (K,) of its kinks in its period, ends of strokes among them, and (J,) at which it may jump."""
+        if self.over == "angle":
+            return np.mod(self.x, self.period), np.empty(0)
+        ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
+        return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
+
+    def is_bent(self, straight):
+        """Whether it bends by so much, or may jump where a slider turns back; any table bends by more than 0."""
+        return straight == 0.0 or self.back is not None or bending(self, straight).size > 0
+
+    def bends(self, motion, straight):
+        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer.
+
+        Also which (K,) are jumps, and the share of its largest value by which it may bend besides.
+        """
+        inner, rest = self.x[bending(self, straight)], left_out(self, straight)
+        if self.over == "angle":
+            return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
+        ends, passed = crossings(motion, self._slider(motion), inner)
+        found = passed if self.back is None else np.column_stack([ends, passed])
+        return found, np.arange(found.shape[1]) < found.shape[1] - passed.shape[1], rest
+
+    @property
+    def _content(self):
+        own = self.rows
+        return own.x.tobytes(), own.y.tobytes(), None if own.back is None else own.back.tobytes(), *self._structure
+
+    @property
+    def _structure(self):
+        return self.over, self.slider, self.period, self.unit
+
+    def __eq__(self, other):
+        return self._content == other._content if isinstance(other, Table) else NotImplemented
+
+    def __hash__(self):
+        return hash(self._content)

@@ -1,0 +1,266 @@
+"""What looks like a slip, though a machine could have it: a warning, and computed all the same."""
+
+from typing import Any
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.arithmetic import sqrt
+from .group import FRAME
+from .links import present
+from .loads.points import carrier
+
+THIN = 1000.0
+"""How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
+THICK = 3.0
+"""How many times mass times length squared it may be: a uniform rod's is 1/12, in kg cm2 833, in kg mm2 83 333."""
+OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
+"""Units that make a uniform rod's inertia more like itself from that many times mass times length squared on."""
+LONGEST = 100.0
+"""Length, m, that no link has."""
+SLENDER = 2000.0
+"""How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
+FASTEST = 60.0
+"""Speed of a crank's pin, m/s, that no machine has: stresses by inertia go by its square, racing engines end at 50."""
+TWO_TURNS = 4.0 * np.pi
+"""Size, rad, from which on crank angles may look like degrees."""
+TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
+"""A turn in radians that was taken for degrees."""
+SMALL = 0.9 * TURN_TWICE, 1.01 * TURN_TWICE
+"""Sizes, rad, between which crank angles reach that are such a turn, with or without its end."""
+
+
+def of_mechanism(mechanism):
+    """Sentences on sliders that stand still, and on lengths and inertias of links that look like another unit's."""
+    bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
+    inertias = (text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link), mechanism.crank)))
+    return (*_still(mechanism), *_lengths(bars), *inertias)
+
+
+def of_scene(mechanism, crank_speed, numbers):
+    """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and that."""
+    longest = _longest(mechanism)
+    odd = [text for path, value, usual in numbers if (text := checks.unusual(path, value, usual, longest))]
+    return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
+
+
+def _longest(mechanism):
+    """Length of the longest link between two joints, m; 0 where none is known."""
+    return max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
+
+
+def _lengths(bars):
+    """What is odd about the lengths of links."""
+    lengths = [(_most(bar.length), bar.link) for bar in bars]
+    if not lengths:
+        return
+    (longest, link), (shortest, other) = max(lengths), min(lengths)
+    if longest > LONGEST:
+        yield f"the {link} is {longest:.6g} m long; are lengths in mm?"
+    elif longest > SLENDER * shortest:
+        yield (
+            f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is "
+            "one of them in mm?"
+        )
+
+
+def _fast(length, crank_speed, longest):
+    """What is odd about the speed of the crank's pin."""
+    if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
+        return
+    radius, speed = _most(length), _most(abs(crank_speed))
+    if radius * speed > FASTEST:
+        yield (
+            f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
+            f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
+        )
+
+
+def of_loads(mechanism, loads):
+    """Say which loads between two points act along a cylinder, but not on both its rod and itself."""
+    for load, slot, other in beside_rods(mechanism, loads):
+        place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
+        yield (
+            f"{load.title}: it acts along the {slot.link} on {slot.joint!r}, a joint of the "
+            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it; for the pressure in the "
+            f'{slot.link} give a place on the {slot.rod}, between=(("{slot.rod}", 0.0, 0.0), {place})'
+        )
+
+
+def beside_rods(mechanism, loads):
+    """Loads between a cylinder and the joint of its rod that another link owns, with the slot and the other point."""
+    for slot in mechanism.slots:
+        for load in loads:
+            ends: Any = getattr(load, "between", ())
+            if slot.rod and len(ends) == 2 and slot.joint in ends:
+                carriers = {carrier(mechanism, end).link for end in ends}
+                if slot.link in carriers and slot.rod not in carriers:
+                    yield load, slot, ends[ends[0] == slot.joint]
+
+
+def sizes(mechanism):
+    """What a first look compares, of any numbers.
+
+    In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, triples of
+    them and the length of a bar, and pairs of a bar's length and how far that is from the arm of its inner joint. There
+    are no hints of the mechanism where no bar is as long as its arm, the longest is neither huge nor huge beside the
+    shortest, and no inertia is small even beside that bar, or large.
+    """
+    reaches = [reach for part in mechanism.parts for reach in part.reaches]
+    bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
+    turning = [
+        (link.inertia, link.mass, bar.length)
+        for bar in mechanism.bars
+        if (link := mechanism.links.get(bar.link)) is not None and _is_moved(bar, mechanism.crank)
+        if present(link.inertia) is not None and present(link.mass) is not None
+    ]
+    arms = []
+    for bar, _ in _on_arms(mechanism):
+        _, along, across = mechanism.joints[bar.start]
+        away = abs(along) if present(across) is None else sqrt(along * along + across * across)
+        arms.append((bar.length, away - bar.length))
+    return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, turning, arms
+
+
+def _is_moved(bar, crank):
+    """Whether a bar is no part of the crank, whose inertia may be that of all the drive."""
+    return bar.link not in crank.links
+
+
+def _still(mechanism):
+    """Say which sliders stand still all over the turn.
+
+    That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
+    """
+    for bar, slider in _on_arms(mechanism):
+        if _as_long_as_its_arm(mechanism, bar):
+            angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
+            rate = np.abs(mechanism.place(angle).travels[slider].first)
+            if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
+                yield (
+                    f"the {slider} stands still all over the turn: the {bar.link} is as long as the arm of {bar.start} "
+                    f"about the point where {bar.end} rests; another assembly lets it move"
+                )
+
+
+def _on_arms(mechanism):
+    """Bars from a joint on a link that turns about a fixed pivot to a slider, each with that slider."""
+    for bar in mechanism.bars:
+        arm, slider = (mechanism.joints[end].link for end in (bar.start, bar.end))
+        if slider in mechanism.guides and arm != FRAME and _is_on_the_frame(mechanism, arm):
+            yield bar, slider
+
+
+def _is_on_the_frame(mechanism, link):
+    return mechanism.joints[mechanism.references[link]].link == FRAME
+
+
+def _as_long_as_its_arm(mechanism, bar):
+    """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about."""
+    _, along, across = mechanism.joints[bar.start]
+    if not all(map(checks.known, (along, across, bar.length))):
+        return False
+    return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
+
+
+def _inertia(bar, link, crank):
+    """What is odd about a link's inertia beside its mass and length; none at all makes a point mass."""
+    if link is None or not (checks.known(link.mass) and checks.known(link.inertia)):
+        return None
+    inertia, unit = link.inertia, link.mass * bar.length * bar.length
+    if _any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
+        odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
+    elif _is_moved(bar, crank) and _any((inertia > THICK * unit) & (unit > 0)):
+        times = inertia / np.where(unit > 0, unit, np.inf)
+        worst = np.argmax(times)
+        odd, most = np.ravel(np.broadcast_to(inertia, np.shape(times)))[worst], np.ravel(times)[worst]
+        beside, advice = f"{12.0 * most:.4g} times", _unit_of_inertia(odd, most)
+    else:
+        return None
+    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
+    return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
+
+
+def _unit_of_inertia(inertia, times):
+    """What to ask about an inertia that is so many times mass times length squared."""
+    for least, (unit, factor) in OTHER_UNITS.items():
+        if times > least:
+            return f"is it in {unit}? That makes {factor * inertia:.4g} kg m2"
+    return "is it in kg m2, about the mass centre?"
+
+
+def of_given_angles(given, angle):
+    """Say if crank angles look like degrees or a count of them, by what was given and as they are taken."""
+    return of_count(given) or of_angles(angle)
+
+
+def of_one(angle):
+    """Say if a single crank angle looks like degrees: whole, from two turns in radians to three in degrees."""
+    if not TWO_TURNS <= abs(angle) <= 1080.0 or not _whole(angle):
+        return ()
+    return (
+        f"the crank angle {angle:g} looks like degrees; it is taken as {angle:g} rad, and {angle:g} deg are "
+        f"np.radians({angle:g})",
+    )
+
+
+def of_count(given):
+    """Say if a crank angle looks like a count of them: a whole number of more than two turns."""
+    if not isinstance(given, int | np.integer) or given < TWO_TURNS:
+        return ()
+    return (
+        f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
+        f"np.linspace(0, 2 * np.pi, {given}, endpoint=False), for degrees np.radians({given})",
+    )
+
+
+def of_angles(angle):
+    """Say if crank angles look like degrees, or like radians taken for degrees."""
+    if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
+        return ()
+    first, last = angle.item(0), angle.item(-1)
+    if -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS:
+        return _converted_twice(angle) if SMALL[0] < abs(last - first) < SMALL[1] and angle.size > 2 else ()
+    if angle.size < 3:
+        return _few(np.ravel(angle))
+    row = np.ravel(angle)
+    step, reach = row[1] - row[0], row[-1] - row[0]
+    even = abs(step) >= 0.25 and _whole(360.0 / step) and np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
+    if not even or not (_whole(reach / 90.0) or _whole((reach + step) / 90.0)):
+        return ()
+    return (f"crank angles from {row[0]:g} to {row[-1]:g} by {step:g} look like degrees; they are taken as radians",)
+
+
+def _few(row):
+    """Say if one crank angle or two look like degrees: twelfths of a turn counted in them."""
+    if not all(_whole(angle / 30.0) for angle in row.tolist()):
+        return ()
+    text = " and ".join(f"{angle:g}" for angle in row.tolist())
+    if row.size == 1:
+        return (f"the crank angle {text} looks like degrees; it is taken as radians",)
+    return (f"crank angles {text} look like degrees; they are taken as radians",)
+
+
+def _converted_twice(angle):
+    """Say if crank angles are an even turn of radians that were taken for degrees."""
+    row = np.ravel(angle)
+    step, reach = row[1] - row[0], row[-1] - row[0]
+    even = np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
+    if not even or not any(abs(abs(whole) - TURN_TWICE) < 1e-9 for whole in (reach, reach + step)):
+        return ()
+    return (
+        f"crank angles from {row[0]:g} to {row[-1]:g} are a turn in radians, converted from degrees once more; they "
+        "are taken as radians",
+    )
+
+
+def _whole(number):
+    return abs(number - round(number)) < 1e-9
+
+
+def _any(condition):
+    return condition if isinstance(condition, bool) else bool(np.any(condition))
+
+
+def _most(values):
+    return values if isinstance(values, float) else float(np.max(values))
