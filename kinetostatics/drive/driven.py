@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NONE
 from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
-from ..mechanics.pushes import drive_asked_for, title_of
+from ..mechanics.load_values import drive_asked_for, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import with_fields

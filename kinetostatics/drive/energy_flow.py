@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import QuantityError
 from ..machine.friction import NONE
-from ..mechanics.pushes import title_of
+from ..mechanics.load_values import title_of
 from ..numbers import checks
 from ..numbers.formatting import number
 from ..numbers.parameter_tree import with_fields

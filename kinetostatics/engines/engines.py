@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError
-from ..mechanics.gaps import gap, groups_behind
+from ..mechanics.motion import gap, groups_behind
 from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.arithmetic import read_only, stack
 from ..numbers.planar import plus

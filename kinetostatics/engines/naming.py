@@ -18,7 +18,11 @@ import numpy as np
 from .graph import INPUTS, Node
 from .symbols import Symbol
 
-KERNELS = ("kinetostatics.machine", "kinetostatics.mechanics.energy", "kinetostatics.mechanics.principal_points")
+KERNELS = (
+    "kinetostatics.machine",
+    "kinetostatics.mechanics.energy_contact",
+    "kinetostatics.mechanics.principal_points",
+)
 """Modules whose local variables are names."""
 GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "placement"))
 AXES = ("x", "y")

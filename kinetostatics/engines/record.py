@@ -17,8 +17,8 @@ from ..machine import loads
 from ..machine.crank import ray
 from ..machine.loads import Load, ProcessForce, table_pieces
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.gaps import groups_behind, places
-from ..mechanics.pushes import given, moving, title_of
+from ..mechanics.load_values import given, moving, title_of
+from ..mechanics.motion import groups_behind, places
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.arithmetic import UNIT

@@ -12,7 +12,7 @@ from ..machine.loads import value_of
 from ..machine.sense import sense_of
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import FrictionSolver, size_of
-from ..mechanics.pushes import pushed, settled, title_of
+from ..mechanics.load_values import pushed, settled, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number, plus, product

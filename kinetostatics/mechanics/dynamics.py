@@ -16,12 +16,11 @@ from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
-from . import contact, energy, springs
+from . import energy_contact, springs
 from .friction import FrictionSolver, larger, smaller
-from .gaps import places
-from .motion import Motion
+from .load_values import pushed, settled
+from .motion import Motion, places
 from .principal_points import principal_points
-from .pushes import pushed, settled
 
 UNBALANCED = 1e-6
 """Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
@@ -155,7 +154,7 @@ class Dynamics(Motion):
 
     def pressure(self, name):
         """Hertz pressure of a contact by name, (..., N), Pa; NaN where there is no such contact."""
-        return self._scalar(contact.pressure(self, name))
+        return self._scalar(energy_contact.pressure(self, name))
 
     @property
     def balancing_torque(self):
@@ -195,27 +194,27 @@ class Dynamics(Motion):
     @property
     def reduced_inertia(self):
         """Inertia of all links as the crank feels it, (..., N), kg m2."""
-        return self._scalar(energy.reduced_inertia(self))
+        return self._scalar(energy_contact.reduced_inertia(self))
 
     @property
     def reduced_inertia_slope(self):
         """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-        return self._scalar(energy.reduced_inertia_slope(self))
+        return self._scalar(energy_contact.reduced_inertia_slope(self))
 
     @property
     def kinetic_energy(self):
         """Kinetic energy of all links, (..., N), J."""
-        return self._scalar(energy.kinetic_energy(self))
+        return self._scalar(energy_contact.kinetic_energy(self))
 
     @property
     def potential_energy(self):
         """Potential energy of weight, springs and other loads that have one, (..., N), J."""
-        return self._scalar(energy.potential_energy(self))
+        return self._scalar(energy_contact.potential_energy(self))
 
     @property
     def load_torque(self):
         """Torque on the crank that holds weight and loads, without any inertia, (..., N), N m."""
-        return self._scalar(energy.load_torque(self))
+        return self._scalar(energy_contact.load_torque(self))
 
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""

@@ -1,26 +1,82 @@
-"""Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
+"""Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link.
+
+Where quantities have no value since parts of the mechanism cannot be assembled.
+
+Motion of a group has none where the group, or one that it hangs on, cannot be assembled; its forces have none either
+where a group cannot that hangs on it, for they carry that group's. What is of the crank, or of the mechanism as a
+whole, has none where any group cannot. All else does not hang on the gap, and stays.
+"""
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import QuantityError
 from ..machine.friction import NONE, Frictions
-from ..machine.group import FRAME, RATES
+from ..machine.group import FRAME, RATES, TRAVELS
 from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
 from ..machine.loads import is_given
 from ..machine.loads.points import PLACE
 from ..machine.mechanism import Mechanism
 from ..machine.sense import sense_of
 from ..numbers import checks, parameter_tree
-from ..numbers.arithmetic import namespace, read_only, stack
+from ..numbers.arithmetic import held, namespace, read_only, stack
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Leaves, taken_apart, wider
 from ..numbers.planar import number, plus, product, stretched, vector
-from .gaps import gap, groups_behind
 from .quantities import of_mechanism
+
+
+def groups_behind(mechanism):
+    """Groups that must be assembled for a quantity to have a value, by its name: all, unless it is of a group."""
+    groups, inner = mechanism.groups, _inner(mechanism.groups)
+    found: defaultdict[str, tuple] = defaultdict(lambda: groups)
+    for place, group in enumerate(groups):
+        outer = set().union(*(own for own in inner if place in own))
+        rubbing = [f"{name}{ending}" for name in group.pairs for ending in ("_friction", "_friction_loss")]
+        rates = [f"{link}{ending}" for link in group.links for ending in RATES]
+        travels = [f"{slider}{ending}" for slider in group.guides for ending in TRAVELS]
+        for behind, names in (
+            (outer, (*group.outputs, *group.contacts, *rubbing)),
+            (inner[place], (*group.motions, *rates, *travels)),
+        ):
+            found.update(dict.fromkeys(names, tuple(groups[one] for one in behind)))
+    return found
+
+
+def _inner(groups):
+    """Places of each group and of all that it hangs on."""
+    found: list[set[int]] = []
+    joints: dict[str, set[int]] = {}
+    links: dict[str, set[int]] = {}
+    for place, group in enumerate(groups):
+        under = [joints.get(name, set()) for name in group.hangs_on]
+        under += [links.get(point.link, set()) for point in group.joints.values()]
+        own = {place}.union(*under)
+        joints |= dict.fromkeys(group.joints, own)
+        links |= dict.fromkeys(group.links, own)
+        found.append(own)
+    return found
+
+
+def places(placement, groups):
+    """Coordinates of the joints and directions of the links of groups, all NaN where one cannot be assembled."""
+    joints = [placement.joints[name].position for group in groups for name in group.joints]
+    directions = [placement.links[name].direction for group in groups for name in group.links]
+    return [part for pair in (*joints, *directions) for part in pair]
+
+
+def gap(placement, groups):
+    """Zero where all of some groups are assembled, NaN elsewhere; None if none of them moves."""
+    total = reduce(plus, (part for part in places(placement, groups) if hasattr(part, "shape")), None)
+    if total is None or total.dtype == object:
+        return None if total is None else 0.0 * held(total)
+    xp = namespace(total)
+    return xp.where(xp.isfinite(total), xp.zeros_like(total), xp.full_like(total, xp.nan))
 
 
 class SceneParts(NamedTuple):

@@ -24,7 +24,7 @@ from functools import reduce
 from ..machine.links import Wrench
 from ..numbers.parameter_tree import say_together
 from ..numbers.planar import added, minus, plus, product, stretched
-from .pushes import pushed
+from .load_values import pushed
 
 UNSEEN = 2.0**-120
 """Rate, N/m, that counts as nothing: where there is neither spring nor inertia something is to be divided by."""

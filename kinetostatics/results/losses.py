@@ -21,8 +21,8 @@ import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
-from ..mechanics.energy import work_of
-from ..mechanics.pushes import title_of
+from ..mechanics.energy_contact import work_of
+from ..mechanics.load_values import title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from .extremes import extrema

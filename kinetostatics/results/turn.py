@@ -11,8 +11,8 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import TURN, is_given, kinked, kinks_of, period_of, period_on, refusals
-from ..mechanics import assembly, contact
-from ..mechanics.pushes import given, title_of
+from ..mechanics import assembly, energy_contact
+from ..mechanics.load_values import given, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .changes import sign_changes
@@ -95,7 +95,7 @@ class Turn:
             grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
         first = solution.at(grid)
         require_repeating(solution)
-        checks.require("extremes", *refusals(first), *contact.refusals(first))
+        checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
         near = assembly.near_limits(solution.mechanism, NEAR)
         gaps = assembly.gaps(solution.mechanism) if near.size else ()
         own = TURN * solution.mechanism.turns

@@ -1,8 +1,8 @@
 """What is looked at before a solution is handed out: whether it closes, whether friction jams, whether loads apply."""
 
 from ..machine.loads import refusals
-from ..mechanics import contact, jamming
-from ..mechanics.pure import require_pure
+from ..mechanics import energy_contact, jamming
+from ..mechanics.load_values import require_pure
 from ..numbers import checks
 
 
@@ -15,5 +15,5 @@ def checked(solution, on_gap="raise"):
         jamming.check(solution, on_gap)
     if not solution.loads_are_given:
         require_pure(solution)
-    checks.require("solve", *refusals(solution), *(contact.refusals(solution) if on_gap == "raise" else ()))
+    checks.require("solve", *refusals(solution), *(energy_contact.refusals(solution) if on_gap == "raise" else ()))
     return solution

@@ -6,7 +6,7 @@ from ..engines.error_bounds import PRECISIONS
 from ..engines.jax_backend import Backend
 from ..engines.numba_backend import numba_available, require_numba
 from ..machine.loads import is_given
-from ..mechanics.pure import require_pure
+from ..mechanics.load_values import require_pure
 from ..numbers import checks
 from .program import Program
 from .scene import scene_problem, unchecked

@@ -12,7 +12,7 @@ from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import ParameterError
 from ..machine.loads import TURN, refusals
-from ..mechanics import contact
+from ..mechanics import energy_contact
 from ..mechanics.quantities import scale, sizes
 from ..numbers import checks
 from ..numbers.arithmetic import ROUNDING
@@ -38,7 +38,7 @@ def run(scene, job, count, outputs):
     nearest to a limit position (designs,), NaN if it is not near; and of which outputs the turn is parted (outputs,).
     """
     solution = solution_of(scene, job.angles)
-    checks.require("solve", *refusals(solution), *contact.refusals(solution))
+    checks.require("solve", *refusals(solution), *energy_contact.refusals(solution))
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.pushes import given
+from kinetostatics.mechanics.load_values import given
 from kinetostatics.mechanics.quantities import values
 from kinetostatics.views.peaks import with_peaks
 from support.every import every

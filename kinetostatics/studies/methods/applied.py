@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...machine.loads import Gravity, ProcessForce, Spring
-from ...mechanics.pushes import pushed, settled
+from ...mechanics.load_values import pushed, settled
 from .acting import Acting
 
 PARTS = "x", "y", "moment"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...machine.loads import Gravity, Spring
-from ...mechanics.pushes import pushed, settled
+from ...mechanics.load_values import pushed, settled
 from ...numbers.lazy import cached_property
 from .acting import Acting
 from .constraints import ACCELERATION, FORCE, RATE

@@ -17,7 +17,7 @@ from ...machine.crank import ray
 from ...machine.guide import Guide
 from ...machine.loads import Load, ProcessForce, Table
 from ...mechanics.dynamics import Dynamics
-from ...mechanics.pushes import moving, title_of
+from ...mechanics.load_values import moving, title_of
 from ...mechanics.quantities import components
 from ...numbers.parameter_tree import mapped, with_fields
 

@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from ...errors import NotGivenError
-from ...mechanics import energy
+from ...mechanics import energy_contact
 from ...numbers.parameter_tree import with_fields
 from .enclosures import library, on_arb
 
@@ -150,7 +150,7 @@ def _kernels(arb, driven, angle):
     """Inertia at the crank and load torque at crank angles, lists of arb numbers."""
     scene = with_fields(driven.scene, crank_speed=1.0, crank_acceleration=0.0)
     run = on_arb(arb, scene.unsolved(angle))
-    inertia, load = energy.reduced_inertia(run), energy.load_torque(run)
+    inertia, load = energy_contact.reduced_inertia(run), energy_contact.load_torque(run)
     links = [arb(0)] * angle.size if inertia is None else [arb(value).mid() for value in inertia]
     asked = np.zeros(angle.size) if load is None else np.broadcast_to(load, angle.shape)
     return [value + arb(driven.flywheel) for value in links], [arb(value).mid() for value in asked]

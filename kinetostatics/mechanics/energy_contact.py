@@ -1,0 +1,141 @@
+"""Energies of a scene, and the inertia that the crank feels: sums over links of squares of kinematic coefficients.
+
+With s the mass centre of a link and theta its angle, derivatives by the crank angle phi, the kinetic energy of all
+links is J omega^2 / 2 with the reduced inertia
+
+    J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
+
+(Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*, on equivalent inertia; Eksergian's equation of motion
+T = J alpha + J' omega^2 / 2 + load torque).
+
+Contacts along a line: their pressure from the forces found, and where a roller undercuts what carries it.
+"""
+
+from functools import reduce
+
+import numpy as np
+
+from ..errors import QuantityError
+from ..machine.group import FRAME
+from ..machine.links import arm, first_at, second_at, virtual_work
+from ..numbers import checks
+from ..numbers.arithmetic import sign
+from ..numbers.planar import minus, number, plus, product, work
+from .load_values import pushed, settled
+
+
+def reduced_inertia(motion):
+    """Reduced inertia of all links, kg m2; None without any mass."""
+    return _summed(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+
+
+def reduced_inertia_slope(motion):
+    """Its derivative by the crank angle, kg m2; None where it does not change."""
+    slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    return product(2.0, _summed(slopes))
+
+
+def kinetic_energy(motion):
+    """Kinetic energy of all links, J."""
+    square, _ = motion.accelerating
+    return product(0.5 * square, reduced_inertia(motion))
+
+
+def potential_energy(motion):
+    """Potential energy of the loads that have one, J."""
+    return _summed(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
+
+
+def load_torque(motion):
+    """Torque on the crank that holds weight and loads, without any inertia, N m."""
+    links = motion.placement.links
+    weights = (
+        product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))
+        for name, link in motion.mechanism.links.items()
+    )
+    return minus(None, plus(_summed(weights), motion.load_work))
+
+
+def work_of(item, motion):
+    """Work of a load but weight per unit of crank angle, N m; None where it does none."""
+    if hasattr(item, "push"):
+        return product(pushed(item, motion), motion.placement.travels[item.on].first)
+    wrenches = settled(item, motion).wrenches(motion)
+    links = motion.placement.links
+    return _summed(virtual_work(links[name], wrench) for name, wrench in wrenches if name != FRAME)
+
+
+def _summed(parts):
+    return reduce(plus, parts, None)
+
+
+def _to_centre(motion, body):
+    return arm(motion.direction, body.along, body.across)
+
+
+def _inertia(motion, body):
+    first = first_at(motion, _to_centre(motion, body))
+    return plus(product(body.mass, work(first, first)), product(body.inertia, product(motion.ratio, motion.ratio)))
+
+
+def _slope(motion, body):
+    to_centre = _to_centre(motion, body)
+    moving = work(first_at(motion, to_centre), second_at(motion, to_centre))
+    return plus(product(body.mass, moving), product(body.inertia, product(motion.ratio, motion.ratio_slope)))
+
+
+def pressure(dynamics, name):
+    """Largest Hertz pressure of a contact of a `Dynamics`, by name; NaN where there is no such contact."""
+    group = next((group for group in dynamics.mechanism.groups if name in group.contacts), None)
+    if group is None:
+        known = [own for group in dynamics.mechanism.groups for own in group.contacts]
+        raise QuantityError(_unknown(dynamics.mechanism, name, known))
+    touch = group.contacts[name]
+    force = number(dynamics.resolved.scalars[touch.force])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return touch.body.pressure(force, group.relative_radius(name, dynamics.placement, sign(force)))
+
+
+def _unknown(mechanism, name, known):
+    if known:
+        return checks.choice(f"{mechanism.name}: contact", name, tuple(known))
+    return (
+        f"{mechanism.name} has no contact pressure {name!r}: give its cam a roller, as CamRoller(cam, "
+        "roller=ks.Roller(radius, width, youngs_modulus, poissons_ratio))"
+    )
+
+
+def refusals(solution):
+    """Where rollers undercut the side of a cam that carries them, as sentences."""
+    if not solution.kind.answer(_touching):
+        return []
+    state = solution.dynamics
+    parts = [(group, name) for group in state.mechanism.groups for name in group.contacts]
+    return [problem for group, name in parts for problem in _undercut(state, group, name, group.contacts[name])]
+
+
+def _touching(kind):
+    mechanism = kind.numbered.mechanism
+    return any(group.contacts for group in mechanism.groups)
+
+
+def _undercut(dynamics, group, name, touch):
+    with np.errstate(all="ignore"):
+        both = [np.asarray(group.relative_radius(name, dynamics.placement, side)) for side in (-1.0, 1.0)]
+        if any(part.dtype != float for part in both) or not any(np.any(part <= 0.0) for part in both):
+            return
+        force = dynamics.scalar(touch.force)
+        room = np.where(force > 0.0, both[1], both[0])
+        cut = room <= 0.0
+    if not cut.any():
+        return
+    worst = np.unravel_index(np.argmin(np.where(cut, room, np.inf)), cut.shape)
+    radius = float(np.broadcast_to(touch.body.radius, cut.shape)[worst])
+    bend = radius / (1.0 - float(room[worst]) / radius)
+    angle = np.degrees(np.broadcast_to(dynamics.crank_angle, cut.shape))
+    yield checks.Problem(
+        f"the roller, radius {radius:.6g} m, undercuts the side of its cam that carries it at {cut.sum()} crank angles "
+        f"from {angle[cut].min():.6g} to {angle[cut].max():.6g} deg: at {angle[worst]:.6g} deg the pitch curve bends "
+        f"with a radius of {bend:.6g} m; the roller's must be less, or the cam larger",
+        cut,
+    )
