@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..explain.symbols import Symbol
 from .graph import INPUTS, Node
-from .symbols import Symbol
 
 KERNELS = (
     "kinetostatics.machine",

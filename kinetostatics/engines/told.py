@@ -5,6 +5,7 @@ Nothing is computed here that `Dynamics` does not compute; what is found gets a 
 
 from typing import Any
 
+from ..explain.symbols import Symbol, keys_of, of_path, symbol_of
 from ..machine.group import FRAME, Resolved
 from ..machine.kinematic_state import place as placed
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
@@ -18,7 +19,6 @@ from ..numbers.lazy import cached_property
 from ..numbers.planar import number, plus, product
 from .naming import AXES, Named, Names, node_of
 from .record import Recorder
-from .symbols import Symbol, keys_of, of_path, symbol_of
 
 GIVEN, WEIGHT = "Given", "Weight"
 ORDERS = ("", "first", "second")

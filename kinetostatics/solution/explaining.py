@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..engines.lines import lines
 from ..engines.naming import node_of
-from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
+from ..explain.formats import LATEX, MATHML, TEXT, written
+from ..explain.steps import lines
 from ..machine import plausibility
 from ..mechanics import quantities
 from ..mechanics.motion import SceneParts

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.styles import in_digits
+from ..explain import pages
+from ..explain.formats import in_digits
 from ..numbers.lazy import cached_property
-from . import explanation_pages
 
 
 class Step(NamedTuple):
@@ -101,22 +101,22 @@ class Explanation:
     @cached_property
     def text(self):
         """The calculation in lines of 80 characters."""
-        return explanation_pages.text(self)
+        return pages.text(self)
 
     @cached_property
     def latex(self):
         """The calculation for a LaTeX document with amsmath."""
-        return explanation_pages.latex(self)
+        return pages.latex(self)
 
     @cached_property
     def html(self):
         """The calculation as a piece of HTML, formulas as MathML; it asks for nothing from elsewhere."""
-        return explanation_pages.html(self)
+        return pages.html(self)
 
     @property
     def page(self):
         """The same as a whole page of HTML."""
-        return explanation_pages.page(self)
+        return pages.page(self)
 
     def __str__(self):
         return self.text

@@ -1,9 +1,9 @@
 """Formulas: recorded arithmetic as trees, gathered as by hand, the value kept."""
 
-from kinetostatics.engines.formulas import formula, names_in
 from kinetostatics.engines.graph import Graph, Node
-from kinetostatics.engines.styles import TEXT, written
-from kinetostatics.engines.symbols import Symbol
+from kinetostatics.explain.formats import TEXT, written
+from kinetostatics.explain.formulas import formula, names_in
+from kinetostatics.explain.symbols import Symbol
 from tests.support.every import every
 
 

@@ -5,10 +5,10 @@ from itertools import pairwise
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines.formulas import names_in
-from kinetostatics.engines.lines import LONGEST, lines
 from kinetostatics.engines.naming import node_of
 from kinetostatics.engines.told import result, told
+from kinetostatics.explain.formulas import names_in
+from kinetostatics.explain.steps import LONGEST, lines
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.every import every
 from tests.support.scenes import SCENES, solve

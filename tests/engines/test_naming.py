@@ -9,7 +9,7 @@ import numpy as np
 from kinetostatics import machine
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.naming import Names
-from kinetostatics.engines.symbols import Symbol
+from kinetostatics.explain.symbols import Symbol
 
 TERMS = {"wide": ("W", "a wide line"), "explained.given": ("G", "an argument that is explained")}
 

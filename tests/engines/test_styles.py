@@ -2,8 +2,8 @@
 
 from xml.etree import ElementTree as ET
 
-from kinetostatics.engines.styles import GREEK, LATEX, MATHML, TEXT, in_digits, written
-from kinetostatics.engines.symbols import Symbol
+from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, in_digits, written
+from kinetostatics.explain.symbols import Symbol
 from tests.support.every import every
 
 A, B = ("name", 0), ("name", 1)

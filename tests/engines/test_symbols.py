@@ -1,7 +1,7 @@
 """Symbols: what numbers of a scene and quantities are called."""
 
 import kinetostatics as ks
-from kinetostatics.engines.symbols import Symbol, keys_of, of_path, symbol_of
+from kinetostatics.explain.symbols import Symbol, keys_of, of_path, symbol_of
 from tests.support.every import every
 
 

@@ -5,7 +5,7 @@ from itertools import groupby
 from math import atan2, degrees
 from textwrap import wrap
 
-from ..engines.styles import in_digits
+from .formats import in_digits
 
 WIDTH = 80
 NOTE = (

@@ -8,8 +8,8 @@ from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
+from ..engines.graph import Node
 from ..numbers.arithmetic import APART
-from .graph import Node
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
 """Functions by recorded operation; the second argument of a root only says what rounding is."""
