@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..engines.graph import INPUTS, Node, is_negative, needed
-from ..engines.naming import Named, Symbol
 from ..engines.program import Program
 from ..engines.record import Recording
 from ..numbers.units import NONE, dimension, spelled
 from .formulas import formula, names_in
+from .named_recording import Named, Symbol
 
 LONGEST = 12
 """Named numbers and constants in one formula; with more it is parted."""

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..engines.naming import node_of
-from ..engines.told import result, told
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..explain.formats import LATEX, MATHML, TEXT, written
+from ..explain.named_recording import node_of, result, told
 from ..explain.steps import lines
 from ..machine import plausibility
 from ..mechanics import quantities

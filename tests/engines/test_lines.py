@@ -5,9 +5,8 @@ from itertools import pairwise
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines.naming import node_of
-from kinetostatics.engines.told import result, told
 from kinetostatics.explain.formulas import names_in
+from kinetostatics.explain.named_recording import node_of, result, told
 from kinetostatics.explain.steps import LONGEST, lines
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.every import every

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinetostatics import machine
 from kinetostatics.engines.graph import Graph
-from kinetostatics.engines.naming import Names
+from kinetostatics.explain.named_recording import Names
 from kinetostatics.explain.symbols import Symbol
 
 TERMS = {"wide": ("W", "a wide line"), "explained.given": ("G", "an argument that is explained")}

@@ -3,10 +3,9 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.engines.naming import node_of
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
-from kinetostatics.engines.told import result, told
+from kinetostatics.explain.named_recording import node_of, result, told
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.scenes import SCENES, everything, solve
 
