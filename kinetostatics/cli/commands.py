@@ -82,7 +82,7 @@ def _extremes(solution, given):
     """What ``run`` tells of a variant, by the names that quantities have in Python."""
     from ..results.losses import lose
     from ..results.tables import SHOWN, extremes_by_name
-    from ..solution.tolerated import largest_with_uncertainty
+    from ..solution.uncertainty_table import largest_with_uncertainty
 
     found = {
         name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}

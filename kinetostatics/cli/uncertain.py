@@ -7,7 +7,7 @@ from ..errors import ParameterError
 from ..numbers import checks, spreads
 from ..numbers.formatting import about, at_most
 from ..numbers.units import factor, to_si
-from ..solution.tolerated import largest_with_uncertainty, with_uncertainty
+from ..solution.uncertainty_table import largest_with_uncertainty, with_uncertainty
 from .printed import print_table, say
 
 OF_THE_CASE = "tolerances"

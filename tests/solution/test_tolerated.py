@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.tolerated import largest_with_uncertainty, with_uncertainty
+from kinetostatics.solution.uncertainty_table import largest_with_uncertainty, with_uncertainty
 from support.every import every
 
 YOKE = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=10.0)
