@@ -70,9 +70,9 @@ from .results.extremes import extremes as extremes
 from .results.losses import Losses as Losses
 from .solution.certainty import Uncertainty as Uncertainty
 from .solution.check_group import check as check
-from .solution.compile import compile as compile  # noqa: A004 - the contract's name
 from .solution.explanation import Explanation as Explanation
 from .solution.program import Program as Program
+from .solution.program import compile as compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene as Scene
 from .solution.scene import solve as solve
 from .solution.solution import Solution as Solution

@@ -12,8 +12,8 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..numbers.units import to_si
 from ..results.bends import bent
-from ..solution.compile import compile as compiled
 from ..solution.parted import PARTED, Parted, solution_of
+from ..solution.program import compile as compiled
 from . import measures
 from .demands import table_limits
 from .derived import Derived, scene_of

@@ -17,8 +17,8 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..results.bends import bent
 from ..results.means import NODES
-from ..solution.compile import compile as compiled
 from ..solution.parted import PARTED, Parted, solution_of
+from ..solution.program import compile as compiled
 from . import measures
 from .demands import table_limits, wanted
 from .derived import Derived, scene_of

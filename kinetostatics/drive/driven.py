@@ -17,7 +17,7 @@ from ..mechanics.load_values import drive_asked_for, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import with_fields
-from ..solution.compile import compile as compiled
+from ..solution.program import compile as compiled
 from ..solution.scene import scene_problem
 from .motor import Motor
 

@@ -21,7 +21,7 @@ from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.brackets import find_roots
 from ..numbers.parameter_tree import with_fields
-from ..solution.compile import compile as compiled
+from ..solution.program import compile as compiled
 from .driven import STEP, Driven, State, apart
 from .senses import Senses
 

@@ -42,6 +42,6 @@ class Explained:
         >>> print(told.steps[-1].formula, "=", told.steps[-1].numbers, "=", told.steps[-1].shown, told.steps[-1].unit)
         omega*s_slider' = 100*(-0.0384514) = -3.84514 m/s
         """
-        from .explaining import explain
+        from .explanation import explain
 
         return explain(self, quantity, angle, design)

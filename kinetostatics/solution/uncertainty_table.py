@@ -11,8 +11,8 @@ from ..numbers.formatting import about, number
 from ..results.bends import SMOOTH
 from ..results.extremes import extrema
 from ..results.rounding import AT_JUMP, Known
+from .certainty import Doubt, told
 from .scene import Scene
-from .second_order import Doubt, told
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")

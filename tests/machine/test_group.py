@@ -20,7 +20,7 @@ from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import cos, sin
 from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, subtracted, turned, unturned, vector
 from kinetostatics.results.tables import extremes_frame
-from kinetostatics.solution.compile import compile as compiled
+from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods import kane, newton
 from kinetostatics.studies.methods.enclosures import enclosure

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.second_order import Terms, found
+from kinetostatics.solution.certainty import Terms, second_order_effects
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
@@ -88,7 +88,7 @@ def test_products_with_common_input_are_all_seen(count, signs):
             return np.array([[given[common] * (signs[0] * given[one] + signs[1] * given[other])]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = found(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert paths[common] in told.paths
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
@@ -106,7 +106,7 @@ def test_products_without_common_input_are_all_seen(count):
             return np.array([[first - second]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = found(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert set(told.paths) in ({paths[one], paths[other]}, {paths[third], paths[fourth]})
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
