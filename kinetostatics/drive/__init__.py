@@ -28,11 +28,11 @@ transient   starting and coasting
 """
 
 from .energy_flow import EnergyFlow
+from .flywheel import Flywheel, flywheel
 from .motor import Motor
 from .periodic import steady
 from .running import Running
 from .saving import DrivenComparison
-from .sizing import Flywheel, flywheel
 from .trajectory import Event, Trajectory
 from .transient import coast, start
 

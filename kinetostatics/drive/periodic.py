@@ -12,11 +12,11 @@ from ..solution.angles import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
 from .following import from_above
+from .friction import driven_by
 from .newton import interpolated, looked_at, settled, unresolved
 from .operating import operating_speed, require_known
 from .pieces import LEVELS, MOST_PIECES, TAIL
 from .resolution import require_inertia, resolved_with_bends
-from .rubbing import driven_by
 from .running import Running
 
 AGAIN = 60

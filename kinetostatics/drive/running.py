@@ -10,8 +10,8 @@ from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import with_fields
 from ..solution.scene import Scene
-from .driven import Driven
 from .motor import Motor
+from .one_dof import Driven
 from .pieces import Pieces
 from .powers import Powers
 from .running_solution import RunningSolution

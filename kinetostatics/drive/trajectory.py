@@ -13,8 +13,8 @@ from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import with_fields
 from ..solution.scene import Scene
-from .driven import Driven
 from .motor import Motor
+from .one_dof import Driven
 
 TIME = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)

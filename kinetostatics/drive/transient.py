@@ -15,10 +15,10 @@ from ..machine import plausibility
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from .friction import driven_by
 from .motor import Motor
 from .operating import require_known
 from .periodic import steady
-from .rubbing import driven_by
 from .standstill import require_a_standstill
 from .stretches import followed
 from .trajectory import Event, Trajectory

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import kinetostatics as ks
-from kinetostatics.drive.driven import Driven
+from kinetostatics.drive.one_dof import Driven
 from kinetostatics.studies.driving import study_running
 from support import DATA
 from support.speed import PLAIN, SPEED

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.rubbing import driven_by
+from kinetostatics.drive.friction import driven_by
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 CAM = ks.Scene(

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.drive.driven import Driven
+from kinetostatics.drive.one_dof import Driven
 from kinetostatics.studies.methods import running
 
 from . import DATA

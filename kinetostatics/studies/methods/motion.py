@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ...drive.driven import Driven
+from ...drive.one_dof import Driven
 from ...drive.transient import coast
 from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError

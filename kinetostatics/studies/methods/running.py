@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from ...drive.driven import Driven
+from ...drive.one_dof import Driven
 from ...drive.periodic import steady
 from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError

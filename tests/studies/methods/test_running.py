@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.driven import Driven
+from kinetostatics.drive.one_dof import Driven
 from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.exact_running import exact_speed
 from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW

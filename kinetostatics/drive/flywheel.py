@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from ..numbers import checks
+from .friction import driven_by
 from .periodic import steady
 from .resolution import resolved
-from .rubbing import driven_by
 from .running import Running
 from .search import fluctuation_wanted, flywheel_for
 

@@ -22,7 +22,7 @@ from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.brackets import find_roots
 from ..numbers.parameter_tree import with_fields
 from ..solution.program import compile as compiled
-from .driven import STEP, Driven, State, apart
+from .one_dof import STEP, Driven, State, apart
 from .senses import Senses
 
 FRICTION, *CHECKS = OWN = ("friction_torque", "friction_margin", "friction_residual")
