@@ -11,8 +11,8 @@ from .printed import of_variants, print_table, require_writable, say, write_tabl
 
 def drive(options):
     from ..casefile.case import load_case
-    from ..drive.periodic import steady
-    from ..drive.summary import energy_table, mistaken_speed, summary
+    from ..drive.savings import energy_table, mistaken_speed, summary
+    from ..drive.steady import steady
     from ..drive.transient import start
 
     case = load_case(options.case)

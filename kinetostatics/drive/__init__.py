@@ -30,9 +30,9 @@ transient   starting and coasting
 from .energy_flow import EnergyFlow
 from .flywheel import Flywheel, flywheel
 from .motor import Motor
-from .periodic import steady
 from .running import Running
-from .saving import DrivenComparison
+from .savings import DrivenComparison
+from .steady import steady
 from .trajectory import Event, Trajectory
 from .transient import coast, start
 

@@ -8,10 +8,9 @@ import numpy as np
 
 from ..numbers import checks
 from .friction import driven_by
-from .periodic import steady
 from .resolution import resolved
-from .running import Running
-from .search import fluctuation_wanted, flywheel_for
+from .running import Running, fluctuation_wanted, flywheel_for
+from .steady import steady
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,21 +1,230 @@
-"""A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles."""
+"""A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles.
+
+Powers and energies of a machine in periodic running, by integrals over its period.
+
+The solution of a machine in periodic running: at its true speed and acceleration, whatever the crank angles.
+
+Search for the flywheel with which a machine runs as evenly as is asked.
+"""
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
+from ..errors import DriveError
+from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import with_fields
+from ..solution.angles import crank_angles, hint_at
 from ..solution.scene import Scene
+from ..solution.solution import Solution
+from .energy_flow import energy_flow, without_noise
 from .motor import Motor
 from .one_dof import Driven
 from .pieces import Pieces
-from .powers import Powers
-from .running_solution import RunningSolution
-from .search import fluctuation_wanted, flywheel_for
+from .savings import DrivenComparison
+
+
+class Powers:
+    """What the motor gives, and what takes it; each is found once."""
+
+    scene: Any
+    motor: Any
+    turns: Any
+    duration: Any
+    _driven: Any
+    _pieces: Any
+    _speed: Any
+    _state: Any
+    _powers: Any
+    _at_points: Any
+    _forward: Any
+    _transmission: Any
+    _motor_torque: Any
+
+    @cached_property
+    def energy_per_turn(self):
+        """Energy that the motor gives at its shaft in a turn, J."""
+        torque = self._transmission * self._motor_torque(self._speed)
+        energy = self._pieces.total(self._driven.direction * torque)
+        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
+        return without_noise(energy, flowing) / self.turns
+
+    @cached_property
+    def energy_flow(self):
+        """Where the energy of a turn goes: an `EnergyFlow`, with a table by `.frame()`."""
+        return energy_flow(self)
+
+    @cached_property
+    def air_gap_energy_per_turn(self):
+        """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
+        if not self.has_air_gap:
+            raise DriveError(
+                "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
+            )
+        power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
+        return self._pieces.total(power / np.abs(self._speed)) / self.turns
+
+    @property
+    def has_air_gap(self):
+        """Whether the motor is an induction motor, whose losses by slip are known."""
+        return self.motor is not None and self.motor.field_speed is not None
+
+    @property
+    def rotor_loss_per_turn(self):
+        """Energy that an induction motor loses in its rotor by slip in a turn, J."""
+        return self.air_gap_energy_per_turn - self.energy_per_turn
+
+    @property
+    def mean_power(self):
+        """Mean over time of the motor's power at its shaft, W."""
+        return self.energy_per_turn * self.turns / self.duration
+
+    @cached_property
+    def rms_motor_torque(self):
+        """Root of the mean over time of the square of the motor's torque at its shaft, N m: what heats it."""
+        square = self._motor_torque(self._speed) ** 2
+        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
+
+    @cached_property
+    def rms_power(self):
+        """Root of the mean over time of the square of the motor's power, W."""
+        return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
+
+    @cached_property
+    def peak_power(self):
+        """Largest power of the motor, with its sign, W."""
+        return self._pieces.peak(self._powers)
+
+    @cached_property
+    def peak_motor_torque(self):
+        """Largest torque of the motor at its shaft, with its sign, N m."""
+        return self._pieces.peak(self._motor_torque(self._speed))
+
+    @cached_property
+    def load_energy_per_turn(self):
+        """Energy that weight and loads take of the crank in a turn, friction left out, J."""
+        return self._pieces.total(self._driven.unrubbed(self._pieces.angle, self._speed).torque) * self._forward
+
+    @property
+    def friction_energy_per_turn(self):
+        """Energy that friction takes at all joints in a turn, J."""
+        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
+
+    def friction_energy_per_turn_at(self, joint):
+        """Energy that friction takes at a joint, named as in `friction`, in a turn, J; 0 where nothing rubs."""
+        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
+        return self._pieces.total(lost / self._speed) * self._forward
+
+    @property
+    def mean_friction_loss(self):
+        """Mean over time of the power lost by friction at all joints, W."""
+        return self.friction_energy_per_turn * self.turns / self.duration
+
+    def mean_friction_loss_at(self, joint):
+        """Mean over time of the power lost by friction at a joint, W."""
+        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
+
+
+@dataclass(frozen=True, eq=False)
+class RunningSolution(Solution):
+    """A `Solution` whose crank speed and acceleration are those of periodic running.
+
+    `running` gives them at any crank angles, so that extremes, means and tables look between the angles given.
+    """
+
+    running: Any = None
+
+    COMPARISON: ClassVar = DrivenComparison
+
+    @classmethod
+    def of(cls, running):
+        """Solution of a `Running` at its crank angles."""
+        scene = with_fields(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
+        plain = scene.solve(running.crank_angle)
+        return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
+
+    def __repr__(self):
+        return super().__repr__().replace("<Solution", "<RunningSolution").split(", crank_speed=")[0] + (
+            f", mean speed {self.running.mean_speed:.9g} rad/s>"
+        )
+
+    def at(self, crank_angle):
+        """The same machine in the same running at other crank angles."""
+        angle = crank_angles(crank_angle)
+        hint_at(self.mechanism.name, crank_angle)
+        motion = self.running.motion(angle)
+        speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
+        return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)
+
+    @property
+    def period(self):
+        """Crank angle after which running repeats, rad."""
+        return self.running.period
+
+
+LARGEST = 60
+"""How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
+PRECISION = 1e-13
+LIGHTEST = 1e-3
+"""Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
+
+
+def fluctuation_wanted(owner, fluctuation):
+    """A coefficient of fluctuation as a float, between 0 and 2."""
+    wanted, wrong = checks.single("fluctuation", fluctuation, "1", low=0.0, strict=True)
+    if not wrong and not wanted < 2.0:
+        wrong = f"fluctuation must be less than 2, got {wanted:g}"
+    checks.require(owner, wrong)
+    return wanted
+
+
+def flywheel_for(wanted, running_with, unit):
+    """Flywheel, kg m2, with which running has a coefficient of fluctuation, or 0 where none is needed; and the running.
+
+    Parameters
+    ----------
+    wanted : float
+    running_with : function
+        Running with a flywheel, kg m2; raises `DriveError` where there is none.
+    unit : float
+        The machine's own inertia, kg m2.
+    """
+    from scipy.optimize import brentq
+
+    runs: dict[float, Any] = {}
+
+    def excess(inertia):
+        """Logarithm of the fluctuation over the one wanted; large where the machine does not run."""
+        try:
+            runs[inertia] = running_with(inertia)
+        except DriveError:
+            runs[inertia] = None
+            return math.inf
+        return math.log(max(runs[inertia].fluctuation, 1e-300) / wanted)
+
+    if excess(0.0) <= 0.0:
+        return 0.0, runs[0.0]
+    size, low, high = unit, 0.0, None
+    for _ in range(LARGEST):
+        if excess(size) <= 0.0:
+            high = size
+            break
+        low, size = size, 2.0 * size
+    if high is None:
+        running_with(size)  # says why the machine does not run
+        raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
+    while not math.isfinite(excess(low)):  # too light to run at all
+        if high < LIGHTEST * unit or high - low <= PRECISION * high:
+            return high, runs[high]
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
+    inertia = float(brentq(excess, low, high, xtol=PRECISION * high, rtol=PRECISION))
+    return inertia, runs.get(inertia) or running_with(inertia)
 
 
 @dataclass(frozen=True, eq=False)

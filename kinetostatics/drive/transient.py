@@ -17,10 +17,8 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from .friction import driven_by
 from .motor import Motor
-from .operating import require_known
-from .periodic import steady
-from .standstill import require_a_standstill
-from .stretches import followed
+from .steady import require_known, steady
+from .stick_slip import followed, require_a_standstill
 from .trajectory import Event, Trajectory
 
 READY = 0.99

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.following import from_above
-from kinetostatics.drive.operating import operating_speed
 from kinetostatics.drive.resolution import require_inertia, resolved
+from kinetostatics.drive.steady import from_above, operating_speed
 from support.drives import DISC, DISC_MOTOR, driven
 
 

@@ -113,7 +113,7 @@ def test_friction_that_jams_is_refused_with_its_angles():
 
 
 def test_the_summary_tells_the_power_lost_by_joint():
-    from kinetostatics.drive.summary import summary
+    from kinetostatics.drive.savings import summary
 
     run = ks.drive.steady(RUBBING, MOTOR, 1000.0)
     table = summary({"saw": run}, {"saw": None})["saw"]

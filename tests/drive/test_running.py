@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import kinetostatics as ks
-from kinetostatics.drive.summary import mistaken_speed, summary
+from kinetostatics.drive.savings import mistaken_speed, summary
 from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, SAW, TURN, saw
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.search import LIGHTEST, flywheel_for
+from kinetostatics.drive.running import LIGHTEST, flywheel_for
 from kinetostatics.errors import DriveError
 from support.drives import MOTOR, SAW, TURN
 

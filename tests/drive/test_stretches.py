@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.friction import driven_by
-from kinetostatics.drive.stretches import followed, sense_from_rest
+from kinetostatics.drive.stick_slip import followed, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, RUBBING, SMALL
 
 PENDULUM = ks.Scene(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive import stretches
+from kinetostatics.drive import stick_slip
 
 Motor, steady, start, coast = ks.drive.Motor, ks.drive.steady, ks.drive.start, ks.drive.coast
 PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.0, 0.1), slider=ks.Link(1.0))
@@ -207,7 +207,7 @@ def test_what_cannot_be_driven_says_why(call, kind, words):
 
 
 def test_endless_motion_is_given_up_with_progress(monkeypatch):
-    monkeypatch.setattr(stretches, "MOST_EVALUATIONS", 2000)
+    monkeypatch.setattr(stick_slip, "MOST_EVALUATIONS", 2000)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))
     with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
         coast(damped, 1.0, 0.0, 10.0, 1e9)

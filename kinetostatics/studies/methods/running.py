@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from ...drive.one_dof import Driven
-from ...drive.periodic import steady
+from ...drive.steady import steady
 from ...engines.numba_backend import numba_available
 from ...errors import NotGivenError
 from .method import Method

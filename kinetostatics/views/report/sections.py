@@ -226,8 +226,8 @@ def losses(subject):
 
 def driven(subject):
     """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
-    from ...drive.periodic import steady
-    from ...drive.summary import energy_table, mistaken_speed, summary
+    from ...drive.savings import energy_table, mistaken_speed, summary
+    from ...drive.steady import steady
     from ...drive.transient import start
 
     runs: dict[str, Any] = {}

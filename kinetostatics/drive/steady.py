@@ -1,0 +1,495 @@
+"""Exact periodic running of a machine under its motor, or under the constant torque that textbooks assume.
+
+Newton's iteration on the energy of periodic running.
+
+The state is U = (Jf + J(phi)) omega^2 / 2 as a function of the crank angle: dU/dphi = motor torque - load torque, with
+no derivative of J. Each step is a linear equation u' = a u + g that is solved by its integrating factor in Chebyshev
+series between the kinks; it converges to rounding in about four steps.
+
+Running found by following a machine in time, where Newton's iteration alone does not find it.
+
+The operating speed: where the mean torques of motor and loads agree, before running is known.
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+
+from ..errors import DriveError
+from ..machine.loads import TURN
+from ..numbers import checks
+from ..numbers.parameter_tree import with_fields
+from ..solution.angles import crank_angles
+from ..solution.scene import scene_problem
+from .bends import parted
+from .friction import driven_by
+from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
+from .resolution import require_inertia, resolved_with_bends
+from .running import Running
+
+STIFF = 4.0
+"""Integral of a over a piece, at most: more takes digits."""
+ROUNDED = 1e-14
+"""Relative change of speed that is rounding, for what a motor's torque makes of it."""
+STEPS = 40
+HALVED = 3
+"""How often all pieces are halved where the iteration does not settle, as that of stiff motors on wide ones."""
+CONVERGED = 1e-14
+
+
+def interpolated(pieces, energy):
+    """Energy as a function of other pieces."""
+    series = pieces.series(energy)
+    return lambda finer: pieces.evaluate(series, finer.angle)
+
+
+def settled(driven, pieces, guess):
+    """Pieces and energy of periodic running near a guess, a function of pieces, halved while that helps; or None."""
+    for halving in range(HALVED + 1):
+        if halving:
+            pieces = pieces.split(pieces.can_split)
+        pieces = _yielding(driven, pieces, guess)
+        energy = _newton(driven, pieces, guess(pieces))
+        if energy is not None:
+            return pieces, energy
+    return None
+
+
+def _yielding(driven, pieces, guess):
+    """Pieces divided where the motor is stiff, as near a guess."""
+    _, _, _, growth = looked_at(driven, pieces, guess(pieces))
+    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / STIFF, MOST_PIECES + 1.0)).astype(int)
+    if parts.max() <= 1 or parts.sum() > MOST_PIECES:
+        return pieces
+    spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
+    edges = [np.linspace(low, high, max(count, 1), endpoint=False) for low, high, count in spans]
+    return Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
+
+
+def unresolved(driven, pieces, energy):
+    """Which pieces have series that are not done, and can be halved."""
+    state, inertia, speed, growth = looked_at(driven, pieces, energy)
+    drive = driven.motor_torque(speed)
+    wide = np.abs(pieces.whole(growth)) > STIFF
+    rounding = ROUNDED * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
+    floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
+    rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
+    tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
+    tails.append(pieces.tail(speed) > 10.0 * TAIL)
+    return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
+
+
+def looked_at(driven, pieces, energy, state=None):
+    """State, inertia, speed, and derivative of the net torque by U, at the points of pieces."""
+    angle = pieces.angle
+    if driven.by_speed:
+        inertia = driven.inertia(angle)
+        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+        state = driven.at(angle, speed)
+    else:
+        state = state or driven.at(angle)
+        inertia = driven.flywheel + state.inertia
+        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+    by_speed = driven.motor.slope_at_crank(speed) - driven.torque_by_speed(angle, speed, state.torque)
+    growth = by_speed / (inertia * speed)
+    return state, inertia, speed, pieces.smoothed(growth) if driven.smooth_by_speed else growth
+
+
+def _newton(driven, pieces, energy):
+    """Energy U of periodic running near a guess; None if the iteration does not settle on stable running."""
+    state, before = None, math.inf
+    for _ in range(STEPS):
+        state, _, speed, growth = looked_at(driven, pieces, energy, state)
+        net = driven.motor_torque(speed) - state.torque
+        found = _periodic(pieces, growth, net - growth * energy)
+        if found is None:
+            return None
+        change, factor = found - energy, 1.0
+        if not found.min() > 0.0:
+            falling = change < 0.0
+            factor = 0.7 * float(np.min(energy[falling] / -change[falling]))
+            if factor < 1e-6:
+                return None
+        energy = energy + factor * change
+        size = float(np.abs(change).max() / np.abs(energy).max())
+        if factor == 1.0 and (size < CONVERGED or (size < 1e-10 and size >= 0.1 * before)):
+            stable = driven.direction * pieces.total(growth) < 0.0
+            return energy if stable else None
+        before = size
+    return None
+
+
+def _periodic(pieces, growth, rest):
+    """Periodic solution of u' = growth u + rest; None where it grows over the period, or neither grows nor fades."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        raised = pieces.integral(growth)
+        gathered = pieces.integral(rest * np.exp(-raised))
+        ends = np.exp(pieces.whole(growth))
+        added = ends * pieces.whole(rest * np.exp(-raised))
+    if not (np.isfinite(ends).all() and np.isfinite(added).all()):
+        return None
+    whole = pieces.total(growth)
+    if not abs(whole) > 1e-15:
+        return None
+    chain = list(zip(ends.tolist(), added.tolist(), strict=True))
+    if whole < 0.0:
+        value = 0.0
+        for end, part in chain:
+            value = value * end + part
+        left, value = [], value / -math.expm1(whole)
+        for end, part in chain:
+            left.append(value)
+            value = value * end + part
+    else:  # the way in which differences fade
+        value = 0.0
+        for end, part in reversed(chain):
+            value = (value - part) / end
+        left, value = [], value / -math.expm1(-whole)
+        for end, part in reversed(chain):
+            value = (value - part) / end
+            left.insert(0, value)
+    return np.exp(raised) * (np.array(left)[:, None] + gathered)
+
+
+FOLLOWED = 1e-6
+"""Tolerance to which a machine is followed from above."""
+LOOSE, RIGID = 1e-10, 1e6
+"""Relative change of the energy of motion over a turn, by its own, of motors that cannot be followed to running."""
+TURNS = 100
+"""Turns that are followed."""
+
+
+def from_above(driven, pieces, start):
+    """Running found by following the machine from a high speed, where Newton's iteration alone does not find it.
+
+    Motions of one degree of freedom do not cross, so from above the highest periodic running is met, or none exists.
+    """
+    from scipy.integrate import solve_ivp
+
+    period, direction = driven.period, driven.direction
+
+    def net(angle, energy):
+        angle, inertia = float(angle), driven.inertia_here(float(angle))
+        return driven.here(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
+
+    most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
+
+    def standstill(angle, energy):
+        return energy[0] - 1e-9 * most
+
+    vars(standstill)["terminal"] = True
+    energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
+    for turn in range(TURNS):
+        found = solve_ivp(
+            net, ends, [energy], "LSODA", rtol=FOLLOWED, atol=1e-10 * most, dense_output=True, events=standstill
+        )
+        if found.status != 0:
+            angle = float(found.t[-1]) % period
+            missing = abs(net(angle, np.zeros(1)))
+            raise DriveError(
+                f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
+                f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
+                f"{math.degrees(angle):.6g} deg in turn {turn + 1}, where {missing:.6g} N m are missing at the crank; "
+                "give a larger flywheel or a stronger motor",
+                missing,
+                angle,
+            )
+        last, energy = energy, float(found.y[0, -1])
+        if abs(energy - last) < 0.05 * last:
+            running = settled(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
+            if running is not None:
+                return running
+            if abs(energy - last) < 1e-4 * last:
+                break
+    raise DriveError(
+        f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
+        f"{2.0 * abs(start):.6g} rad/s; {_remedy(driven, pieces, start)}"
+    )
+
+
+def _remedy(driven, pieces, start):
+    """What keeps running from being found, by how the motor answers to speed."""
+    inertia = driven.inertia(pieces.angle)
+    *_, growth = looked_at(driven, pieces, 0.5 * inertia * start * start)
+    share = float(np.abs(pieces.whole(growth)).sum())
+    if share < LOOSE:
+        return (
+            f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
+            f"{inertia.max():.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+        )
+    if share > RIGID:
+        return (
+            f"the motor is so rigid that its torque changes by {share:.1e} times the energy of motion, a turn, with "
+            "the speed; give it its true slip, or a larger flywheel"
+        )
+    return "give a larger flywheel"
+
+
+def _on_path(pieces, path, least):
+    return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), least)
+
+
+SAMPLED = 96
+"""Crank angles by which mean load torques are judged."""
+SEEN = 512
+"""Speeds at which the mean torques of motor and loads are compared."""
+FEW = 16
+"""Speeds at which mean torques of friction are computed at first, those between guessed from these."""
+
+
+def operating_speed(driven):
+    """Crank speed at which the mean torques of motor and loads agree and the motor yields to more load, rad/s."""
+    motor, name = driven.motor, driven.scene.mechanism.name
+    if math.isfinite(motor.top):
+        speed = motor.top * np.linspace(0.0, 1.0, SEEN)
+    elif driven.by_speed:
+        speed = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, SEEN)]) * abs(motor.transmission)
+    else:
+        mean = float(_mean_load(driven, np.ones(1))[0])
+        raise DriveError(
+            f"{name}: nothing holds the speed, as neither the motor's torque nor the loads depend on it; a turn leaves "
+            f"{TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with speed"
+        )
+    load = _guessed_load if driven.smooth_by_speed else _mean_load
+    load, spare, ends = _left_over(driven, speed, load)
+    if driven.smooth_by_speed and (ends is None or not _parts(_left_over(driven, np.array(ends))[1])):
+        load, spare, ends = _left_over(driven, speed)
+    if ends is not None:
+        from scipy.optimize import brentq
+
+        def spare_at(own):
+            if not driven.by_speed:
+                return motor.torque(own) - load[0]
+            return float(_left_over(driven, np.array([own]))[1][0])
+
+        return float(brentq(spare_at, *ends, xtol=1e-9 * ends[1], rtol=1e-9)) / motor.transmission
+    if spare[-1] > 0.0:
+        raise DriveError(
+            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
+            f"at, {spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
+            f"{', more rows to its table' * math.isfinite(motor.limits[1])}, or another transmission"
+        )
+    best = int(np.argmax(spare))
+    missing = float(-spare[best] * abs(motor.transmission))
+    raise DriveError(
+        f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
+        f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
+        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
+        f"{_times(load, motor.torque(speed))}or another transmission",
+        missing,
+    )
+
+
+def _left_over(driven, speed, load_at=None):
+    """Mean load torque at speeds of the motor's shaft, the motor's less it, and the highest two that part the signs."""
+    motor = driven.motor
+    load = (load_at or _mean_load)(driven, speed / motor.transmission) / motor.transmission
+    spare = motor.torque(speed) - load
+    crossing = np.flatnonzero((spare[:-1] > 0.0) & (spare[1:] <= 0.0))
+    return load, spare, (speed[crossing[-1]], speed[crossing[-1] + 1]) if crossing.size else None
+
+
+def _parts(spare):
+    return spare[0] > 0.0 >= spare[1]
+
+
+def _times(load, torque):
+    """How many times as strong a motor must be to carry the loads at some speed, as words."""
+    drives = torque > 0.0
+    if not drives.any():
+        return "that drives "
+    return f"{math.ceil(1e3 * np.min(load[drives] / torque[drives])) / 1e3:.6g} times as strong "
+
+
+def require_known(driven, speed):
+    """Refuse crank speeds at which a table of the motor tells nothing."""
+    own = driven.motor.transmission * speed
+    low, high = driven.motor.limits
+    if own.min() < low or own.max() > high:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
+            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
+        )
+
+
+def _mean_load(driven, speed):
+    """Mean load torque over the period at constant crank speeds, N m."""
+    angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
+    if not driven.by_speed:
+        return driven.at(angle).torque.mean() + 0.0 * speed
+    grid = np.broadcast_arrays(angle[None, :], speed[:, None])
+    return driven.at_constant_speed(*grid).torque.mean(axis=1)
+
+
+def _guessed_load(driven, speed):
+    """The same where friction makes it smooth: from a few of the speeds, as nearly a line over their squares."""
+    few = np.linspace(0, speed.size - 1, FEW).astype(int)
+    return np.interp(speed**2, speed[few] ** 2, _mean_load(driven, speed[few]))
+
+
+AGAIN = 60
+"""How often friction is found anew under a constant torque, at most."""
+SETTLED = 2e-15
+"""Relative change of speed that is rounding."""
+
+
+def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
+    """Periodic running of a machine under its motor, exact to rounding.
+
+    Where there are several, the stable one, at the highest speed; a motor below its breakdown torque does not count.
+    It is followed over one turn, or as many as motion and loads take to repeat.
+
+    Parameters
+    ----------
+    scene : Scene
+        Mechanism and loads; its crank speed does not matter, but for `motor` None.
+    motor : Motor or None
+        None: a motor that gives the constant torque that the machine takes at the mean speed of the scene, as textbooks
+        assume; loads must not depend on the speed then.
+    flywheel : float
+        Moment of inertia on the crank, beside its own link, kg m2.
+    angles : int or array
+        Crank angles of the tables: so many over the period, its end excluded, or these, rad.
+    engine : "numpy" or "compiled"
+        As for `solve`; "compiled" pays where the same kind of machine is run often.
+
+    Returns
+    -------
+    Running
+
+    Raises
+    ------
+    DriveError
+        There is no periodic running: the motor is too weak, with the torque missing; nothing holds the speed; the
+        inertia vanishes somewhere.
+    ParameterError
+        A value is out of range, or a load cannot be taken at any crank angle.
+    AssemblyError
+        The mechanism does not make full turns.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> run = ks.drive.steady(pump, motor, flywheel=0.05)
+    >>> print(f"{run.mean_speed:.4f} rad/s, fluctuation {run.fluctuation:.5f}")
+    104.6753 rad/s, fluctuation 0.05021
+    """
+    direction = _direction(scene) if motor is None else None
+    driven = driven_by("steady", scene, motor, flywheel, engine, direction)
+    checks.require("steady", _angles_problem(angles))
+    scene = with_fields(scene, sense=None)  # running never stands: its sense is that of its speed
+    pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
+    angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
+    again = partial(steady, scene, motor, angles=angles, engine=engine)
+    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy, again)
+
+
+def _driven_running(driven, scene):
+    """Pieces, and the energy U at their points, of stable periodic running under a motor."""
+    start = operating_speed(driven)
+    pieces, bends = resolved_with_bends(driven, start)
+    require_inertia(driven, pieces)
+    found = settled(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
+    pieces, energy = found or from_above(driven, pieces, start)
+    for _ in range(LEVELS):
+        speed = looked_at(driven, pieces, energy)[2]
+        moved = parted(driven, pieces, driven.forces_on(pieces.angle, speed), bends)
+        if moved is None:
+            finer = _finer(driven, pieces, energy)
+            if finer is None:
+                break
+        else:
+            finer, bends = moved
+        found = settled(driven, finer, interpolated(pieces, energy))
+        pieces, energy = found or from_above(driven, finer, start)
+    require_known(driven, looked_at(driven, pieces, energy)[2])
+    return pieces, energy
+
+
+def _finer(driven, pieces, energy):
+    """Pieces halved where series are not done; None where all are, or there are too many."""
+    marked = unresolved(driven, pieces, energy)
+    return pieces.split(marked) if marked.any() and len(pieces.half) <= MOST_PIECES else None
+
+
+def _prescribed(driven, scene):
+    """Pieces, and the energy U at their points, under the constant torque that keeps the mean speed of the scene."""
+    if driven.loads_by_speed:
+        raise DriveError(
+            f"{scene.mechanism.name}: loads depend on the speed, so no constant torque is known that carries them; "
+            "give a motor"
+        )
+    speed = abs(scene.crank_speed)
+    pieces, bends = resolved_with_bends(driven, driven.direction * speed)
+    require_inertia(driven, pieces)
+    for _ in range(LEVELS):
+        energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)
+        rows = driven.forces_at(pieces.angle, driven.direction / slow, acceleration)
+        moved = parted(driven, pieces, rows, bends)
+        if moved is not None:
+            pieces, bends = moved
+            continue
+        marked = ((pieces.tail(energy) > TAIL) | (pieces.tail(slow) > TAIL)) & pieces.can_split
+        if not marked.any():
+            break
+        pieces = pieces.split(marked)
+    return pieces, energy
+
+
+def _under_constant_torque(driven, pieces, speed):
+    """Energy U at a mean speed, the inverse of the speed, and the acceleration; the torque goes to `driven`.
+
+    Friction that hangs on speed and acceleration is found anew until they stay.
+    """
+    slow, acceleration = np.full(pieces.angle.shape, 1.0 / speed), np.zeros(pieces.angle.shape)
+    for _ in range(AGAIN):
+        state = driven.at_acceleration(pieces.angle, driven.direction / slow, acceleration)
+        inertia, before = driven.flywheel + state.inertia, slow
+        driven.torque_given = pieces.total(state.torque) / driven.period
+        gained = pieces.integrated(driven.torque_given - state.torque)
+        gained = gained + pieces.largest(-gained)[0]
+        energy, slow = _at_mean_speed(driven, pieces, inertia, gained, speed)
+        acceleration = (driven.torque_given - state.torque - 0.5 * state.slope / slow**2) / inertia
+        if not driven.by_speed or np.abs(slow - before).max() <= SETTLED * slow.max():
+            break
+    return energy, slow, acceleration
+
+
+def _at_mean_speed(driven, pieces, inertia, gained, speed):
+    """Energy U, gained but for a constant, that gives a mean speed; and the inverse of the speed."""
+    from scipy.optimize import brentq
+
+    scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
+
+    def too_fast(size):
+        slowness = np.sqrt(0.5 * inertia / (gained + scale * math.exp(size)))
+        return driven.period / pieces.total(slowness) - speed
+
+    low = next((size for size in (-5.0, -12.0, -25.0) if too_fast(size) < 0.0), None)
+    if low is None:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the "
+            "energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
+        )
+    energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=1e-15))
+    return energy, np.sqrt(0.5 * inertia / energy)
+
+
+def _direction(scene):
+    """Sign of the crank speed of a scene that is to be run without motor."""
+    checks.require("steady", scene_problem(scene))
+    speed, wrong = checks.single("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
+    checks.require("steady", wrong)
+    return math.copysign(1.0, speed)
+
+
+def _is_count(angles):
+    return isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+
+
+def _angles_problem(angles):
+    """What is wrong with a number of crank angles, or None."""
+    return checks.count("angles", angles, size=checks.ANGLE) if _is_count(angles) else None
