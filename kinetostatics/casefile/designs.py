@@ -5,11 +5,11 @@ from typing import Any
 
 from ..design import case_text
 from ..design.cam_start import Options, begun
-from ..design.demands import demand, wanted
-from ..design.found import Found
-from ..design.fronts import Front, pareto
-from ..design.optimisation import optimise
+from ..design.constraints import demand, wanted
+from ..design.optimise import optimise
+from ..design.pareto import Front, pareto
 from ..design.problem import bounds
+from ..design.result import Found
 from ..design.torque_free import torque_free_cam
 from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks

@@ -10,7 +10,7 @@ from ..machine.cams.profile import SAMPLES, Peak, curvature, highest, surface_cu
 from ..machine.cams.profile import profile as working_curve
 from ..numbers.lazy import cached_property
 from .cam_rollers import Roller
-from .followers import lift_off_speed, starting_torque
+from .follower_speed import lift_off_speed, starting_torque
 from .hardness import hardness_from_pressure
 
 LIMITS = {

@@ -15,7 +15,7 @@ from ..results.bends import bent
 from ..solution.parted import PARTED, Parted, solution_of
 from ..solution.program import compile as compiled
 from . import measures
-from .demands import table_limits
+from .constraints import table_limits
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
 from .progress import no_bar

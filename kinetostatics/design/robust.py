@@ -20,7 +20,7 @@ from ..results.means import NODES
 from ..solution.parted import PARTED, Parted, solution_of
 from ..solution.program import compile as compiled
 from . import measures
-from .demands import table_limits, wanted
+from .constraints import table_limits, wanted
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
 from .problem import chosen, own, turns_of

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import measures
-from .demands import Demand
+from .constraints import Demand
 
 ROUNDS = 8
 """How often the variables are turned anew before a search ends."""

@@ -9,8 +9,8 @@ from ..machine.cams.profile import Peak, highest, lowest
 from ..machine.loads import Spring
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
-from .followers import lifted
-from .found import shaft_hint
+from .follower_speed import lifted
+from .result import shaft_hint
 
 COUNT = 4096
 ANGLES = (np.arange(COUNT) + 0.382) * 2 * np.pi / COUNT

@@ -22,10 +22,9 @@ from ..machine.loads import Gravity
 from ..numbers import checks
 from ..results.reductions import Output
 from .cam_start import Options, begun
-from .demands import demands, wanted
+from .constraints import demands, wanted
 from .derived import scene_of
-from .found import Found, found_of, known
-from .optimisation import (
+from .optimise import (
     aim,
     aimed,
     as_asked,
@@ -38,6 +37,7 @@ from .optimisation import (
 )
 from .problem import Problem, chosen, true_value
 from .progress import moving_bar
+from .result import Found, found_of, known
 from .search import Goal
 from .torque_squares import POSITION, TORQUE, least_squares
 

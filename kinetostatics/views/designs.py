@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..design.fronts import Front
+from ..design.pareto import Front
 from ..numbers import checks
 from ..numbers.files import unwritable
 from .canvas import axes, closed, finished, styled

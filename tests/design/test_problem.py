@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design import measures
-from kinetostatics.design.demands import wanted
+from kinetostatics.design.constraints import wanted
 from kinetostatics.design.problem import Problem, true_value
 from kinetostatics.results.reductions import parsed
 from support.case_files import PLAIN, case_file

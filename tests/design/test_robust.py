@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design.demands import wanted
+from kinetostatics.design.constraints import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
 from kinetostatics.design.spread import harrell_davis

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.design import progress, search
-from kinetostatics.design.demands import Demand, demand
+from kinetostatics.design.constraints import Demand, demand
 from kinetostatics.results.reductions import parsed
 from support.improved_saws import CAM, CIRCLE, ENDS, FORCE, FRONT_OF, RATIO, SAW, SPRING, TORQUE, bound, front
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.design.demands import demands
-from kinetostatics.design.optimisation import true_excess
+from kinetostatics.design.constraints import demands
+from kinetostatics.design.optimise import true_excess
 from support.case_files import shipped
 
 pytestmark = pytest.mark.slow

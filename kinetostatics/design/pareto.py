@@ -6,11 +6,11 @@ import numpy as np
 
 from ..errors import DesignError
 from ..numbers import checks
-from .demands import Demand, demands, wanted
+from .constraints import Demand, demands, wanted
 from .derived import scene_of
-from .found import Found
-from .optimisation import ANGLES, optimise
+from .optimise import ANGLES, optimise
 from .problem import chosen, compared_value
+from .result import Found
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from .demands import Demand, wanted
+from .constraints import Demand, wanted
 from .derived import scene_of
 from .problem import compared_value
 from .robust import quantile

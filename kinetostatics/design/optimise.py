@@ -10,11 +10,11 @@ from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..results.extremes import extrema
-from .demands import Demand, demands, wanted
+from .constraints import Demand, demands, wanted
 from .derived import scene_of
-from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
 from .progress import moving_bar
+from .result import found_of
 from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, searched, side_of
 from .spread import not_spread
