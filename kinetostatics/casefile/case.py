@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..design import linkage
-from ..design.balancing_table import balancing_table
+from ..design.counterweights import balancing_table
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism

@@ -1,21 +1,21 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
 from .cam_contact import Contact as Contact
 from .cam_contact import Peak as Peak
-from .contact_asked import contact as contact
+from .cam_contact import contact as contact
+from .cam_contact import hardness_from_pressure as hardness_from_pressure
+from .cam_contact import pressure_from_hardness as pressure_from_hardness
 from .follower_speed import Surge as Surge
 from .follower_speed import lift_off_speed as lift_off_speed
 from .follower_speed import lifted as lifted
 from .follower_speed import spring_surge as spring_surge
 from .follower_speed import starting_torque as starting_torque
-from .hardness import hardness_from_pressure as hardness_from_pressure
-from .hardness import pressure_from_hardness as pressure_from_hardness
 from .optimise import optimise as optimise
 from .pareto import Front as Front
 from .pareto import pareto as pareto
 from .result import Found as Found
+from .robust import Spread as Spread
 from .robust import over_spread as over_spread
-from .spread import Spread as Spread
-from .torque_balanced import TorqueBalancing as TorqueBalancing
+from .torque_balancing import TorqueBalancing as TorqueBalancing
 from .torque_balancing import torque_balancing_cam as torque_balancing_cam
 from .torque_free import torque_free_cam as torque_free_cam
 from .weights import weight_options as weight_options

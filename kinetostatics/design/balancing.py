@@ -16,7 +16,7 @@ from ..numbers import checks
 from ..solution.scene import mechanism_problem
 from .counterweights import Balanced, Counterweight, counterweight, guide_direction
 from .least_shaking import Search, least
-from .shapes import crank_sliders, four_bar
+from .linkage import crank_sliders, four_bar_shape
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
 
@@ -52,7 +52,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     """
     given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
     _refuse(mechanism)
-    bars, chains = four_bar(mechanism), crank_sliders(mechanism)
+    bars, chains = four_bar_shape(mechanism), crank_sliders(mechanism)
     if bars is None and not chains:
         raise ParameterError(f"full balancing is for crank-sliders and four-bars, not for a {mechanism.name}")
     outer, link = ("coupler", chains[0].coupler.link) if bars is None else ("rocker", bars.rocker.link)
@@ -212,7 +212,7 @@ def _static_moment(mechanism, link):
     crank and rocker in proportion to their lengths (Berkof and Lowen 1969).
     """
     moments = {name: complex(*pair) for name, pair in principal_points(mechanism).static_moments.items()}
-    bars = four_bar(mechanism)
+    bars = four_bar_shape(mechanism)
     if bars is not None:
         share = moments[bars.coupler.link] / bars.coupler.length
         moments[bars.crank.link] -= share * bars.crank.length

@@ -1,17 +1,212 @@
-"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits."""
+"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits.
+
+What a contact of a roller with its cam is asked with: the roller, both materials, limits.
+
+The roller itself: spin and sliding, load and life of its pin.
+
+A roller that does not slide turns by v / R as its centre goes along the pitch curve at v, one way on a disk and the
+other in a ring: where it changes sides it must reverse. The contact must drive it, J dv/dt / R^2 along the cam, and
+against the friction of its pin.
+
+What Hertz pressure steel of a hardness bears, and the other way round.
+"""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..machine.cams import roller
-from ..machine.cams.profile import SAMPLES, Peak, curvature, highest, surface_curvature
+from ..machine.cams.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surface_curvature
 from ..machine.cams.profile import profile as working_curve
+from ..machine.cams.roller import MODULUS
+from ..machine.loads import Gravity
+from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .cam_rollers import Roller
+from ..results.turn import require_single
 from .follower_speed import lift_off_speed, starting_torque
-from .hardness import hardness_from_pressure
+
+
+class Reversal(NamedTuple):
+    """The roller changing sides: crank angle, rad; change of its spin, rad/s; energy lost in sliding, J.
+
+    `rise` is how fast the cam force grows there with the crank angle, N/rad.
+    """
+
+    angle: float
+    spin: float
+    energy: float
+    rise: float
+
+    def sliding_angle(self, roller, crank_speed, friction_coefficient):
+        """Crank angle through which the roller slides until it rolls again, rad, as the force grows in proportion."""
+        given = checks.singles(
+            "sliding_angle",
+            crank_speed=(crank_speed, "rad/s", {}),
+            friction_coefficient=(friction_coefficient, "1", {"low": 0.0, "strict": True}),
+        )
+        grip = given["friction_coefficient"] * roller.radius * abs(self.rise)
+        return float(np.sqrt(2.0 * abs(given["crank_speed"]) * roller.inertia * abs(self.spin) / grip))
+
+
+@dataclass(frozen=True, eq=False)
+class Roller:
+    """What turns on the pin at A: radius m, mass kg, inertia about the pin kg m2, load rating of its bearing N."""
+
+    cam: Any
+    radius: float
+    mass: float
+    inertia: float
+    load_rating: float | None
+    life_exponent: float
+
+    def speed(self, solution):
+        """Of the roller's centre along the pitch curve, m/s, with its derivative by time, m/s2."""
+        r, slope, second = self.cam.radius(solution.crank_angle)
+        length = np.hypot(r, slope)
+        rate = solution.crank_speed
+        return length * rate, slope * (r + second) / length * rate * rate + length * solution.crank_acceleration
+
+    def spin(self, solution):
+        """Angular velocity of a roller that rolls without sliding, counter-clockwise positive, rad/s."""
+        return np.where(solution.cam_force > 0.0, -1.0, 1.0) * self.speed(solution)[0] / self.radius
+
+    def spin_acceleration(self, solution):
+        """Its angular acceleration between changes of sides, rad/s2."""
+        return np.where(solution.cam_force > 0.0, -1.0, 1.0) * self.speed(solution)[1] / self.radius
+
+    def driving_force(self, solution):
+        """What the contact must give along the cam for the roller to roll, against its motion, N."""
+        _, growth = self.speed(solution)
+        rubbing = np.abs(solution.friction_at("cam")) * solution.crank_sense
+        return self.inertia * growth / self.radius**2 + rubbing
+
+    def friction_coefficient(self, solution):
+        """Least friction coefficient of the contact with which the roller does not slide."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            needed = np.abs(self.driving_force(solution)) / np.abs(solution.cam_force)
+        return np.where(np.isnan(needed), 0.0, needed)
+
+    def pin_load(self, solution):
+        """Size of the force between roller and pin, N: the cam force less the roller's own inertia and weight."""
+        r, slope, _ = self.cam.radius(solution.crank_angle)
+        x, y = np.cos(solution.crank_angle), np.sin(solution.crank_angle)
+        inward = -np.stack([r * x + slope * y, r * y - slope * x]) / np.hypot(r, slope)
+        along = np.stack([-inward[1], inward[0]])
+        force = inward * solution.cam_force + along * self.driving_force(solution)
+        if self.mass:
+            force = force - self.mass * solution.acceleration("A")
+            for load in solution.loads:
+                if isinstance(load, Gravity):
+                    force = force + self.mass * np.array(load.vector, dtype=float)[:, None]
+        return np.hypot(*force)
+
+    def equivalent_load(self, solution):
+        """Constant load of the same life, from a solution at even crank angles over the period, N.
+
+        P^p = sum of F^p dn over sum of dn, n the turns of the roller about its pin (ISO 281; Harris and Kotzalas,
+        *Rolling Bearing Analysis*, 2006).
+        """
+        load, turns = self.pin_load(solution), self._turns(solution)
+        largest = float(np.max(load))
+        if not largest:
+            return 0.0
+        share = np.sum((load / largest) ** self.life_exponent * turns) / np.sum(turns)
+        return float(largest * share ** (1.0 / self.life_exponent))
+
+    def life(self, solution):
+        """Basic rating life L10, h, from the same."""
+        if self.load_rating is None:
+            raise ParameterError("contact: the life of the roller's bearing takes its load_rating, C in N")
+        load = self.equivalent_load(solution)
+        if not load:
+            return np.inf
+        rate = solution.crank_speed * np.ones(solution.crank_angle.shape)
+        if not np.all(rate):
+            raise ParameterError("contact: a machine that stands wears no bearing; solve it at its crank speed")
+        turns = self._turns(solution)
+        hours = np.sum(1.0 / np.abs(rate)) / 3600.0
+        return float((self.load_rating / load) ** self.life_exponent * 1e6 * hours / np.sum(turns))
+
+    def _turns(self, solution):
+        """Turns of the roller about its pin in each of even steps of the crank angle, in units of the step / 1 rad."""
+        rate = solution.crank_speed * np.ones(solution.crank_angle.shape)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turned = np.abs(self.spin(solution) - rate) / np.abs(rate)
+        return np.where(np.isnan(turned), 1.0, turned) / (2.0 * np.pi)
+
+    def reversal(self, solution, angle, step=1e-4):
+        """What happens where the roller changes sides."""
+        at = solution.at(angle + np.array([-step, 0.0, step]))
+        rise = float(at.cam_force[2] - at.cam_force[0]) / (2.0 * step)
+        spin = 2.0 * float(np.broadcast_to(self.speed(at)[0], (3,))[1]) / self.radius
+        spin = -spin if rise > 0.0 else spin
+        return Reversal(float(angle), spin, 0.5 * self.inertia * spin * spin, rise)
+
+
+def pressure_from_hardness(brinell):
+    """Hertz pressure that through-hardened steel of a Brinell hardness bears 1e7 times, Pa.
+
+    2.22 HB + 200 MPa (AGMA 2001-D04, figure 2, grade 1), for 180 to 400 HB.
+
+    Parameters
+    ----------
+    brinell : float
+        HB, 180 to 400.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        The hardness is outside what the standard tells of.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> round(ks.design.pressure_from_hardness(300.0) / 1e6, 3)
+    866.0
+    """
+    value = checks.singles("pressure_from_hardness", brinell=(brinell, "1", POSITIVE))["brinell"]
+    if not 180.0 <= value <= 400.0:
+        raise ParameterError(
+            f"pressure_from_hardness: the standard tells of 180 to 400 HB, got {value:.6g}; give the pressure itself, "
+            "for case-hardened steel about 1.5e9 Pa"
+        )
+    return (2.22 * value + 200.0) * 1e6
+
+
+def hardness_from_pressure(pressure):
+    """Brinell hardness of steel that bears a Hertz pressure in Pa: the same the other way round.
+
+    At least 180 HB, the softest that the standard tells of; beyond 400 HB extrapolated.
+
+    Parameters
+    ----------
+    pressure : float
+        Pa.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        The pressure is negative or no number.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> round(ks.design.hardness_from_pressure(866e6), 6)
+    300.0
+    """
+    value = checks.singles("hardness_from_pressure", pressure=(pressure, "Pa", {"low": 0.0}))["pressure"]
+    return max(180.0, (value / 1e6 - 200.0) / 2.22)
+
 
 LIMITS = {
     "pressure": ("largest_pressure", "Pa", "Hertz pressure"),
@@ -259,3 +454,150 @@ class Contact:
 def _side_of(force):
     """Side of the pitch curve on which a cam is that presses so: +1 around it, -1 inside."""
     return np.where(force > 0.0, 1.0, -1.0)
+
+
+SIZE = {"low": 0.0}
+PARTS = ("roller", "cam")
+MATERIAL: dict[str, tuple[str, dict[str, Any]]] = {
+    "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS.usual}),
+    "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
+}
+"""Unit and bounds of what is told of each part's material."""
+
+
+def contact(
+    solution,
+    roller_radius=None,
+    width=None,
+    youngs_modulus=None,
+    poissons_ratio=None,
+    *,
+    roller_mass=0.0,
+    roller_inertia=None,
+    load_rating=None,
+    life_exponent=10 / 3,
+    limits=None,
+):
+    """Contact of the roller with its cam over the turn, and what exceeds limits.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design, of a mechanism with a `CamRoller`.
+    roller_radius, width : float
+        m; what is left out of these four is that of the scene's own `Roller`.
+    youngs_modulus : float or (roller, cam)
+        Pa.
+    poissons_ratio : float or (roller, cam)
+    roller_mass : float
+        Of what turns, a part of the block's mass, kg.
+    roller_inertia : float, optional
+        Of what turns about its pin, kg m2; m R^2 / 2 unless told.
+    load_rating : float, optional
+        Basic dynamic load rating C of its bearing (ISO 281), N.
+    life_exponent : float
+        10/3 for roller bearings, 3 for ball bearings.
+    limits : dict of str to float, optional
+        Largest "pressure" (Pa), "pin_load" (N), "friction_coefficient", "pressure_angle" (rad) and "starting_torque"
+        (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s). `exceeded` tells by what
+        they are broken.
+
+    Returns
+    -------
+    Contact
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, no cam in the mechanism, a batch of designs, or a roller that undercuts the side of
+        the cam that it runs on.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.CosineLaw(0.3, 2.0)
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0))
+    >>> solution = ks.solve(saw, 0.5, crank_speed=10.0, loads=ks.Spring.balancing(600.0, 11.0, 2.0))
+    >>> found = ks.design.contact(solution, 0.05, 0.04, 210e9, 0.3, limits={"pressure": 1e9})
+    >>> print(f"{found.largest_pressure.value / 1e6:.1f} MPa on the {found.sides[0]}")
+    289.1 MPa on the disk
+    """
+    checks.require("contact", checks.solution("solution", solution))
+    require_single(solution, "contact", "cam_force")
+    groups = solution.mechanism.led_by_ground
+    told = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
+    told |= {"poissons_ratio": poissons_ratio}
+    if groups:
+        told = _with_roller(told, groups[0].roller)
+    limits = {} if limits is None else limits
+    own = {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = {"roller_inertia": (roller_inertia, "kg*m**2", SIZE), "load_rating": (load_rating, "N", POSITIVE)}
+    own |= {name: item for name, item in optional.items() if item[0] is not None}
+    values = checks.singles(
+        "contact",
+        None if groups else _no_roller(solution.mechanism),
+        *_limit_problems(limits, load_rating),
+        **_contact_rules(told),
+        **own,
+        **_limit_rules(limits),
+    )
+    cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
+    inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
+    wheel = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
+    materials = [[values[f"{name} of the {part}"] for name in MATERIAL] for part in PARTS]
+    kept = {name: values[f"limit {name!r}"] for name in UNITS if name in limits}
+    found = Contact(solution, cam, radius, values["width"], roller.modulus(*materials), wheel, kept)
+    for side in found.sides:
+        working_curve(cam, radius, 8, side)
+    return found
+
+
+def _contact_rules(told):
+    """Values and rules of what is told of a contact, a material of roller and cam each."""
+    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
+        name: (told[name], "m", POSITIVE) for name in ("roller_radius", "width")
+    }
+    pairs = [
+        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
+        for value in map(told.get, MATERIAL)
+    ]
+    for part, *both in zip(PARTS, *pairs, strict=True):
+        rules |= {
+            f"{name} of the {part}": (value, *rule) for (name, rule), value in zip(MATERIAL.items(), both, strict=True)
+        }
+    return rules
+
+
+def _limit_rules(limits):
+    """Values and rules of the limits that there are."""
+    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
+    return {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
+
+
+def _with_roller(told, roller):
+    """What was told, the rest as of the roller of the scene; refused where that has none either."""
+    lacking = [name for name, value in told.items() if value is None]
+    if lacking and roller is None:
+        raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
+    return told | {name: _of_both(roller, name.removeprefix("roller_")) for name in lacking}
+
+
+def _of_both(roller, name):
+    """A number of the roller, of a material also that of its cam where it is another."""
+    own, other = getattr(roller, name), getattr(roller, f"cam_{name}", None)
+    return own if other is None else (own, other)
+
+
+def _no_roller(mechanism):
+    text = f"solution must be of a mechanism with a CamRoller, a {mechanism.name} has none"
+    follows = any(group.led for group in mechanism.groups)
+    return text + "; give its follower a Roller or Face, then contact_pressure is an output" * follows
+
+
+def _limit_problems(limits, load_rating):
+    """What is wrong with the names of limits, as sentences."""
+    if not isinstance(limits, dict):
+        return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
+    rating = "a limit of the life takes the load_rating of the roller's bearing"
+    unrated = "life" in limits and load_rating is None
+    return [*(checks.choice("limit", name, tuple(UNITS)) for name in limits), rating if unrated else None]

@@ -11,13 +11,10 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..results.extremes import extrema
 from .constraints import Demand, demands, wanted
-from .derived import scene_of
-from .problem import SHARED, Problem, chosen, own, true_value
-from .progress import moving_bar
+from .problem import SHARED, Problem, chosen, moving_bar, own, scene_of, true_value
 from .result import found_of
-from .robust import Sampled
+from .robust import Sampled, not_spread
 from .search import KEPT, Goal, Reached, better, missed, searched, side_of
-from .spread import not_spread
 
 ANGLES = 720
 """Crank angles over the period."""

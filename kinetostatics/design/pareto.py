@@ -7,9 +7,8 @@ import numpy as np
 from ..errors import DesignError
 from ..numbers import checks
 from .constraints import Demand, demands, wanted
-from .derived import scene_of
 from .optimise import ANGLES, optimise
-from .problem import chosen, compared_value
+from .problem import chosen, compared_value, scene_of
 from .result import Found
 
 

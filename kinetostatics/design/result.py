@@ -11,8 +11,7 @@ from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
 from .constraints import Demand, wanted
-from .derived import scene_of
-from .problem import compared_value
+from .problem import compared_value, scene_of
 from .robust import quantile
 from .search import is_raised, side_of
 

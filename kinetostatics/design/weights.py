@@ -5,8 +5,7 @@ import numpy as np
 from ..machine.loads import Gravity
 from ..numbers import checks
 from .cam_start import parts_of
-from .derived import scene_of
-from .problem import chosen
+from .problem import chosen, scene_of
 from .torque_free import TORQUE, torque_free_cam
 
 LEAST_SQUARES = f"rms {TORQUE}"

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.balancing import Counterweight, counterweight, full, optimal, partial
-from kinetostatics.design.balancing_table import balancing_table
+from kinetostatics.design.counterweights import balancing_table
 from support.balanced import (
     CAM,
     FOUR_BAR,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design.grashof import grashof
+from kinetostatics.design.linkage import grashof
 from support.machines import TURN, planar
 from support.machines import four_bar_of as four_bar
 from support.machines import swept as solved

@@ -7,13 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design.linkage import (
-    chain_unit,
-    chain_unit_angle,
-    rocker_angle,
-    swing,
-    transmission_angle,
-)
+from kinetostatics.design.linkage import chain_unit, chain_unit_angle, rocker_angle, swing, transmission_angle
 from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
 from support import multibody
 from support.machines import TURN, FourBar, largest, planar, turning

@@ -7,8 +7,7 @@ from numpy.testing import assert_allclose
 import kinetostatics as ks
 from kinetostatics.design.constraints import wanted
 from kinetostatics.design.problem import Problem
-from kinetostatics.design.robust import Sampled
-from kinetostatics.design.spread import harrell_davis
+from kinetostatics.design.robust import Sampled, harrell_davis
 from support.case_files import shipped
 
 pytestmark = pytest.mark.slow

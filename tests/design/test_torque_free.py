@@ -11,7 +11,7 @@ import kinetostatics as ks
 from kinetostatics.casefile.designs import CAM
 from kinetostatics.design.cam_start import Options, begun
 from kinetostatics.design.problem import Problem
-from kinetostatics.design.torque_squares import least_squares, wave
+from kinetostatics.design.torque_free import least_squares, wave
 from support.case_files import shipped
 from support.every import every
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ...design.spread import Spread
+from ...design.robust import Spread
 from ...errors import ParameterError
 from ...numbers.units import quoted
 from .tables import Table, one_of
