@@ -19,7 +19,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 def sweep(options):
     from ..casefile.case import load_case
     from ..results.reductions import parsed
-    from ..sweeps import asked, designs, sweeps
+    from ..sweeps import designs, sweeps
 
     case = load_case(options.case)
     folder = options.out if options.out and not Path(options.out).suffix else None
@@ -29,7 +29,7 @@ def sweep(options):
     checks.require("--out", files.unwritable_folder(folder) if folder else None)
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
-    names = asked.names_of(case, options.variant, options.reference)
+    names = sweeps.names_of(case, options.variant, options.reference)
     varied = case.variant(names[0])
     usual = (*OUTPUTS, LOST) if varied.friction else OUTPUTS
     wanted = [parsed(text).of(varied) for text in options.output or usual]

@@ -3,23 +3,240 @@
 What is asked for is checked (`asked`), and tried on one design (`job`). Then a sweep goes chunk by chunk (`chunks`)
 through any `concurrent.futures.Executor` (`workers`); with a folder the results stream to a Parquet dataset
 (`dataset`), from which a sweep that was stopped goes on.
+
+What a sweep is asked for, checked: all that is wrong at once, and the job made of it.
 """
 
+import inspect
+import pickle
 import sys
 import warnings
+from collections.abc import Iterable
+from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
+from functools import partial
 
+import numpy as np
 import pandas as pd
 
+from ..engines import numba_backend
+from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
 from ..numbers.fingerprint import digest
+from ..numbers.formatting import parted, si_columns
+from ..results.reductions import Output, parsed
+from ..solution.parameters import unknown
+from ..solution.scene import WORTH_COMPILING, Scene
 from ..version import __version__
-from .asked import job_of
-from .chunks import FAILED
+from .chunk import FAILED, LEAST, PROBED, Job, tried
 from .dataset import Dataset, Parts
-from .job import PROBED, tried
 from .workers import ATTEMPTS, Workers, computed
+
+
+def job_of(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
+    """The job, the engines to try, and what is compared: what is varied, or a function, and what ratios refer to."""
+    _require_kinds(source, designs)
+    if not is_case(source):
+        checks.require("sweep", *_only_of_cases(source, variant, reference))
+    compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
+    known = compared[0].units if is_varied(compared[0]) else None
+    wanted, problems = _outputs(outputs)
+    columns, wrong = si_columns(designs.columns, known, partial(unknown, source) if isinstance(source, Scene) else None)
+    problems += [
+        *wrong,
+        *_name_problems(designs.columns, wanted),
+        *_type_problems(designs),
+        None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
+        checks.count("angles", angles, size=checks.ANGLE),
+        None if chunk is None else checks.count("chunk", chunk),
+        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
+        None if len(designs) else "there are no designs",
+        _executor_problem(executor),
+        _workers_problem(workers, executor),
+        *_order_problems(wanted, angles),
+    ]
+    ratios = any(item.ratio for item in wanted)
+    if ratios and not _is_scene(compared[1]):
+        problems.append(f"ratios need a reference: a Scene, got {checks.shown(compared[1])}")
+    checks.require("sweep", *problems)
+    if known is not None:
+        wanted = tuple(item.of(compared[0]) for item in wanted)
+
+    engines = _engines(engine, len(designs) * max(angles, LEAST))
+    threads = numba_backend.core_count() if executor is None and workers is None else 1
+    make, make_reference = _makers(known, *compared)
+    job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
+    _require_portable(job, executor, workers)
+    return job, engines, compared if ratios else compared[:1]
+
+
+def _require_kinds(source, designs):
+    """Refuse what no sweep is made of, before anything is asked of it."""
+    if not isinstance(designs, pd.DataFrame):
+        raise ParameterError(
+            f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
+        )
+    if not (is_case(source) or is_varied(source) or callable(source)):
+        raise ParameterError(
+            "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
+            f"{checks.shown(source)}"
+        )
+
+
+def _only_of_cases(source, variant, reference):
+    """What is wrong with names of variants where the source has none."""
+    kind = "a Scene" if is_varied(source) else "a function"
+    if variant is not None:
+        yield (
+            f"variant names one of a case's variants, and {kind} has none, got {checks.shown(variant)}; leave it out, "
+            "or give a Case"
+        )
+    if reference is not None and not _is_scene(reference):
+        yield f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}"
+
+
+def _engines(engine, values):
+    """Engines to try for so many values, in turn."""
+    if engine == "compiled":
+        numba_backend.require_numba()
+    if engine:
+        return [engine]
+    return ["compiled", "numpy"] if values >= WORTH_COMPILING and numba_backend.numba_available() else ["numpy"]
+
+
+def is_case(source):
+    """Whether it offers variants by name, as a `Case` does."""
+    return hasattr(source, "variants") and hasattr(source, "reference")
+
+
+def is_varied(source):
+    """Whether it can be varied by path, as a `Scene` and a case's variant can."""
+    return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
+
+
+def names_of(case, variant=None, reference=None):
+    """Names of the variant that designs vary, and of the one that ratios refer to."""
+    reference = reference or case.reference
+    return variant or next((name for name in case.variants if name != reference), reference), reference
+
+
+def chosen(case, variant=None, reference=None):
+    """These variants."""
+    return tuple(map(case.variant, names_of(case, variant, reference)))
+
+
+def _is_scene(item):
+    return isinstance(getattr(item, "scene", item), Scene)
+
+
+def _makers(known, source, reference):
+    """Functions from values to what is varied, and to what ratios refer to."""
+    if known is None:
+        return partial(_called, source), partial(_fixed, reference)
+    return partial(_varied, source), partial(_varied, reference)
+
+
+def _varied(item, values):
+    """The item with those of the values that it has a place for."""
+    known = item.units
+    return item.varied({path: value for path, value in values.items() if path in known})
+
+
+def _called(function, values):
+    return function(**values)
+
+
+def _fixed(item, values):
+    return item
+
+
+def listed(outputs):
+    """Outputs asked for, one or several."""
+    if isinstance(outputs, str | Output):
+        return [outputs]
+    if not isinstance(outputs, Iterable):
+        raise ParameterError(f'sweep: outputs must be texts such as "largest O", got {outputs!r}')
+    return list(outputs)
+
+
+def _outputs(outputs):
+    """The outputs asked for, and what is wrong with them."""
+    wanted, problems = [], []
+    for text in listed(outputs):
+        try:
+            wanted.append(parsed(text))
+        except ParameterError as error:
+            problems.append(str(error))
+    return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
+
+
+def _name_problems(columns, wanted):
+    """Columns of the designs that would stand in the table twice."""
+    taken = {*map(str, wanted), FAILED}
+    for name in columns:
+        if parted(name)[0] in taken:
+            yield f"column {name!r} of the designs has the name of an output; rename it"
+
+
+def _type_problems(designs):
+    for column, kind in designs.dtypes.items():
+        if hasattr(kind, "units"):  # of pint-pandas
+            yield f"column {column!r} must hold plain numbers, with the unit {kind.units} in its heading"
+        elif not pd.api.types.is_any_real_numeric_dtype(kind):
+            yield f"column {column!r} must hold numbers, but is of type {kind}"
+
+
+def _signature_problem(function, names):
+    try:
+        inspect.signature(function).bind(**dict.fromkeys(names))
+    except TypeError as error:
+        return f"the function does not take the columns of the designs: {error}"
+    except ValueError:  # it does not say what it takes
+        return None
+    return None
+
+
+def _executor_problem(executor):
+    if isinstance(executor, Executor | None):
+        return None
+    found = type(executor).__name__
+    return f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
+
+
+def _workers_problem(workers, executor):
+    """What is wrong with the number of workers; many more than cores only cost memory, some 100 MB each."""
+    most = max(64, 4 * numba_backend.core_count())
+    if workers is None:
+        return None
+    if isinstance(workers, bool) or not isinstance(workers, int | np.integer) or not 1 <= workers <= most:
+        return f"workers must be a whole number of processes from 1 to {most} here, got {workers!r}"
+    return None if executor is None else "give workers or an executor, not both"
+
+
+def _order_problems(wanted, angles):
+    for item in wanted:
+        if item.order and isinstance(angles, int) and 2 * item.order >= angles:
+            yield f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
+
+
+def _require_portable(job, executor, workers):
+    """Refuse functions that cannot go to other processes, by the way in which they would."""
+    if workers:
+        from cloudpickle import dumps
+
+        remedy = "give it no open files or locks, or use threads"
+    elif isinstance(executor, ProcessPoolExecutor):
+        dumps, remedy = pickle.dumps, "define the function at the top of a module, or use workers=n, threads or Dask"
+    else:
+        return
+    try:
+        dumps(job)
+    except Exception as error:
+        raise ParameterError(
+            f"sweep: the function and its reference cannot go to other processes: {error}; {remedy}, which take any"
+        ) from error
+
 
 __all__ = ["FAILED", "sweep"]
 

@@ -15,8 +15,7 @@ from ..numbers.files import folder_problem
 from ..numbers.formatting import parted
 from ..results.reductions import parsed
 from . import designs
-from .asked import chosen, is_case, is_varied, listed
-from .sweeps import FAILED, sweep
+from .sweeps import FAILED, chosen, is_case, is_varied, listed, sweep
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 

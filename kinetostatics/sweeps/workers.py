@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from ..errors import KinetostaticsError
-from .chunks import rows, run_chunk
+from .chunk import rows, run_chunk
 
 ATTEMPTS = 3
 """How often a chunk is run whose worker dies, before the designs that do it are looked for."""

@@ -8,9 +8,8 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.sweeps import asked, job, sweeps
-from kinetostatics.sweeps.asked import _type_problems
-from kinetostatics.sweeps.sweeps import FAILED
+from kinetostatics.sweeps import chunk, sweeps
+from kinetostatics.sweeps.sweeps import FAILED, _type_problems
 from support import factories
 from support.case_files import shipped
 from support.every import every
@@ -84,7 +83,7 @@ def engines_taken(monkeypatch):
 def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     taken = engines_taken(monkeypatch)
-    monkeypatch.setattr(asked, "WORTH_COMPILING", 41 * 200)
+    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 200)
     for options in ({}, {"engine": "numpy"}, {"angles": 199}):
         sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 200} | options)
     monkeypatch.setitem(sys.modules, "numba", None)
@@ -127,7 +126,7 @@ def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
     designs = pd.DataFrame(index=range(2))
     with pytest.raises(ks.errors.NotGivenError, match=r'must not branch on values.*use engine="numpy"'):
         sweep(made, designs, ["rms O"], engine="compiled")
-    monkeypatch.setattr(asked, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 1)
     assert sweep(made, designs, ["rms O"])[FAILED].tolist() == ["", ""]
 
 
@@ -136,4 +135,4 @@ def test_few_angles_are_raised_to_enough(angles):
     outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
     options = {"variant": "idle"}
     found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)
-    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=job.LEAST, **options))
+    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=chunk.LEAST, **options))

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.sweeps import chunks, dataset
+from kinetostatics.sweeps import chunk, dataset
 from kinetostatics.sweeps import workers as dispatch
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
@@ -65,7 +65,7 @@ def test_finished_folder_is_read_again(tmp_path):
 @pytest.mark.parametrize("error", [KeyboardInterrupt, SystemExit])
 def test_an_interrupted_sweep_goes_on_where_it_stopped(tmp_path, expected, monkeypatch, error):
     calls: list[int] = []
-    function, run = counted(calls), chunks.run_chunk
+    function, run = counted(calls), chunk.run_chunk
 
     def interrupted(job, frame):
         if 30 in frame.index:

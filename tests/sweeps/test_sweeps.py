@@ -15,7 +15,7 @@ import kinetostatics as ks
 from kinetostatics.engines import numba_backend
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
-from kinetostatics.sweeps import together
+from kinetostatics.sweeps import chunk
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.case_files import shipped, written
@@ -110,8 +110,8 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     found = sweep(SAW, rising(30), engine="compiled", **options)
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
     monkeypatch.setattr(numba_backend, "core_count", lambda: 2)
-    monkeypatch.setattr(together, "VALUES", 50)
-    monkeypatch.setattr(together, "BLOCK", 50)
+    monkeypatch.setattr(chunk, "VALUES", 50)
+    monkeypatch.setattr(chunk, "BLOCK", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
@@ -121,7 +121,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
 @pytest.mark.slow
 def test_memory_is_that_of_a_chunk(monkeypatch):
     """Four times the designs take no more, but for the table itself."""
-    monkeypatch.setattr(together, "VALUES", 2000)
+    monkeypatch.setattr(chunk, "VALUES", 2000)
 
     def peak(count):
         designs = pd.DataFrame({"crank": np.linspace(0.1, 0.5, count)})

@@ -19,7 +19,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
-from kinetostatics.sweeps import chunks, sweeps, together
+from kinetostatics.sweeps import chunk, sweeps
 from kinetostatics.sweeps import workers as dispatch
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
@@ -246,10 +246,10 @@ def alive(process):
 
 
 def test_errors_of_the_library_end_the_sweep(monkeypatch):
-    monkeypatch.setattr(chunks, "run_chunk", None)
+    monkeypatch.setattr(chunk, "run_chunk", None)
     with ThreadPoolExecutor(1) as executor:
         for error in (ks.errors.MissingLibraryError("no numba here"), OSError("disk full")):
-            monkeypatch.setattr(together, "run", partial(raising, error))
+            monkeypatch.setattr(chunk, "run", partial(raising, error))
             with pytest.raises(type(error), match=str(error)):
                 sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)
 
