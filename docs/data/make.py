@@ -30,7 +30,7 @@ from kinetostatics.machine.loads import Table  # noqa: E402
 from kinetostatics.machine.loads.points import Between, Place  # noqa: E402
 from kinetostatics.machine.loads.table_pieces import WholeTurns  # noqa: E402
 from kinetostatics.numbers import checks  # noqa: E402
-from kinetostatics.studies.methods.certified import certified  # noqa: E402
+from kinetostatics.studies.methods.high_precision.certified import certified  # noqa: E402
 from support.friction_machines import Drawn  # noqa: E402
 
 DIGITS = 17

@@ -5,7 +5,7 @@ import time
 from ..errors import MissingLibraryError, NotGivenError
 from ..numbers import checks
 from .methods import motion, running
-from .methods.exact_running import exact_speed
+from .methods.high_precision.exact_running import exact_speed
 from .timing import seconds
 
 LONG = 0.2

@@ -11,7 +11,7 @@ from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from .driving import study_motion, study_running
 from .methods import METHODS, Method
-from .methods.certified import Enclosure, certified, enclosure, relative_errors
+from .methods.high_precision.certified import Enclosure, certified, enclosure, relative_errors
 from .methods.motion import BENCHMARKS
 from .methods.motion import METHODS as MOTION_METHODS
 from .methods.running import METHODS as RUNNING_METHODS

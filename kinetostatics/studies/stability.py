@@ -18,8 +18,8 @@ from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT
 from .methods import METHODS
-from .methods.certified import differences, enclosure, relative_errors
 from .methods.engines import proven
+from .methods.high_precision.certified import differences, enclosure, relative_errors
 from .places import PLACES, Place
 from .timing import circumstances
 

@@ -23,7 +23,7 @@ from kinetostatics.engines.codegen import loop_source
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.studies.methods.enclosures import enclosure
+from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
 STRUCTURES = (
     ("sawframe_2r63", "plain"),

@@ -14,7 +14,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.studies.methods import METHODS
-from kinetostatics.studies.methods.certified import enclosure, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from kinetostatics.studies.precision import BETTER_THAN
 
 ANGLES = 360

@@ -24,7 +24,7 @@ from kinetostatics.engines.numba_backend import numba_available
 from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart, rest, sign, total
-from kinetostatics.studies.methods.enclosures import enclosure
+from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, over_worst, solution
 from support.case_files import shipped

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods import configurations, newton
+from kinetostatics.studies.methods import newton
+from kinetostatics.studies.methods.global_system import configurations
 from support.chains import LOAD_KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
@@ -125,7 +126,7 @@ def test_every_engine_gives_the_same_under_any_load(kind, engine):
         found = program(ANGLES[::4])["balancing_torque"]
     else:
         pytest.importorskip("flint")
-        from kinetostatics.studies.methods.enclosures import enclosure
+        from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
         (found,) = enclosure(s, "balancing_torque").middle
     assert largest(found - s.balancing_torque) < 1e-13 * max(largest(found), s.largest_torque_term)
@@ -183,8 +184,8 @@ def test_load_derivatives_equal_differences():
 def test_mpmath_agrees_under_all_loads():
     pytest.importorskip("mpmath")
     pytest.importorskip("flint")
-    from kinetostatics.studies.methods.enclosures import enclosure
-    from kinetostatics.studies.methods.independent import independent
+    from kinetostatics.studies.methods.high_precision.enclosures import enclosure
+    from kinetostatics.studies.methods.high_precision.independent import independent
 
     table = ks.Table([0.2, 0.5, 0.9], [3.0, -2.0, 8.0], over="travel", back=[1.0, 2.0, 3.0])
     s = ks.solve(

@@ -82,7 +82,7 @@ def test_program_keeps_the_radius_of_the_pin():
 @pytest.mark.parametrize("at", [(0.0, 0.625), (0.375, 0.5), (-0.625, 0.0)])
 def test_second_throw_enclosures_hold(at):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    from kinetostatics.studies.methods.certified import certified
+    from kinetostatics.studies.methods.high_precision.certified import certified
 
     rockers = ks.RockerGroup(1.875, 1.25, (-1.5, 2.0), "crossed", LINKS["coupler"], LINKS["rocker"], on="C")
     made = thrown(rockers, at)

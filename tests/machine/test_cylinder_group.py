@@ -7,7 +7,7 @@ import kinetostatics as ks
 from kinetostatics.errors import ConditionWarning, ParameterError
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT
-from kinetostatics.studies.methods.certified import differences, enclosure, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import differences, enclosure, relative_errors
 
 R, PIVOT = 0.1, (0.05, -0.35)
 ANGLES = np.linspace(0.1, 6.2, 9)

@@ -3,7 +3,7 @@
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.case_files import shipped
 from support.every import every
 

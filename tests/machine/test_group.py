@@ -23,7 +23,7 @@ from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods import kane, newton
-from kinetostatics.studies.methods.enclosures import enclosure
+from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.numbers.parameter_tree import with_fields
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every
 

@@ -12,7 +12,7 @@ from kinetostatics.machine.groups import lever, near_dead_centre, rocker, slider
 from kinetostatics.machine.guide import Line
 from kinetostatics.machine.kinematic_state import Throw
 from kinetostatics.mechanics.quantities import scale
-from kinetostatics.studies.methods.certified import enclosure, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from support.every import every
 
 TURN = np.linspace(-7.0, 7.0, 41)

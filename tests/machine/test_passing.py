@@ -12,7 +12,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT
-from kinetostatics.studies.methods.certified import differences, enclosure, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import differences, enclosure, relative_errors
 from support import multibody
 from support.enclosed import assert_enclosed
 

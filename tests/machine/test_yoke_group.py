@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import ParameterError
-from kinetostatics.studies.methods.independent import Machine
+from kinetostatics.studies.methods.high_precision.independent import Machine
 from support.every import every
 
 R, SPEED = 0.07, 12.0

@@ -185,7 +185,7 @@ def test_compiled_and_plain_programs_agree():
 def test_enclosures_hold_what_is_computed():
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     from kinetostatics.mechanics.quantities import components
-    from kinetostatics.studies.methods.enclosures import enclosure
+    from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
     s = ks.solve(RUBBED, TURN[::30], friction=JOINTS, **DRIVE)
     for name in ("balancing_torque", "friction_loss", "guide_friction", "B"):

@@ -9,7 +9,7 @@ from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.parameter_tree import with_fields
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every
 

@@ -15,7 +15,7 @@ from kinetostatics import cli
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS, Method, kane, newton, structures
-from kinetostatics.studies.methods.certified import enclosure, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from kinetostatics.views import charts
 from support.studied import FEW, torque_study
 

@@ -11,7 +11,7 @@ from kinetostatics.errors import KinetostaticsError
 from kinetostatics.machine.guide import Guide
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.numbers.parameter_tree import mapped
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from kinetostatics.studies.places import PLACES
 
 from . import chains

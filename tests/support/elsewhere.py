@@ -6,7 +6,7 @@ import kinetostatics as ks
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.numbers.parameter_tree import with_fields
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 
 from .bounded import Found
 from .scenes import SCENES, SIZES, solve

@@ -7,7 +7,7 @@ import pytest
 
 from kinetostatics.engines.engines import NUMPY
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 
 BITS = 200
 
@@ -15,7 +15,7 @@ BITS = 200
 def assert_enclosed(solution, joint):
     """Torque and the reaction at a joint lie where arb enclosures and mpmath, which agree, say."""
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    from kinetostatics.studies.methods.certified import certified
+    from kinetostatics.studies.methods.high_precision.certified import certified
 
     for quantity, values in (("balancing_torque", solution.balancing_torque[None]), (joint, solution.reaction(joint))):
         found = certified(solution, quantity)

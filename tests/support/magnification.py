@@ -14,7 +14,7 @@ from kinetostatics import Gravity, Link, Spring
 from kinetostatics.machine.guide import Guide
 from kinetostatics.machine.links import arm, first_at
 from kinetostatics.numbers.parameter_tree import mapped, with_fields
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 
 flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

@@ -17,7 +17,7 @@ projection  where results are asked for, one Newton iteration puts q back and J 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .configurations import Configuration, components
+from .global_system.configurations import Configuration, components
 from .method import Method, NotGivenError
 from .newton import modelled, table
 

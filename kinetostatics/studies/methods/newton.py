@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .configurations import Configuration, components
 from .constraints import Model
+from .global_system.configurations import Configuration, components
 from .method import Method, NotGivenError, require_moving, require_one_design
 
 STEP = np.radians(15.0)

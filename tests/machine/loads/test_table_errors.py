@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import table_pieces
-from kinetostatics.studies.methods.enclosures import enclosure
+from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
 
 def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_rounding():

@@ -11,7 +11,13 @@ from kinetostatics.errors import KinetostaticsError, MissingLibraryError, Quanti
 from kinetostatics.machine.cams.cams import cam_roller
 from kinetostatics.machine.groups import rocker, slider
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.studies.methods.certified import Enclosure, certified, enclosure, independent, relative_errors
+from kinetostatics.studies.methods.high_precision.certified import (
+    Enclosure,
+    certified,
+    enclosure,
+    independent,
+    relative_errors,
+)
 from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import ANGLES, KINDS, Machine
 

@@ -8,7 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.studies.methods import configurations, constraints, integration, motion, newton
+from kinetostatics.studies.methods import constraints, integration, motion, newton
+from kinetostatics.studies.methods.global_system import configurations
 from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import CHAINS, TURN, error, solved
 from support.machines import CLOSE, KINDS

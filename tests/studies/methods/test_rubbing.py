@@ -7,7 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
-from kinetostatics.studies.methods import certified, independent, integration, kane, newton
+from kinetostatics.studies.methods import integration, kane, newton
+from kinetostatics.studies.methods.high_precision import certified, independent
 from support.case_files import shipped
 from support.every import every
 from support.friction_machines import KINDS, Drawn
@@ -72,7 +73,7 @@ def test_what_cannot_be_found_is_refused():
 
 
 def test_friction_that_does_not_settle_is_told(monkeypatch):
-    monkeypatch.setattr("kinetostatics.studies.methods.rubbing.TIMES", 2)
+    monkeypatch.setattr("kinetostatics.studies.methods.global_system.friction.TIMES", 2)
     with pytest.raises(NotGivenError, match="forces and friction still change after being found 2 times"):
         NEWTON.prepare(drawn("slider"), "O", 6)()
 

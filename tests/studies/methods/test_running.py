@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.drive.one_dof import Driven
 from kinetostatics.studies.methods import running
-from kinetostatics.studies.methods.exact_running import exact_speed
+from kinetostatics.studies.methods.high_precision.exact_running import exact_speed
 from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
 
 

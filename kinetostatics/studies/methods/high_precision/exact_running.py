@@ -9,9 +9,9 @@ import itertools
 
 import numpy as np
 
-from ...errors import NotGivenError
-from ...mechanics import energy_contact
-from ...numbers.parameter_tree import with_fields
+from ....errors import NotGivenError
+from ....mechanics import energy_contact
+from ....numbers.parameter_tree import with_fields
 from .enclosures import library, on_arb
 
 BITS, DIGITS = 300, 1e-22

@@ -4,21 +4,21 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import NotGivenError
-from ...machine.cams.cam_roller import CamRoller
-from ...machine.cams.cams import Circle, CosineLaw, Harmonic
-from ...machine.crank import Pin
-from ...machine.followers.follower import GuidedFollower
-from ...machine.followers.swinging import SwingingFollower
-from ...machine.group import FRAME
-from ...machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
-from ...machine.groups.cylinder import CylinderGroup
-from ...machine.groups.dyad import Dyad
-from ...machine.groups.lever import LeverGroup
-from ...machine.groups.rocker import RockerGroup
-from ...machine.groups.slider import SliderGroup
-from ...machine.groups.yoke import YokeGroup
-from ...machine.laws.laws import Cosine
+from ....errors import NotGivenError
+from ....machine.cams.cam_roller import CamRoller
+from ....machine.cams.cams import Circle, CosineLaw, Harmonic
+from ....machine.crank import Pin
+from ....machine.followers.follower import GuidedFollower
+from ....machine.followers.swinging import SwingingFollower
+from ....machine.group import FRAME
+from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
+from ....machine.groups.cylinder import CylinderGroup
+from ....machine.groups.dyad import Dyad
+from ....machine.groups.lever import LeverGroup
+from ....machine.groups.rocker import RockerGroup
+from ....machine.groups.slider import SliderGroup
+from ....machine.groups.yoke import YokeGroup
+from ....machine.laws.laws import Cosine
 
 
 class Posture:

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import MissingLibraryError, NotGivenError
-from ...machine.crank import ray
-from ...machine.guide import Guide
-from ...machine.loads import Load, ProcessForce, Table
-from ...mechanics.dynamics import Dynamics
-from ...mechanics.load_values import moving, title_of
-from ...mechanics.quantities import components
-from ...numbers.parameter_tree import mapped, with_fields
+from ....errors import MissingLibraryError, NotGivenError
+from ....machine.crank import ray
+from ....machine.guide import Guide
+from ....machine.loads import Load, ProcessForce, Table
+from ....mechanics.dynamics import Dynamics
+from ....mechanics.load_values import moving, title_of
+from ....mechanics.quantities import components
+from ....numbers.parameter_tree import mapped, with_fields
 
 FEWEST_BITS, MOST_BITS = 128, 4096
 

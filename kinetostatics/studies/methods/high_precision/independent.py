@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import NotGivenError
-from ...machine.group import FRAME, TRAVELS
-from ...machine.loads import Gravity, Load, ProcessForce, Spring
-from ...mechanics.quantities import RATES
-from ...numbers import checks
-from .acting import Acting
+from ....errors import NotGivenError
+from ....machine.group import FRAME, TRAVELS
+from ....machine.loads import Gravity, Load, ProcessForce, Spring
+from ....mechanics.quantities import RATES
+from ....numbers import checks
+from ..acting import Acting
+from ..global_system.friction import Rubbing
+from ..method import require_moving
+from ..structures import structure
 from .enclosures import library, on_arb, require_one_design
-from .method import require_moving
 from .postures import Posture, cross, dot, left
-from .rubbing import Rubbing
-from .structures import structure
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):

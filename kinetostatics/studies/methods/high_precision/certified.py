@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import KinetostaticsError
-from ...mechanics.jamming import with_one_more_pass
-from ...mechanics.quantities import scale
+from ....errors import KinetostaticsError
+from ....mechanics.jamming import with_one_more_pass
+from ....mechanics.quantities import scale
 from .enclosures import Enclosure, enclosure, library, magnitude, place_of
 from .independent import independent, working_digits
 

@@ -6,10 +6,10 @@ last, until nothing changes. What is left of an error each time is about the coe
 
 from typing import ClassVar
 
-from ...errors import NotGivenError
-from ...machine.group import FRAME
-from ...machine.links import Rolling, Sliding, Turning
-from .structures import structure
+from ....errors import NotGivenError
+from ....machine.group import FRAME
+from ....machine.links import Rolling, Sliding, Turning
+from ..structures import structure
 
 TIMES = 2000
 """How often forces are found anew, at most."""

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from ...machine.loads import Gravity, Spring
-from ...mechanics.load_values import pushed, settled
-from ...numbers.lazy import cached_property
-from .acting import Acting
-from .constraints import ACCELERATION, FORCE, RATE
-from .followers import gap
-from .method import NotGivenError
-from .rubbing import Rubbing
+from ....machine.loads import Gravity, Spring
+from ....mechanics.load_values import pushed, settled
+from ....numbers.lazy import cached_property
+from ..acting import Acting
+from ..constraints import ACCELERATION, FORCE, RATE
+from ..followers import gap
+from ..method import NotGivenError
+from .friction import Rubbing
 
 SETTLED = 1e-15
 """How much forces with friction may change the last time, relative to the largest."""
