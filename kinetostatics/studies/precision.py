@@ -9,12 +9,12 @@ from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
-from .driving import study_motion, study_running
 from .methods import METHODS, Method
 from .methods.high_precision.certified import Enclosure, certified, enclosure, relative_errors
 from .methods.motion import BENCHMARKS
 from .methods.motion import METHODS as MOTION_METHODS
 from .methods.running import METHODS as RUNNING_METHODS
+from .methods.running import study_motion, study_running
 from .timing import circumstances, seconds
 
 __all__ = [

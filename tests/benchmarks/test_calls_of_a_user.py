@@ -12,7 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
-from kinetostatics.studies.methods import kane
+from kinetostatics.studies.methods.kane.equations import equations
 from support.speed import COUPLER, COUPLER_INERTIA, COUPLER_MASS, CRANK, SLIDER_MASS, SPEED, seconds, turn
 
 QUANTITIES = ("O", "A", "B", "guide_force", "balancing_torque")
@@ -42,7 +42,7 @@ def test_users_calls_keep_to_their_share_of_kanes_time(benchmark, tell, count):
         "compiled": partial(solved, angles, "compiled"),
         "program": partial(program, angles, {"slider.mass": 620.0, "crank_length": 0.31}),
     }
-    peer = kane.all_forces(ks.Scene(saw(), SPEED, loads=ks.Gravity()).solve(count))
+    peer = equations.all_forces(ks.Scene(saw(), SPEED, loads=ks.Gravity()).solve(count))
     for found, name in zip(solved(angles, "compiled"), QUANTITIES, strict=True):
         assert np.abs(found - np.squeeze(peer()[name])).max() <= 1e-12 * np.abs(found).max()
     benchmark(rivals["program"])

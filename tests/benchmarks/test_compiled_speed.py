@@ -20,7 +20,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.program import program_of
-from kinetostatics.studies.methods import kane
+from kinetostatics.studies.methods.kane.equations import equations
 from support.case_files import shipped
 from support.speed import (
     CENTRE,
@@ -123,7 +123,7 @@ def shared(made, numbers, designs=BLOCK):
 def test_one_turn_takes_12_us_near_c(benchmark, tell, one_core, c):
     rows, few = np.empty((9, 360)), turn(360)
     ours, plain_c = one_design(few), called(c[0].turn, DESIGN, 360, few, rows)
-    by_kane = [kane.all_forces(SAW.solve("plain", count)) for count in (360, 3600)]
+    by_kane = [equations.all_forces(SAW.solve("plain", count)) for count in (360, 3600)]
     plain_c()
     found = benchmark(ours)
     assert_same(found, rows)

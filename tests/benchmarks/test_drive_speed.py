@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import kinetostatics as ks
 from kinetostatics.drive.one_dof import Driven
-from kinetostatics.studies.driving import study_running
+from kinetostatics.studies.methods.running import study_running
 from support import DATA
 from support.speed import PLAIN, SPEED
 

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods import newton
-from kinetostatics.studies.methods.global_system import configurations
+from kinetostatics.studies.methods.global_system import configurations, newton
 from support.chains import LOAD_KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar

@@ -22,8 +22,9 @@ from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, su
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
-from kinetostatics.studies.methods import kane, newton
+from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
+from kinetostatics.studies.methods.kane.equations import equations
 
 
 @dataclass(frozen=True, eq=False)
@@ -319,7 +320,7 @@ def test_methods_know_the_group_by_its_pairs(solution):
     own = vars(mechanism().groups[0])
     paired = replace(solution, mechanism=replace(mechanism(), groups=(Paired(**own),)))
     for name in QUANTITIES:
-        for method in (*kane.METHODS, *newton.METHODS):
+        for method in (*equations.METHODS, *newton.NEWTON_METHODS):
             with pytest.raises(ks.errors.NotGivenError, match="Yoke does not declare in its pairs"):
                 method.prepare(solution, name, method.settings[-1])
             found = method.prepare(paired, name, method.settings[-1])()

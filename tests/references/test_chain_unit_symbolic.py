@@ -16,7 +16,7 @@ from sympy.polys.orderings import lex
 
 from kinetostatics.machine.groups import rocker
 from kinetostatics.machine.links import Joint
-from kinetostatics.studies.methods import printed
+from kinetostatics.studies.methods import papers
 
 pytestmark = pytest.mark.slow
 
@@ -78,8 +78,8 @@ def study_rates():
         "arccos": lambda ratio: 0,
     }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(printed, "np", SimpleNamespace(**functions))
-        return dict(zip(("coupler", "rocker"), printed.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
+        patch.setattr(papers, "np", SimpleNamespace(**functions))
+        return dict(zip(("coupler", "rocker"), papers.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
 
 
 def test_directions_are_unit_vectors_closing_the_loop(placed):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies import driving, timing
+from kinetostatics.studies import timing
+from kinetostatics.studies.methods import running
 from kinetostatics.views import charts
 from support.drives import BY_NAME, IDLE, MOTOR, SAW
 
@@ -18,7 +19,7 @@ pytestmark = pytest.mark.slow
 def test_a_study_of_running_is_a_chart_with_units(tmp_path):
     pytest.importorskip("flint")
     methods = [BY_NAME["ours, NumPy"], replace(BY_NAME["collocation, Fourier"], settings=(9, 17, 33))]
-    table = driving.study_running(IDLE, MOTOR, 1000.0, methods=methods, repeats=1)
+    table = running.study_running(IDLE, MOTOR, 1000.0, methods=methods, repeats=1)
     assert table.set_index("method").loc["ours, NumPy", "error"] < 1e-14
     assert (table["time [ms]"] > 0.0).all()
     paths = charts.drive_page({"saw, idle": table}, tmp_path / "drive")
@@ -31,16 +32,16 @@ def test_a_study_of_running_is_a_chart_with_units(tmp_path):
     ("call", "kind", "words"),
     [
         (
-            lambda: driving.study_running(ks.Scene(SAW, 1.0, loads=ks.TorsionDamper(1.0, on="crank")), MOTOR),
+            lambda: running.study_running(ks.Scene(SAW, 1.0, loads=ks.TorsionDamper(1.0, on="crank")), MOTOR),
             ks.errors.NotGivenError,
             "do not depend on the speed",
         ),
         (
-            lambda: driving.study_running(IDLE, ks.drive.Motor.linear(9.0, 9.0, transmission=-1.0), 1.0),
+            lambda: running.study_running(IDLE, ks.drive.Motor.linear(9.0, 9.0, transmission=-1.0), 1.0),
             ks.errors.NotGivenError,
             "counter-clockwise",
         ),
-        (lambda: driving.study_motion("slider crank"), ks.ParameterError, "allowed: 'slider-crank of SUNDIALS'"),
+        (lambda: running.study_motion("slider crank"), ks.ParameterError, "allowed: 'slider-crank of SUNDIALS'"),
     ],
 )
 def test_what_cannot_be_studied_says_why(call, kind, words):

@@ -14,8 +14,10 @@ import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS, Method, kane, newton, structures
+from kinetostatics.studies.methods import METHODS, Method, structures
+from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
+from kinetostatics.studies.methods.kane.equations import equations
 from kinetostatics.views import charts
 from support.studied import FEW, torque_study
 
@@ -136,7 +138,7 @@ def test_general_methods_chart_tables_and_loads(name, variant):
     s = ks.load_case(name).solve(variant, 8)
     for quantity in ("balancing_torque", "O"):
         reference = enclosure(s, quantity)
-        for method in (*kane.METHODS, *newton.METHODS):
+        for method in (*equations.METHODS, *newton.NEWTON_METHODS):
             found = method.prepare(s, quantity, method.settings[-1])()
             assert relative_errors(found, reference).max() < 1e-13, (method.name, quantity)
 

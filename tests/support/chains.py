@@ -6,8 +6,8 @@ from mpmath import mp
 import kinetostatics as ks
 from kinetostatics.machine.group import FRAME
 from kinetostatics.mechanics.quantities import components, of_mechanism
-from kinetostatics.studies.methods.constraints import Model
 from kinetostatics.studies.methods.global_system import configurations
+from kinetostatics.studies.methods.global_system.constraints import Model
 from kinetostatics.studies.methods.high_precision.independent import Machine, working_digits
 
 KINDS = ("pin", "slider", "rocker", "dyad", "lever", "cylinder", "yoke")

@@ -19,16 +19,18 @@ exact_running   periodic running at many digits, what those are measured against
 Nothing in the library's numeric path calls them; where they fail is counted by the tests.
 """
 
-from . import engines, integration, joints, kane, newton, papers
+from . import engines, papers
+from .global_system import constraints, newton
+from .kane import equations
 from .method import Method
 
 METHODS = (
     *engines.METHODS,
     *papers.METHODS,
-    *kane.METHODS,
-    *newton.METHODS,
-    *joints.METHODS,
-    *integration.METHODS,
+    *equations.METHODS,
+    *newton.NEWTON_METHODS,
+    *constraints.METHODS,
+    *newton.INTEGRATION_METHODS,
     papers.AS_PRINTED,
 )
 """All methods, in the order of charts."""

@@ -27,8 +27,8 @@ from ...machine.links import Link
 from ...machine.loads import Force, Gravity, PointDamper, PointSpring
 from ...machine.mechanism import Mechanism
 from ...solution.scene import Scene
-from .constraints import Model
 from .global_system.configurations import Configuration
+from .global_system.constraints import Model
 from .method import Method
 
 DAMPING = 10.0

@@ -9,14 +9,15 @@ import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.arithmetic import UNIT
-from kinetostatics.studies.methods import kane, papers
+from kinetostatics.studies.methods import papers
+from kinetostatics.studies.methods.kane.equations import equations
 from kinetostatics.studies.methods.method import NotGivenError
 from support import followers
 from support.machines import ANGLES, CLOSE, FourBar, Machine, largest
 
 pytestmark = pytest.mark.slow
 
-(KANE,), (PAPERS,) = kane.METHODS, papers.METHODS
+(KANE,), (PAPERS,) = equations.METHODS, papers.METHODS
 METHODS = KANE, PAPERS
 COSINE_LAW = Machine("cosine law")
 CAM = COSINE_LAW.mechanism.groups[0].cam
@@ -54,7 +55,7 @@ def error(s, name, found):
 
 def assert_sound(s):
     """All forces are there, and right, as near as their condition leaves them."""
-    found = kane.all_forces(s)()
+    found = equations.all_forces(s)()
     assert set(found) == {*s.reactions, *s.scalars}
     errors = {name: error(s, name, parts) for name, parts in found.items()}
     most = {name: max(CLOSE, UNIT * np.max(s.condition_of(name))) for name in found}
@@ -70,7 +71,7 @@ def test_every_quantity_equals_the_librarys(s, method):
 
 @every_mechanism
 def test_all_forces_come_from_one_function(s):
-    found = kane.all_forces(s)()
+    found = equations.all_forces(s)()
     assert set(found) == {*s.reactions, *s.scalars}
     assert max(error(s, name, parts) for name, parts in found.items()) < CLOSE
 

@@ -8,13 +8,13 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.studies.methods import constraints, integration, motion, newton
-from kinetostatics.studies.methods.global_system import configurations
+from kinetostatics.studies.methods import motion
+from kinetostatics.studies.methods.global_system import configurations, constraints, newton
 from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import CHAINS, TURN, error, solved
 from support.machines import CLOSE, KINDS
 
-(NEWTON,) = newton.METHODS
+(NEWTON,) = newton.NEWTON_METHODS
 
 
 def names(s):
@@ -53,7 +53,7 @@ def test_speed_and_angles_may_vary_freely():
     assert error(s, "B", NEWTON.prepare(s, "B", 4)()) < CLOSE
 
 
-@pytest.mark.parametrize("method", [NEWTON, *integration.METHODS], ids=lambda method: method.name)
+@pytest.mark.parametrize("method", [NEWTON, *newton.INTEGRATION_METHODS], ids=lambda method: method.name)
 def test_what_no_constraint_equation_gives_is_refused(method):
     setting, s = method.settings[-1], solved("circle", acceleration=0.0)
     designs = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), TURN, crank_speed=1.0)
@@ -78,7 +78,7 @@ def test_what_no_constraint_equation_gives_is_refused(method):
 def test_singular_change_point_is_refused_in_a_line():
     deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", coupler=ks.Link(1.0, 0.1))
     s = ks.solve(deltoid, np.linspace(0.0, 6.0, 7), crank_speed=10.0)
-    for method in (NEWTON, *integration.METHODS):
+    for method in (NEWTON, *newton.INTEGRATION_METHODS):
         with pytest.raises(
             NotGivenError, match="four-bar passes change points, where constraint equations are singular"
         ):
@@ -89,7 +89,7 @@ def test_singular_change_point_is_refused_in_a_line():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
+@pytest.mark.parametrize("method", newton.INTEGRATION_METHODS, ids=lambda method: method.name.split()[-1])
 @pytest.mark.parametrize("name", ["plain", "cosine law", "six-bar"])
 def test_error_of_integration_falls_with_its_tolerance(name, method):
     s = solved(name, acceleration=0.0)
@@ -103,7 +103,7 @@ def test_error_of_integration_falls_with_its_tolerance(name, method):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
+@pytest.mark.parametrize("method", newton.INTEGRATION_METHODS, ids=lambda method: method.name.split()[-1])
 def test_integration_needs_constant_speed(method):
     s = solved("plain", acceleration=0.0)
     for change in (

@@ -7,14 +7,15 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
-from kinetostatics.studies.methods import integration, kane, newton
+from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision import certified, independent
+from kinetostatics.studies.methods.kane.equations import equations
 from support.case_files import shipped
 from support.every import every
 from support.friction_machines import KINDS, Drawn
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
-(NEWTON,) = newton.METHODS
+(NEWTON,) = newton.NEWTON_METHODS
 
 
 def drawn(kind, seed=1, angles=ANGLES):
@@ -49,7 +50,7 @@ def test_shipped_saw_friction_is_certified(flint, variant):
     assert s.friction
     for quantity in ("balancing_torque", "O", "B"):
         reference = certified.certified(s, quantity)
-        for method in (NEWTON, *integration.METHODS):
+        for method in (NEWTON, *newton.INTEGRATION_METHODS):
             found = method.prepare(s, quantity, method.settings[-1])()
             assert ks.precision.relative_errors(found, reference).max() < (1e-13 if method is NEWTON else 1e-8)
 
@@ -69,7 +70,7 @@ def test_what_cannot_be_found_is_refused():
         with pytest.raises(NotGivenError, match="friction of a crank at rest has no sense"):
             prepare(rests, "O", 6)
     with pytest.raises(NotGivenError, match="its equations know no friction, but there is some in O, A, B, guide"):
-        kane.METHODS[0].prepare(drawn("slider"), "O", None)
+        equations.METHODS[0].prepare(drawn("slider"), "O", None)
 
 
 def test_friction_that_does_not_settle_is_told(monkeypatch):

@@ -6,9 +6,9 @@ from ....machine.loads import Gravity, Spring
 from ....mechanics.load_values import pushed, settled
 from ....numbers.lazy import cached_property
 from ..acting import Acting
-from ..constraints import ACCELERATION, FORCE, RATE
-from ..followers import gap
 from ..method import NotGivenError
+from .applied import gap
+from .constraints import ACCELERATION, FORCE, RATE
 from .friction import Rubbing
 
 SETTLED = 1e-15

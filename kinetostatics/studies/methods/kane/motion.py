@@ -2,17 +2,96 @@
 
 The crank angle is the only coordinate. Angles of links and travels of sliders are functions of it: closed forms where
 the loop of a group is met by one angle, one travel, or two angles; rates and accelerations come of its derivatives.
+
+Symbols and small operations that all equations of `kane` share.
+
+Curves of cams in symbols: what leads a link, as a function of the crank angle.
 """
 
 from typing import Any
 
 import sympy as sp
-from sympy.physics.mechanics import ReferenceFrame
+from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
-from ...machine.group import FRAME
-from .kane_cams import CURVES
-from .kane_symbols import ALPHA, ANGLE, OMEGA, PHI, SPEED, N, functions, left, linear, rate, slope
-from .method import NotGivenError
+from ....machine.group import FRAME
+from ..method import NotGivenError
+
+PHI, SPEED = dynamicsymbols("phi speed")
+ANGLE, OMEGA, ALPHA, TORQUE = sp.symbols("crank_angle crank_speed crank_acceleration balancing_torque")
+N = ReferenceFrame("N")
+
+
+def planar(x, y):
+    return x * N.x + y * N.y
+
+
+def left(vector):
+    """Vector after a quarter turn counter-clockwise."""
+    return N.z ^ vector
+
+
+def functions(*names):
+    """Unknown functions of the crank angle."""
+    return [sp.Function(name)(PHI) for name in names]
+
+
+def slope(expression, order=1):
+    """Derivative by the crank angle."""
+    return sp.diff(expression, PHI, order) if order else expression
+
+
+def rate(vector):
+    """Derivative of a vector by the crank angle."""
+    return vector.dt(N).subs(PHI.diff(), 1)
+
+
+def linear(expression, *unknowns):
+    """Coefficients of what an expression is linear in, and the rest."""
+    names = {unknown: sp.Dummy() for unknown in unknowns}
+    named = expression.xreplace(names)
+    return *(named.diff(name) for name in names.values()), named.xreplace(dict.fromkeys(names.values(), sp.S.Zero))
+
+
+def circle(equations, radius, prefix, terms):
+    """Radius of a pitch circle with any centre."""
+    (root,) = functions(f"root_{prefix}")
+    x, y, size = sp.symbols([f"{prefix}_{name}" for name in ("x", "y", "radius")])
+    square = size**2 - (y * sp.cos(PHI) - x * sp.sin(PHI)) ** 2
+    equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
+    equations.define(radius, x * sp.cos(PHI) + y * sp.sin(PHI) + root)
+
+
+def cosine_law(equations, radius, prefix, terms):
+    """Radius by the cosine law as the sawframe study has it, with a root that changes sign at the singular angle."""
+    height, root = functions(f"height_{prefix}", f"root_{prefix}")
+    names = "mean", "amplitude", "angle", "length", "singular"
+    mean, amplitude, guide, length, singular = sp.symbols([f"{prefix}_{name}" for name in names])
+    angle, side = PHI - guide, sp.Symbol(f"side_{prefix}")
+    travel = mean + amplitude * sp.cos(angle)
+    equations.steps[side] = sp.sign(sp.cos(angle) - singular)
+    equations.define(height, travel * sp.sin(angle))
+    equations.define(root, side * sp.sqrt(length**2 - height**2), -height * slope(height) / root)
+    equations.define(radius, travel * sp.cos(angle) - root)
+
+
+def harmonic(equations, radius, prefix, terms):
+    """Sum of cosines and sines."""
+    cosines, sines = terms
+    angle = PHI - sp.Symbol(f"{prefix}_angle")
+    parts = [sp.Symbol(f"{prefix}_cosine{k}") * sp.cos(k * angle) for k in range(cosines)]
+    parts += [sp.Symbol(f"{prefix}_sine{k}") * sp.sin(k * angle) for k in range(1, sines + 1)]
+    equations.define(radius, sp.Add(*parts))
+
+
+def given(equations, function, prefix, terms):
+    """Values and derivatives that a curve gives itself."""
+    value, first, second = sp.symbols([f"{prefix}_{order}" for order in range(3)])
+    equations.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
+    equations.steps[symbol] = value
+    equations.derivatives(function, first, second)
+
+
+CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "given": given}
 
 
 class Body:
