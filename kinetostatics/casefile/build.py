@@ -1,16 +1,177 @@
-"""Build: a validated variant made a scene, with the counterweights that balance it."""
+"""Build: a validated variant made a scene, with the counterweights that balance it.
 
+Chains and loads: groups and loads of any kind, made of their tables.
+
+Pieces of mechanisms, made of their tables: links, guides, cams; and many of them at once, with all that is wrong.
+"""
+
+from dataclasses import MISSING, fields
 from typing import Any
 
 from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
 from ..machine.cams import cams
+from ..machine.cams.roller import Roller
+from ..machine.crank import Crank
+from ..machine.friction import kind_for
+from ..machine.guide import Guide
+from ..machine.links import Link
 from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
+from ..machine.mechanism import Mechanism
+from ..numbers.checks import choice
 from ..numbers.files import read_columns
+from ..numbers.parameter_tree import with_fields
 from ..solution.scene import Scene
-from . import chain, parameters, schema
-from .pieces import all_of, cam_of, friction_of, guide_of, link_of, roller_of
+from . import parameters, schema
+
+
+class PartsError(KinetostaticsError, ValueError):
+    """What is wrong with parts of a variant, pairs of the keys that lead there and a sentence."""
+
+    def __init__(self, problems):
+        self.problems = tuple(problems)
+        super().__init__("; ".join(text for _, text in self.problems))
+
+
+def all_of(makers):
+    """What functions return, by their keys; all problems that they raise in one error."""
+    found, problems = {}, []
+    for keys, make in makers:
+        try:
+            found[keys] = make()
+        except CaseError as error:
+            problems += [(keys, f"{error.path}: {problem}") for problem in error.problems]
+        except KinetostaticsError as error:
+            problems.append((keys, str(error)))
+    if problems:
+        raise PartsError(problems)
+    return found
+
+
+def link_of(table, length=None):
+    """Link of its table; the length of one between two joints tells where its middle is."""
+    centre = table.centre
+    if isinstance(centre, str):
+        if length is None:
+            raise KinetostaticsError(
+                'centre "mid-length" is for links between two joints, not for slider, block or slotted crank; give a '
+                "distance there"
+            )
+        centre = (length / 2, 0.0)
+    return Link(table.mass, centre, table.inertia)
+
+
+def guide_of(table):
+    """Guide of a table that has its keys."""
+    if table.guide_through is None:
+        angle, offset = (0.0 if value is None else value for value in (table.guide_angle, table.guide_offset))
+        return Guide.at(angle, offset)
+    if table.guide_angle is not None or table.guide_offset is not None:
+        raise KinetostaticsError("give either guide_through or guide_angle and guide_offset")
+    return Guide.through(*table.guide_through)
+
+
+def cam_of(table, read, guide_angle):
+    """Cam of its table, or as `read` from its file."""
+    if isinstance(table, schema.SampledTable):
+        return read
+    if isinstance(table, schema.CosineLawTable):
+        return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
+    if isinstance(table, schema.HarmonicTable):
+        return cams.Harmonic(table.cosine, table.sine, guide_angle)
+    return cams.Circle(table.radius, table.centre)
+
+
+def roller_of(table):
+    """Roller of its table, or None."""
+    return None if table is None else Roller(**dict(table))
+
+
+def friction_of(tables, mechanism):
+    """Friction by joint of its tables."""
+    found = all_of((("friction", joint), lambda joint=joint: _rub(tables[joint], joint, mechanism)) for joint in tables)
+    return {joint: friction for (_, joint), friction in found.items()}
+
+
+def _rub(table, joint, mechanism):
+    problem = choice("joint", joint, tuple(mechanism.pairs))
+    if problem:
+        raise KinetostaticsError(problem)
+    kind = kind_for(mechanism.pairs[joint])
+    given = {name: value for name in type(table).model_fields if (value := getattr(table, name)) is not None}
+    allowed = [field.name for field in fields(kind)]
+    lacking = [field.name for field in fields(kind) if field.default is MISSING and field.name not in given]
+    strange = [name for name in given if name not in allowed]
+    if lacking or strange:
+        words = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"has {', '.join(strange)}"] * bool(strange)
+        raise KinetostaticsError(f"{' and '.join(words)}, but friction at {joint!r} takes {', '.join(allowed)}")
+    return kind(**given)
+
+
+def chain(table, tabulated):
+    """Mechanism of a variant that lists its groups."""
+    crank = Crank(table.crank_length, link_of(table.crank, table.crank_length))
+    angle = _guide_angle(table.groups)
+    groups = all_of(
+        (("groups", number), lambda part=part, read=tabulated.get(("groups", number, "cam")): _group(part, read, angle))
+        for number, part in enumerate(table.groups)
+    )
+    return Mechanism(table.name, crank, tuple(groups.values()))
+
+
+def _guide_angle(groups):
+    """Angle of the first guide whose slider hangs on A: what a cam with a law of its own is cut for."""
+    guides = (guide_of(part) for part in groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
+    return next(guides, Guide()).guide_angle
+
+
+def _group(table, cam, guide_angle):
+    """Group of its table; centres at mid-length follow from the bars it has without them."""
+    kind = schema.MADE_OF[type(table)]
+    values = {name: getattr(table, name) for name in type(table).model_fields if name in kind.RULES.rules}
+    links = {name: part for name, part in values.items() if isinstance(part, schema.LinkTable)}
+    if "guide" in kind.RULES.rules:
+        values["guide"] = guide_of(table)
+    if "cam" in values:
+        values["cam"] = cam_of(table.cam, cam, guide_angle)
+    if "roller" in values:
+        values["roller"] = roller_of(table.roller)
+    middles = {name: part.model_copy(update={"centre": (0.0, 0.0)}) for name, part in links.items() if _at_middle(part)}
+    group = kind(**values | {name: link_of(middles.get(name, part)) for name, part in links.items()})
+    lengths = {group.own_names[bar.link]: bar.length for bar in group.bars}
+    return with_fields(group, **{name: link_of(links[name], lengths.get(name)) for name in middles})
+
+
+def _at_middle(table):
+    return isinstance(table.centre, str)
+
+
+def chain_loads(table, tabulated, mechanism):
+    """Loads of a variant that it lists, looked at one by one."""
+    found = all_of(
+        (
+            ("loads", number),
+            lambda part=part, number=number: _load(part, number, tabulated, mechanism, table.crank_speed),
+        )
+        for number, part in enumerate(table.loads)
+    )
+    wrong = [(keys, text) for keys, load in found.items() for text in load.problems(mechanism) if text]
+    if wrong:
+        raise PartsError(wrong)
+    return tuple(found.values())
+
+
+def _load(table, number, tabulated, mechanism, crank_speed):
+    kind = schema.MADE_OF[type(table)]
+    names = [name for name in type(table).model_fields if name != "kind"]
+    values = {name: tabulated.get(("loads", number, name), getattr(table, name)) for name in names}
+    if kind is Spring and isinstance(values["stiffness"], str):
+        slider = mechanism.links.get(table.on)
+        if slider is None:
+            return kind(**values | {"stiffness": 0.0})
+        values["stiffness"] = Spring.balancing(slider.mass, crank_speed, table.free_position).stiffness
+    return kind(**values)
 
 
 def tabulated(table, folder):
@@ -58,7 +219,7 @@ def built(table, tabulated):
     mechanism = _mechanism(table, tabulated)
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
-    loads = (*_loads(table, tabulated), *chain.loads(table, tabulated, mechanism))
+    loads = (*_loads(table, tabulated), *chain_loads(table, tabulated, mechanism))
     friction = friction_of(table.friction, mechanism)
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction, sense=table.sense), balanced
 
@@ -76,7 +237,7 @@ def require_values(table, solution):
 
 def _mechanism(table, tabulated):
     if isinstance(table, schema.ChainVariant):
-        return chain.chain(table, tabulated)
+        return chain(table, tabulated)
     if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
         lengths = table.crank_length, table.coupler_length, table.rocker_length
         links = {

@@ -19,12 +19,11 @@ from ..results.comparison import Comparison
 from ..solution import slips
 from ..solution.solution import Solution
 from . import build, reading, schema
+from .build import PartsError
 from .designs import Design, designs_of
-from .named import Named
-from .pieces import PartsError
 from .reading import shipped_cases
 from .spreads import far_off, spread_problems
-from .variant import Variant, made
+from .variant import Named, Variant, made
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 

@@ -1,4 +1,7 @@
-"""A variant of a case file: its scene, and the numbers of the file by their paths."""
+"""A variant of a case file: its scene, and the numbers of the file by their paths.
+
+What a case has by name, and the error of a name that it has not.
+"""
 
 import typing
 from dataclasses import dataclass, field, fields, is_dataclass
@@ -8,9 +11,10 @@ import numpy as np
 
 from ..design import balancing
 from ..drive.motor import Motor
+from ..errors import CaseError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.texts import on_disk
+from ..numbers.texts import normal, on_disk
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from . import build, parameters, schema
@@ -157,3 +161,36 @@ def made(table, folder, tabulated):
     """Variant of a validated table."""
     scene, balanced = build.built(table, tabulated)
     return Variant(scene, table, balanced, folder, tabulated)
+
+
+class Named(dict):
+    """Items of a case by name, whatever Unicode form that is written in.
+
+    Attributes
+    ----------
+    kind : str
+        What they are: "variant".
+    path : Path
+        Of the case.
+    """
+
+    def __init__(self, kind, path, items):
+        super().__init__(items)
+        self.kind, self.path = kind, path
+
+    def __getitem__(self, name):
+        return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
+
+    def __contains__(self, name):
+        return isinstance(name, str) and super().__contains__(normal(name))
+
+    def __missing__(self, name):
+        if isinstance(name, str) and normal(name) != name:
+            return self[normal(name)]
+        raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
+
+
+class NoSuchNameError(CaseError, KeyError):
+    """A case has nothing of this name; those who look for a `KeyError` find it too."""
+
+    __str__ = Exception.__str__

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.named import NoSuchNameError
-from kinetostatics.casefile.pieces import guide_of, link_of
+from kinetostatics.casefile.build import guide_of, link_of
+from kinetostatics.casefile.variant import NoSuchNameError
 from support.case_chains import EXAMPLES, IN_PYTHON
 from support.case_files import shipped
 from support.every import every
