@@ -13,7 +13,7 @@ from kinetostatics.mechanics.motion import Motion
 from kinetostatics.views import symbols
 from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
 from kinetostatics.views.shape import Shape
-from kinetostatics.views.strokes import LINES, PLATES
+from kinetostatics.views.symbols import LINES, PLATES
 
 FOLDER = Path(__file__).parent / "theory"
 TURN = np.radians(np.arange(720) / 2)

@@ -11,7 +11,7 @@ from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from .canvas import ACCENT, axes, display, single
 from .drawings import MASS_CENTRE, PIN, equal_scales, leading, still_parts
-from .strokes import artist, put
+from .symbols import artist, put
 
 MOST = 0.9
 """Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""

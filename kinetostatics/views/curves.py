@@ -9,7 +9,7 @@ from ..mechanics import quantities
 from ..mechanics.quantities import of_mechanism, values
 from ..numbers.checks import choice, singles
 from ..results.extremes import extremes
-from . import gaps
+from . import peaks
 from .canvas import (
     FROM_X,
     INK,
@@ -67,8 +67,8 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     curves = {name: in_order(named[name], factor * value, counted) for name, value in read.items()}
     drawn_over_turn(ax, curves)
     finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
-    gaps.framed(ax, [value for _, value in curves.values()], shown)
-    gaps.shaded(ax, named, curves, counted)
+    peaks.framed(ax, [value for _, value in curves.values()], shown)
+    peaks.shaded(ax, named, curves, counted)
     return ax
 
 
@@ -182,8 +182,8 @@ def acceleration_error(solutions, ax=None, slider=None):
         curves[name] = in_order(solution, 100 * error, FROM_X)
     drawn_over_turn(ax, curves)
     finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named))
-    gaps.framed(ax, [value for _, value in curves.values()], "%")
-    gaps.shaded(ax, named, curves, FROM_X)
+    peaks.framed(ax, [value for _, value in curves.values()], "%")
+    peaks.shaded(ax, named, curves, FROM_X)
     return ax
 
 
@@ -234,8 +234,8 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
         (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
         rows = [row for row in _marked(solution, marks) if np.isfinite(curves[name][0, row])]
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
-        ends = list(gaps.ends(solution, whole[name], curves[name]))
-        gaps.marked(ax, ends, factor * curves[name], line.get_color())
+        ends = list(peaks.ends(solution, whole[name], curves[name]))
+        peaks.marked(ax, ends, factor * curves[name], line.get_color())
         whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[name], 0.02 * max(extents.values()))
@@ -249,9 +249,9 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     ax.margins(0.1)
     notes = [f"× {why}" for why in sorted(whys)]
     if any(np.any(size > sight) for size in sizes):
-        notes.insert(0, f"▸ beyond the frame: {gaps.size([factor * size for size in sizes], shown)}")
+        notes.insert(0, f"▸ beyond the frame: {peaks.size([factor * size for size in sizes], shown)}")
     if notes:
-        gaps.noted(ax, notes)
+        peaks.noted(ax, notes)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):

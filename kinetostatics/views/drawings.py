@@ -9,17 +9,16 @@ from ..machine.group import FRAME
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from . import symbols
-from .alike import own_strokes
 from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, labelled, styled
 from .labels import label
-from .shape import Shape, posed, whole_turn
-from .strokes import artist, put
+from .shape import Shape, own_strokes, posed, whole_turn
+from .symbols import artist, put
 
 DEGREES = {"angles": checks.Number("deg", table=True)}
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
-    {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
+    {"marker": symbols.MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
 WEIGHTS = ("counterweight", "bar")
 """Kinds of strokes that counterweights are drawn by."""

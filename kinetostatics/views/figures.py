@@ -14,9 +14,9 @@ from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from ..results.losses import lose
-from . import curves, drawings, drives, lost_power, studies
-from .alike import loads_drawn, moves_alike
+from . import curves, drawings, drives, studies
 from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
+from .shape import loads_drawn, moves_alike
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
@@ -242,8 +242,8 @@ FIGURES = {
     "hodograph": (_hodographs, _always),
     "pressure_angle": (_over_turn("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_over_turn("cam_force"), _has("cam_force")),
-    "losses": (lambda solutions, _: _single(lost_power.losses)(_that_rub(solutions)), _rubs),
-    "lost_power": (lambda solutions, _: _one_each(lost_power.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
+    "losses": (lambda solutions, _: _single(drives.losses)(_that_rub(solutions)), _rubs),
+    "lost_power": (lambda solutions, _: _one_each(drives.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
     "mass_centres": (_single(drawings.mass_centres, 9.0, 3.6), _is_balanced),
     "shaking_by_direction": (_single(studies.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (

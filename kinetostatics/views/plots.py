@@ -10,11 +10,9 @@ from .animations import animation
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .curves import acceleration_error, cam_force, hodograph, over_turn, pressure_angle, torque
-from .designs import before_and_after
+from .designs import before_and_after, front
 from .drawings import mass_centres, mechanism
-from .drives import crank_speed, drive_torques, energy_flow
-from .fronts import front
-from .lost_power import losses, lost_power
+from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .studies import chain_unit_motion, shaking_force
 
 __all__ = [

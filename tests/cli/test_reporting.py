@@ -5,7 +5,7 @@ import stat
 import pytest
 
 from kinetostatics.cli import main
-from kinetostatics.views.report import printing
+from kinetostatics.views.report import html
 from support.reports import words
 
 pytestmark = pytest.mark.slow
@@ -26,7 +26,7 @@ def test_the_command_prints_to_a_pdf_and_tells_of_both(tmp_path, capsys, monkeyp
     write = f'for word in "$@"; do case $word in {place}*) printf "%%PDF-1.4 x" > "${{word#{place}}}";; esac; done'
     browser.write_text(f"#!/bin/sh\n{write}\n", encoding="utf-8")
     browser.chmod(browser.stat().st_mode | stat.S_IXUSR)
-    monkeypatch.setattr(printing, "BROWSERS", (str(browser),))
+    monkeypatch.setattr(html, "BROWSERS", (str(browser),))
     page, pdf = tmp_path / "x.html", tmp_path / "x.pdf"
     assert main(["report", "yoke_pump", "--variant", "pumping", "--out", str(page), "--pdf", str(pdf)]) == 0
     assert capsys.readouterr().out == f"wrote {page}; open it in a browser\nwrote {pdf}\n"

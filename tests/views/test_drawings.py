@@ -12,10 +12,9 @@ from matplotlib.path import Path as CurvePath
 
 import kinetostatics as ks
 from kinetostatics.views import labels, symbols
-from kinetostatics.views.alike import own_strokes
 from kinetostatics.views.canvas import LOAD
 from kinetostatics.views.labels import label
-from kinetostatics.views.shape import Shape
+from kinetostatics.views.shape import Shape, own_strokes
 from support.chains import chain
 
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
@@ -171,7 +170,7 @@ def test_three_joint_links_are_plates(axes):
 @pytest.mark.slow
 def test_only_links_with_mass_show_a_centre(axes):
     pose = drawn(FOUR_BAR, axes)
-    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is symbols.MASS_CENTRE]
+    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is symbols.MASS_CENTRE_PATH]
     assert np.allclose(marked, [pose.position(link)[:, 0] for link in ("coupler", "rocker")])
 
 

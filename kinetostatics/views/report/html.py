@@ -1,20 +1,29 @@
-"""The page: data, tables and figures of a subject, put into the template; it holds all that it needs."""
+"""The page: data, tables and figures of a subject, put into the template; it holds all that it needs.
+
+The page as PDF, printed by a browser without a window.
+"""
 
 import datetime as dt
 import math
+import os
 import platform
+import shutil
+import subprocess
+import tempfile
 import warnings
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 
+from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty
 from ...results.losses import lose
 from ...version import __version__
 from ..canvas import display
 from . import figures, sections
 from .movement import movements, packed
-from .readings import readings
+from .tables import readings
 
 GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),
@@ -199,3 +208,70 @@ def _template():
         "separators": (",", ":")
     }  # in order: Bokeh's models stand before what refers to them
     return made.get_template("page.html.j2")
+
+
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome-stable",
+    "google-chrome",
+    "chrome",
+    "msedge",
+    "microsoft-edge",
+)
+"""Names of browsers that print without a window, the first found is taken."""
+PATIENCE = 120.0
+"""Seconds after which a browser that does not end is given up."""
+DRAWING = 20_000
+"""Milliseconds, of the browser's own clock, that figures have to be drawn in."""
+
+
+def browser():
+    """Path of a browser that prints without a window.
+
+    Raises
+    ------
+    MissingLibraryError
+        There is none; the message names those looked for.
+    """
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        raise MissingLibraryError(
+            f"a PDF is printed by a browser, and none of {', '.join(BROWSERS)} is found: install one, or open the "
+            "report in any browser and print it from there"
+        )
+    return found
+
+
+def print_page(path, pdf):
+    """Print a page in a file to a PDF file.
+
+    Raises
+    ------
+    FileError
+        The browser ended without a PDF, or did not end.
+    """
+    found = browser()
+    with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
+        made = Path(folder) / "page.pdf"
+        command = [
+            *(
+                found,
+                "--headless",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--no-first-run",
+                "--window-size=1010,1400",
+            ),
+            *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={DRAWING}", "--no-pdf-header-footer"),
+            *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
+            *(f"--print-to-pdf={made}", Path(path).resolve().as_uri()),
+        ]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, errors="replace")
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise FileError(f"{found} could not print the report: {error}") from None
+        if not made.is_file() or not made.read_bytes().startswith(b"%PDF"):
+            said = next((line for line in reversed(done.stderr.splitlines()) if line.strip()), "it said nothing")
+            raise FileError(f"{found} ended with status {done.returncode} and without a PDF: {said}")
+        shutil.copyfile(made, pdf)

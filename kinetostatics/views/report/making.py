@@ -6,7 +6,7 @@ from ...casefile.case import Case, load_case
 from ...errors import ParameterError
 from ...numbers import checks, files
 from ...solution.scene import Scene
-from . import figures, html, printing
+from . import figures, html
 from .subject import subject_of
 
 SHOWN_AFTER = 1.0
@@ -68,7 +68,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
     )
     figures.require()
     if pdf is not None:
-        printing.browser()
+        html.browser()
     subject = subject_of(case, variant, title, command)
     from tqdm import tqdm
 
@@ -91,7 +91,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
         if pdf is not None:
             tell("PDF")
             with files.written_whole(pdf) as temporary:
-                printing.print_page(path, temporary)
+                html.print_page(path, temporary)
     return Path(path)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import FileError
-from kinetostatics.views.report import html, printing
+from kinetostatics.views.report import html
 from support.every import every
 from support.reports import plain, words
 
@@ -61,7 +61,7 @@ def test_the_case_file_is_not_replaced(tmp_path):
 
 
 def test_pdf_without_a_browser_is_refused_first(tmp_path, monkeypatch):
-    monkeypatch.setattr(printing, "BROWSERS", ("no-such-browser",))
+    monkeypatch.setattr(html, "BROWSERS", ("no-such-browser",))
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is found"):
         ks.report(plain(), tmp_path / "x.html", pdf=tmp_path / "x.pdf")
@@ -106,26 +106,26 @@ def a_browser(folder, monkeypatch, script):
 def test_missing_browsers_are_listed(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     with pytest.raises(ks.KinetostaticsError, match=r"none of chromium, .* is found: install one, or open the report"):
-        printing.browser()
+        html.browser()
 
 
 def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
     place = "--print-to-pdf="
     write = f'for word in "$@"; do case $word in {place}*) printf "%%PDF-1.4 x" > "${{word#{place}}}";; esac; done'
     page = a_browser(tmp_path, monkeypatch, write)
-    printing.print_page(page, tmp_path / "page.pdf")
+    html.print_page(page, tmp_path / "page.pdf")
     assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 x"
 
 
 def test_failed_browser_is_reported(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "echo no display here >&2; exit 7")
     with pytest.raises(FileError, match="ended with status 7 and without a PDF: no display here"):
-        printing.print_page(page, tmp_path / "page.pdf")
+        html.print_page(page, tmp_path / "page.pdf")
     assert not (tmp_path / "page.pdf").exists()
 
 
 def test_a_browser_that_does_not_end_is_given_up(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "exec sleep 30")
-    monkeypatch.setattr(printing, "PATIENCE", 0.2)
+    monkeypatch.setattr(html, "PATIENCE", 0.2)
     with pytest.raises(FileError, match="could not print the report"):
-        printing.print_page(page, tmp_path / "page.pdf")
+        html.print_page(page, tmp_path / "page.pdf")

@@ -10,9 +10,8 @@ import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.rounding import FLOOR
 from kinetostatics.views.report.movement import unpacked
-from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
-from kinetostatics.views.report.tables import of_frame, times, with_published
+from kinetostatics.views.report.tables import decimals, of_frame, readings, times, with_published
 from support.every import every
 from support.reports import near_change_points, series, subject
 
