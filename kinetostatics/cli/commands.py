@@ -222,13 +222,13 @@ def _counts(table):
 
 
 def compare(options):
-    from .comparing import compare
+    from .compare import compare
 
     compare(options)
 
 
 def drive(options):
-    from .driving import drive
+    from .drive import drive
 
     drive(options)
 
@@ -240,7 +240,7 @@ def sweep(options):
 
 
 def design(options):
-    from .designing import design
+    from .design import design
 
     design(options)
 
