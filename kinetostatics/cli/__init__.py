@@ -28,7 +28,7 @@ from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
 from . import machine
 from .options import parser
-from .printed import tell
+from .output import tell
 
 
 class _Terminated(BaseException):

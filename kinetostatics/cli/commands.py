@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..numbers import checks, files
 from . import machine
-from .printed import chosen, of_variants, print_columns, print_table, require_writable, say, tell
+from .output import chosen, of_variants, print_columns, print_table, require_writable, say, tell
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """What is written of an explanation, by the ending of its file."""
@@ -61,12 +61,12 @@ def _other_ending(given, path):
 
 def run(options):
     from ..casefile.case import load_case
-    from . import uncertain
+    from . import sweep_commands
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
     names = list(case.variants) if options.variant is None else [options.variant]
-    given = uncertain.inputs(case, names, options.uncertain or ())
+    given = sweep_commands.inputs(case, names, options.uncertain or ())
     solutions = {name: case.solve(name, options.angles) for name in machine.progress(options, names, "solving")}
     if machine.wants_json(options):
         found = {name: _extremes(solution, given[name]) for name, solution in solutions.items()}
@@ -101,7 +101,7 @@ def _extremes(solution, given):
 def _print_extremes(case, solutions, given, options):
     from ..results.losses import lose
     from ..results.tables import SHOWN, extremes_by_name
-    from . import uncertain
+    from . import sweep_commands
 
     say(case.title)
     for name, solution in solutions.items():
@@ -124,7 +124,7 @@ def _print_extremes(case, solutions, given, options):
             print_table(solution.losses.frame())
             say(f"\n{solution.losses}")
         if options.uncertain:
-            uncertain.tell(solution, given[name])
+            sweep_commands.tell(solution, given[name])
 
 
 def explain(options):
@@ -234,9 +234,9 @@ def drive(options):
 
 
 def sweep(options):
-    from .sweeping import sweep
+    from .sweep_commands import sweep_command
 
-    sweep(options)
+    sweep_command(options)
 
 
 def design(options):
@@ -246,6 +246,6 @@ def design(options):
 
 
 def report(options):
-    from .reporting import report
+    from .output import report
 
     report(options)

@@ -4,7 +4,7 @@ from math import isnan, nan
 
 from ..errors import CaseError
 from . import machine
-from .printed import print_columns, print_table, require_writable, say, with_published
+from .output import print_columns, print_table, require_writable, say, with_published
 
 RESIDUAL = "power residual"
 

@@ -15,7 +15,7 @@ from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
 from . import machine
-from .printed import print_table, require_writable, say, tell
+from .output import print_table, require_writable, say, tell
 
 SAMPLES = 2048
 """Machines of a spread that are looked at in the end."""

@@ -6,7 +6,7 @@ from typing import Any
 from ..errors import CaseError, DriveError
 from ..numbers import checks, files
 from . import machine
-from .printed import of_variants, print_table, require_writable, say, write_table
+from .output import of_variants, print_table, require_writable, say, write_table
 
 
 def drive(options):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..numbers import checks
 from ..version import __version__
-from .printed import STDOUT, write_table
+from .output import STDOUT, write_table
 
 
 def require(options):

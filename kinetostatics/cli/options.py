@@ -7,7 +7,7 @@ from ..numbers.texts import normal
 from ..numbers.units import to_si
 from ..version import __version__
 from . import commands
-from .printed import STDOUT
+from .output import STDOUT
 
 DESIGN = 100
 """Bytes that a design takes with its outputs."""

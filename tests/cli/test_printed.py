@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from kinetostatics.cli import main
-from kinetostatics.cli.printed import print_table, say
+from kinetostatics.cli.output import print_table, say
 from support.every import every
 
 NUMBERS = {

@@ -1,11 +1,16 @@
-"""Tables and words as the command line prints them: plain text, as wide as the terminal."""
+"""Tables and words as the command line prints them: plain text, as wide as the terminal.
 
+The command ``report``: one page of a case, and the same printed to a PDF.
+"""
+
+import shlex
 import shutil
 import sys
 import textwrap
 
 from ..numbers import checks, files
 from ..numbers.formatting import angle, number, parted
+from ..views.report.making import report as write
 from ..views.report.tables import require_places
 
 STDOUT = "-"
@@ -168,3 +173,14 @@ def of_variants(frames):
     table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
     table.insert(0, "variant", table.pop("variant"))
     return table
+
+
+def report(options):
+    variant = ["--variant", options.variant] if options.variant else []
+    pdf = ["--pdf", options.pdf] if options.pdf else []
+    command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf])
+    bar = sys.stderr is not None and sys.stderr.isatty()
+    path = write(options.case, options.out, variant=options.variant, pdf=options.pdf, command=command, progress=bar)
+    print(f"wrote {path}; open it in a browser")
+    if options.pdf:
+        print(f"wrote {options.pdf}")
