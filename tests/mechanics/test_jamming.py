@@ -41,6 +41,27 @@ def test_friction_is_found_where_one_more_pass_changes_no_digit():
     assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
 
 
+@pytest.mark.parametrize(
+    ("margin", "residuals", "passes"),
+    [
+        (0.5, (1e-16,), (3,)),
+        (0.5, (1e-4, 1e-9, 1e-16), (3, 6, 12)),
+        (0.5, (1e-4, 1e-9, 1e-9), (3, 6, 12)),
+        (-0.1, (np.nan,), (3,)),
+    ],
+)
+def test_passes_grow_until_friction_is_found(margin, residuals, passes):
+    scene, taken, left = ks.Scene(PUMP, 3.0, friction={"guide": ks.GuideFriction(0.1)}), [], iter(residuals)
+
+    def evaluate(item):
+        taken.append(item.friction.passes)
+        return np.array([1.0, margin]), np.array([0.0, next(left)])
+
+    assert jamming.solve_friction(scene, evaluate).friction.passes == passes[-1]
+    assert tuple(taken) == passes
+    assert jamming.solve_friction(scene).friction.passes == 6  # nobody looks at it afterwards
+
+
 def states(kappa, free):
     """Forces N of a guide alone with N = free - kappa |N|."""
     both = free / (1.0 + kappa), free / (1.0 - kappa)
