@@ -302,3 +302,22 @@ def test_pitch_curve_must_go_around_o():
     small = ks.RollerFollower(ks.laws.cosine(0.1, 0.101), ks.Guide.at(0.0, 0.02))
     with pytest.raises(ks.ParameterError, match="go around O once"):
         small.disk.radius(PSI)
+
+
+@every_face
+def test_the_follower_is_placed_where_it_is_found(kind):
+    follower = kind(LAW, ks.Guide.at(0.4, 0.01), BODY)
+    mechanism = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    placed, again = mechanism.place(ANGLES), mechanism.place(ANGLES)
+    follower.follow(again, placed.joints)
+    for part, other in zip(placed.travels["follower"], again.travels["follower"], strict=True):
+        assert_allclose(other, part, atol=1e-16)
+
+
+def test_the_arm_is_placed_where_its_roller_is_found():
+    follower = KINDS["swinging"]()
+    mechanism = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    placed, again = mechanism.place(ANGLES), mechanism.place(ANGLES)
+    follower.follow(again, placed.joints)
+    for name in ("ratio", "ratio_slope"):
+        assert_allclose(getattr(again.links["arm"], name), getattr(placed.links["arm"], name), atol=1e-14)

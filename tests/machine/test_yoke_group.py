@@ -78,3 +78,12 @@ def test_program_refuses_a_parallel_slot():
 def test_what_no_yoke_can_have_is_refused(field, value):
     with pytest.raises(ParameterError, match=f"yoke group: {field}"):
         ks.YokeGroup(**{field: value})
+
+
+def test_a_yoke_found_in_another_way_bears_the_same():
+    """A series of one harmonic is the yoke itself."""
+    made = ks.scotch_yoke(R, guide_angle=0.3, guide_offset=0.01, slot_angle=1.1, slider=ks.Link(2.0, (0.1, 0.2), 0.1))
+    s = ks.solve(made, ANGLES, crank_speed=SPEED)
+    found = ks.needs(s, "guide_moment", 0.01)
+    series = next(model for model in found.alone if model.name == "one harmonic")
+    assert series.error < 1e-13
