@@ -14,7 +14,7 @@ OTHERS = (np.ndarray, Nothing)
 class Dual:
     """Values at some crank angles (B,) or one for all, with derivatives by the seeds (seeds, B); None: they are zero.
 
-    What kernels do with the elements of object arrays, as with recorded numbers (`engines.trace`).
+    What kernels do with the elements of object arrays, as with recorded numbers (`engines.graph`).
     """
 
     __slots__ = ("slopes", "value")

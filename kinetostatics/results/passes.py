@@ -322,7 +322,7 @@ class Passes:
         Parameters
         ----------
         loop, given
-            A program's loop (`engines.loops`), and what it takes for all designs: crank angles with their sines and
+            A program's loop (`engines.codegen`), and what it takes for all designs: crank angles with their sines and
             cosines, parameters, tables.
         held : array (designs, rows, N)
             Memory for the values of a block.

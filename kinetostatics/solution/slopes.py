@@ -10,12 +10,12 @@ def slopes(program, by, state, leaves, backend):
 
     Parameters
     ----------
-    program : engines.programs.Program
+    program : engines.program.Program
     by : dict of path to int
         Which leaf each number is.
     state : Dynamics
     leaves : Leaves
-    backend : engines.backends.Backend
+    backend : engines.jax_backend.Backend
     """
     rows = backend.run(program.by_parameters(tuple(by.values())), state, leaves)
     count = len(program.outputs)

@@ -2,8 +2,8 @@
 
     python tests/benchmarks/chart_of_rules.py
 
-For some structures, with the arithmetic as the kernels have it and with reciprocals shared (`LeanGraph`), each with
-every operation rounded and with sums fused (`fusing`): operations at each crank angle, ns an angle over 64 designs that
+For some structures, with the arithmetic as the kernels have it and with reciprocals shared (`SimplifiedGraph`), each
+with every operation rounded and with fused sums: operations at each crank angle, ns an angle over 64 designs that
 share crank angles, least of many calls in turns, and the largest error at 36 angles beside arb of 200 bits, relative to
 the quantity's largest, in 1e-16.
 """
