@@ -38,22 +38,18 @@ def programs_folder() -> Path:
     OSError
         There is none, it cannot be created, or other users may write to it.
     """
-    folder = _named() or _usual()
+    given = os.environ.get("KINETOSTATICS_CACHE")
+    try:
+        folder = Path(given).expanduser().absolute() if given else _user_folder()
+    except RuntimeError as error:
+        raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}") from error
     for step in reversed([folder, *folder.parents]):
         step.mkdir(mode=0o700, exist_ok=True)
     require_private(folder)
     return folder
 
 
-def _named():
-    given = os.environ.get("KINETOSTATICS_CACHE")
-    try:
-        return Path(given).expanduser().absolute() if given else None
-    except RuntimeError as error:
-        raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}") from error
-
-
-def _usual():
+def _user_folder():
     try:
         from platformdirs import user_cache_path
 

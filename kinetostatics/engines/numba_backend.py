@@ -141,23 +141,22 @@ def run_loop(loop, angle, sine, cosine, parameters, tables, results):
         return
     edges = np.linspace(0, designs if designs > 1 else angles, pieces + 1, dtype=int)
 
+    def part(array, start, stop):
+        """Part of an array (..., designs, N): some designs, or some angles of a single one."""
+        if designs == 1:
+            return np.ascontiguousarray(array[..., start:stop])
+        return array if array.shape[-2] == 1 else np.ascontiguousarray(array[..., start:stop, :])
+
     def piece(start, stop):
-        given = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
+        *turn, rows = (part(array, start, stop) for array in (angle, sine, cosine, tables))
         if designs > 1:
-            loop(*given[:3], parameters[start:stop], given[3], results[start:stop].ravel())
+            loop(*turn, parameters[start:stop], rows, results[start:stop].ravel())
         else:
             found = np.empty((1, results.shape[1], stop - start), results.dtype)
-            loop(*given[:3], parameters, given[3], found.ravel())
+            loop(*turn, parameters, rows, found.ravel())
             results[..., start:stop] = found
 
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(pieces) as threads:
         list(threads.map(piece, edges[:-1], edges[1:]))
-
-
-def _part(array, start, stop, designs):
-    """Part of an array (..., designs, N): some designs, or some angles of a single one."""
-    if designs == 1:
-        return np.ascontiguousarray(array[..., start:stop])
-    return array if array.shape[-2] == 1 else np.ascontiguousarray(array[..., start:stop, :])

@@ -344,12 +344,18 @@ def plausibility_test(kind, judged=()):
         outputs.append(value)
         return f"v[{len(outputs) - 1}]"
 
+    def outside(number, usual):
+        """Source of the condition that a number is outside its usual range."""
+        most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
+        too_large = f"not -{most} <= {number} <= {most}"
+        return f"{too_large} or abs({number}) < {least}" if usual.least else too_large
+
     try:
         scene = recorded_scene(kind.structure)
         extent, reaches, bars, bodies, turning, arms = plausibility.sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
-    odd = [_unusual(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
+    odd = [outside(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
     odd += [f"not extent < {FAR} * longest"] if bars else []
     odd += [f"longest > {plausibility.LONGEST}", f"longest > {plausibility.SLENDER} * shortest"] if bars else []
     odd += [
@@ -370,10 +376,3 @@ def plausibility_test(kind, judged=()):
     if any(node.operation == "table" for node in needed(outputs)):
         return None
     return compile_line(source, PLAIN | {"sizes": compile_line(line_source(outputs), PLAIN)})
-
-
-def _unusual(number, usual):
-    """Source of the condition that a number is outside its usual range."""
-    most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
-    too_large = f"not -{most} <= {number} <= {most}"
-    return f"{too_large} or abs({number}) < {least}" if usual.least else too_large

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .codegen import is_of_angle, loop_source
-from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations
+from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations, varies
 from .numba_backend import load_compiled
 from .program import Program
 from .simplify import drop_unused, fused_sums, operands_of
@@ -41,9 +41,8 @@ def shared_loop(program, numbers, angle, tables, count):
         return program.loop, tables
     fixed = [0.0 if np.ndim(number) else number for number in numbers]
     rows = Program(program.recording, common).by_loop(angle[0], fixed, list(tables[:, 0]), angle.shape[1:])
-    return load_compiled(loop_source(rest, fuse=False)).loop, np.concatenate(
-        [tables.reshape(-1, *angle.shape), rows[:, None]]
-    )
+    loop = load_compiled(loop_source(rest, fuse=False)).loop
+    return loop, np.concatenate([tables.reshape(-1, *angle.shape), rows[:, None]])
 
 
 def split_common(outputs, varied, first=0):
@@ -62,12 +61,12 @@ def split_common(outputs, varied, first=0):
     nodes = drop_unused(nodes, outputs, sums)
     own: set[Node] = set()
     for node in nodes:
-        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(
-            operands_of(node, sums)
-        ):
+        is_varied = node.operation == "parameter" and node.arguments[0] in varied
+        if is_varied or not own.isdisjoint(operands_of(node, sums)):
             own.add(node)
     asked = {part for node in nodes if node in own for part in operands_of(node, sums)}.union(outputs)
-    common = [node for node in nodes if node in asked and _is_common(node, own)]
+    given = {node for node in nodes if node.operation in INPUTS or is_of_angle(node)}
+    common = [node for node in nodes if node in asked and varies(node) and node not in own and node not in given]
     rows = {node: first + place for place, node in enumerate(common)}
     graph = Graph()
     copies: dict[Node, Any] = {}
@@ -81,20 +80,10 @@ def split_common(outputs, varied, first=0):
         elif node.operation in INPUTS:
             copies[node] = Node(graph, node.operation, node.arguments, node.varies)
         elif node in sums and node in own:
-            copies[node] = _fused(graph, sums[node], copied)
+            found = sums[node]
+            one, rest = copied(found.one), copied(found.rest)
+            one, rest = one if found.sign > 0 else -one, rest if found.rest_sign > 0 else -rest
+            copies[node] = graph.node("fma", one, copied(found.other), rest)
         elif node in own or node.varies < BY_ANGLE or is_of_angle(node):
             copies[node] = graph.node(node.operation, *map(copied, node.arguments))
     return tuple(common), tuple(map(copied, outputs))
-
-
-def _is_common(node, own):
-    """Whether a node is computed at each crank angle, and that from what is common only."""
-    return node.varies == BY_ANGLE and node not in own and node.operation not in INPUTS and not is_of_angle(node)
-
-
-def _fused(graph, found, copied):
-    """A sum of a product and the rest, as one operation that a graph writes as it is."""
-    one, rest = copied(found.one), copied(found.rest)
-    return graph.node(
-        "fma", one if found.sign > 0 else -one, copied(found.other), rest if found.rest_sign > 0 else -rest
-    )

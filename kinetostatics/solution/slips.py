@@ -23,7 +23,7 @@ class Judged(NamedTuple):
 
 
 def look(kind):
-    """A first look at the numbers of a kind, see `first_look`: all lengths of its mechanism are looked at together."""
+    """The plausibility test of a kind, see `plausibility_test`: all lengths of its mechanism are looked at together."""
     apart = (item for item in kind.answer(judged) if not (item.is_own and item.usual.unit == "m"))
     return plausibility_test(kind, [(item.leaf, item.usual) for item in apart])
 

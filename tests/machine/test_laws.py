@@ -5,11 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from kinetostatics.machine.laws.laws.law import Law, bends_of, knots_of
+from kinetostatics.machine.laws.law import Law, bends_of, knots_of
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.laws.laws import laws
 
 laws = ks.laws
 TURN = 2 * np.pi
