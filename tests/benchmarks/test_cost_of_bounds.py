@@ -56,9 +56,7 @@ def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, mo
 
 
 @pytest.mark.parametrize(("case", "variant"), CASES)
-def test_tight_bounds_of_one_scalar_take_few_times_as_long_as_values(
-    benchmark, tell, monkeypatch, case, variant
-):
+def test_tight_bounds_of_one_scalar_take_few_times_as_long_as_values(benchmark, tell, monkeypatch, case, variant):
     if not compiled.available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(loops, "cores", lambda: 1)
