@@ -3,10 +3,10 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from kinetostatics.machine.cams.cams.cam import Cam
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine.cams.cam import Cam
 from support.machines import ANGLES, assert_close, largest, planar
 from support.multibody import (
     FINE_DIGITS,

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from kinetostatics.machine.laws.law import Law, bends_of, knots_of
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine.laws.law import Law, bends_of, knots_of
 
 laws = ks.laws
 TURN = 2 * np.pi

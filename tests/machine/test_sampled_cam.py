@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from kinetostatics.machine.laws.laws.turn_table import TurnTable
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine.laws.turn_table import TurnTable
 from support.every import every
 from support.machines import ANGLES, assert_equal, largest, results
 
