@@ -12,7 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 from support.speed import COUPLER, COUPLER_INERTIA, COUPLER_MASS, CRANK, SLIDER_MASS, SPEED, seconds, turn
 
 QUANTITIES = ("O", "A", "B", "guide_force", "balancing_torque")

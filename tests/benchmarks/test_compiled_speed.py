@@ -20,7 +20,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.program import program_of
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 from support.case_files import shipped
 from support.speed import (
     CENTRE,

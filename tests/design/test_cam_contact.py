@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.design.cam_contact import hardness_from_pressure, pressure_from_hardness
-from kinetostatics.machine.cams.cams import roller
+from kinetostatics.machine.cams import roller
 from support.cam_contacts import CAM, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 

@@ -24,7 +24,7 @@ from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinetostatics.machine.laws.laws import curves
+from kinetostatics.machine.laws import curves
 
 RISES = {
     "harmonic": curves.HARMONIC,

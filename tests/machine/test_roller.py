@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.cams.cams import roller
+from kinetostatics.machine.cams import roller
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
 
 ROLLER = (0.05, 0.06, *STEEL)

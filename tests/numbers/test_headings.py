@@ -1,6 +1,6 @@
 """Headings of columns: name and unit, to SI, with all that is wrong."""
 
-from kinetostatics.numbers.headings import si_columns
+from kinetostatics.numbers.formatting import si_columns
 
 
 def test_unit_in_round_brackets_is_corrected():

@@ -17,7 +17,7 @@ from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS, Method, structures
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 from kinetostatics.views import charts
 from support.studied import FEW, torque_study
 

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import KinetostaticsError, MissingLibraryError, QuantityError
-from kinetostatics.machine.cams.cams import cam_roller
+from kinetostatics.machine.cams import cam_roller
 from kinetostatics.machine.groups import rocker, slider
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies.methods.high_precision.certified import (

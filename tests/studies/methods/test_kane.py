@@ -10,7 +10,7 @@ from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies.methods import papers
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 from kinetostatics.studies.methods.method import NotGivenError
 from support import followers
 from support.machines import ANGLES, CLOSE, FourBar, Machine, largest

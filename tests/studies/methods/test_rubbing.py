@@ -9,7 +9,7 @@ import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision import certified, independent
-from kinetostatics.studies.methods.kane.equations import equations
+from kinetostatics.studies.methods.kane import equations
 from support.case_files import shipped
 from support.every import every
 from support.friction_machines import KINDS, Drawn
