@@ -26,7 +26,7 @@ NUMPY = Backend("numpy", "single")
 
 
 @every("family", FAMILIES)
-def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its_bound(flint, family):
+def test_single_precision_values_lie_within_bounds(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
     exact = exact_values(made, ("balancing_torque", *made.reactions, "kinetic_energy"))
     found = errors(made, exact, [NUMPY])[NUMPY]
@@ -37,7 +37,7 @@ def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning", "ignore::kinetostatics.HintWarning")
 @every("place", INCLINED, ids=lambda place: place.name)
-def test_a_value_near_an_inclined_place_that_single_precision_does_not_have_has_no_finite_bound(flint, place):
+def test_no_bound_near_a_direction_lost_in_single(flint, place):
     for number in place.numbers[4::9]:
         scene = place.scene(number)
         made = ks.Scene(scene.mechanism, scene.crank_speed, 0.0, scene.loads).solve(
@@ -48,7 +48,7 @@ def test_a_value_near_an_inclined_place_that_single_precision_does_not_have_has_
         assert found.wrong == []
 
 
-def test_what_is_nothing_times_a_value_that_may_be_none_has_no_bound():
+def test_zero_times_an_undefined_value_has_no_bound():
     """A moment that is zero wherever the mechanism closes is NaN where single precision cannot tell that it does."""
     lever = ks.slotted_lever(5 / 16, pivot=(3 / 16, 4 / 16), lever=ks.Link(1.0, 0.1, 0.1), block=ks.Link(1.0))
     angle = float(np.arctan2(4.0, 3.0)) + np.array([1e-9, 0.5])
@@ -58,7 +58,7 @@ def test_what_is_nothing_times_a_value_that_may_be_none_has_no_bound():
 
 
 @every("case, variant, most", over_worst("single"))
-def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, most):
+def test_bounds_stay_near_the_worst_error_of_a_turn(case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
     program = ks.compile(scene, ("balancing_torque", "O"), engine="numpy", precision="single")
     exact = ks.compile(scene, ("balancing_torque", "O"), engine="numpy")(ANGLES)
@@ -74,7 +74,7 @@ def bounds_of(outputs, values, arithmetic=SINGLE):
     return Program(None, found)._by_numbers(np.array([0.5]), values, (1,))[:, 0]
 
 
-def test_what_is_handed_over_is_rounded_once_and_each_operation_once_more():
+def test_inputs_and_operations_are_each_rounded_once():
     graph = Graph()
     turn, mass, length = graph.angle().sin(), graph.parameter(0), graph.parameter(1)
     outputs = turn, mass * length, (mass * length) * turn, mass * turn + length * turn
@@ -85,7 +85,7 @@ def test_what_is_handed_over_is_rounded_once_and_each_operation_once_more():
     np.testing.assert_allclose(found, wanted, rtol=0.05)
 
 
-def test_in_double_precision_nothing_is_rounded_when_it_is_handed_over():
+def test_double_precision_rounds_no_input():
     graph = Graph()
     mass, turn = graph.parameter(0), graph.angle().sin()
     (found,) = bounds_of([mass * turn], [3.0], DOUBLE)
@@ -108,14 +108,14 @@ def test_a_total_is_within_its_bound_by_every_engine(numba, jax):
         assert np.max(bound) < 40 * (U if precision == "single" else UNIT)
 
 
-def test_a_constant_that_is_no_single_number_is_rounded_too():
+def test_constants_that_single_precision_lacks_count():
     graph = Graph()
     turn = graph.angle().sin()
     half, tenth = bounds_of([(turn + 1.0) * 0.5, (turn + 1.0) * 0.1], [])
     assert tenth > 1.2 * half / 5
 
 
-def test_where_a_number_on_the_way_is_too_large_there_is_no_bound():
+def test_overflow_of_an_intermediate_leaves_no_bound():
     """In single precision 1 / (m s)^2 is 0 for m = 1e25, as wrong as can be and finite."""
     graph = Graph()
     large = graph.parameter(0) * graph.angle().sin()
@@ -127,7 +127,7 @@ def test_where_a_number_on_the_way_is_too_large_there_is_no_bound():
     assert np.all(np.isinf(program.error_bound(ANGLES)["balancing_torque"]))
 
 
-def test_what_is_too_small_for_single_precision_is_bounded():
+def test_underflow_in_single_precision_is_bounded():
     light = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(1e-43)), 1.0)
     program = ks.compile(light, "balancing_torque", engine="numpy", precision="single")
     exact = light.solve(ANGLES).balancing_torque
@@ -136,7 +136,7 @@ def test_what_is_too_small_for_single_precision_is_bounded():
     assert np.max(bound) < 1e-35
 
 
-def test_where_single_precision_does_not_tell_whether_the_mechanism_closes_there_is_no_bound():
+def test_no_bound_where_single_cannot_tell_assembly():
     folded = ks.Scene(ks.crank_slider(0.5, 0.5, slider=ks.Link(1.0)), 1.0)
     program = ks.compile(folded, "B", engine="numpy", precision="single")
     with np.errstate(all="ignore"):
@@ -147,14 +147,14 @@ def test_where_single_precision_does_not_tell_whether_the_mechanism_closes_there
     assert np.all(np.abs(found[:, :2] - near) <= bound[:, :2])
 
 
-def test_where_there_is_no_value_there_is_no_bound_either():
+def test_no_bound_where_there_is_no_value():
     short = ks.Scene(ks.crank_slider(0.5, 0.3, slider=ks.Link(1.0)), 1.0)
     program = ks.compile(short, "B", engine="numpy", precision="single")
     assert np.isnan(program.error_bound([0.1, 1.5])["B"][:, 1]).all()
     assert np.isnan(program([0.1, 1.5])["B"][:, 1]).all()
 
 
-def test_of_too_many_operations_after_one_another_no_bound_is_given():
+def test_no_bound_after_too_many_operations():
     graph = Graph()
     long = graph.angle().sin()
     for _ in range(3000):
@@ -163,7 +163,7 @@ def test_of_too_many_operations_after_one_another_no_bound_is_given():
         bounds_of([long], [])
 
 
-def test_tables_and_what_a_design_fixes_are_handed_over():
+def test_tables_and_design_constants_are_passed_on():
     graph = Graph()
     mass, angle, row = graph.parameter(0), graph.angle(), graph.row(0)
     assert all(map(is_handed_over, (mass, mass * mass, angle, row, angle.sin(), angle.cos())))
@@ -186,14 +186,14 @@ def off(found, exact, unit):
 
 
 @every("function, name", FUNCTIONS)
-def test_functions_of_numpy_in_single_precision_keep_to_their_ulp(function, name):
+def test_numpy_functions_in_single_keep_to_their_ulp(function, name):
     numbers = single_numbers()
     compute = getattr(np, function)
     assert off(compute(numbers), compute(numbers.astype(float)), U) <= SINGLE.ulp[name]
 
 
 @every("function, name", FUNCTIONS)
-def test_functions_of_compiled_loops_in_single_precision_keep_to_their_ulp(numba, function, name):
+def test_loop_functions_in_single_keep_to_their_ulp(numba, function, name):
     own = getattr(math, name)
     compute = numba.vectorize([numba.float32(numba.float32)], nopython=True)(lambda number: own(number))
     numbers = single_numbers()
@@ -201,7 +201,7 @@ def test_functions_of_compiled_loops_in_single_precision_keep_to_their_ulp(numba
 
 
 @every("function, name", FUNCTIONS)
-def test_functions_of_jax_on_the_processor_keep_to_their_ulp(jax, function, name):
+def test_jax_functions_on_the_cpu_keep_to_their_ulp(jax, function, name):
     numbers = single_numbers()
     exact = getattr(np, function)(numbers.astype(np.longdouble))
     with jax.default_device(jax.devices("cpu")[0]):
@@ -226,7 +226,7 @@ def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("engine, precision", [("numpy", "single"), ("jax", "single"), ("jax", "double")])
-def test_however_near_to_a_change_point_bounds_elsewhere_hold_or_are_infinite(flint, jax, engine, precision):
+def test_bounds_near_change_points_hold_or_are_inf(flint, jax, engine, precision):
     links = {name: ks.Link(1.0, (0.15, 0.0), 0.01) for name in ("crank", "coupler", "rocker")}
     backend = Backend(engine, precision)
     for assembly in (1, "open", "crossed"):
@@ -236,5 +236,5 @@ def test_however_near_to_a_change_point_bounds_elsewhere_hold_or_are_infinite(fl
         assert errors(s, exact_values(s), [backend])[backend].wrong == []
 
 
-def test_no_random_graph_in_single_precision_is_off_by_more_than_its_bounds(flint):
+def test_random_graphs_in_single_lie_within_bounds(flint):
     assert [wrong for seed in range(60) for wrong in Case(seed).wrong(SINGLE_PRECISION)] == []

@@ -54,7 +54,7 @@ def file_modes(path):
 
 
 @pytest.mark.parametrize("mask", [0o022, 0o002, 0o000, 0o077])
-def test_machine_code_is_found_again_and_is_for_its_user_alone(numba, folder, mask):
+def test_machine_code_is_found_again_by_its_user_alone(numba, folder, mask):
     before = os.umask(mask)
     try:
         first, second = load_module(TEXT, keep=True), load_module(TEXT, keep=True)
@@ -86,7 +86,7 @@ def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
     assert not (tmp_path / "~").exists()
 
 
-def test_one_warning_is_given_however_many_programs_cannot_be_kept(numba, folder):
+def test_one_warning_for_all_programs_not_kept(numba, folder):
     folder.mkdir(parents=True)
     folder.chmod(0o777)
     with warnings.catch_warnings(record=True) as caught:
@@ -105,7 +105,7 @@ def test_numbas_own_folder_is_left_alone(numba, folder, monkeypatch, tmp_path):
     assert not (tmp_path / "numba").exists()
 
 
-def test_of_two_that_make_the_same_entry_the_first_has_its_way(tmp_path):
+def test_of_two_writers_the_first_makes_the_entry(tmp_path):
     entry = tmp_path / "entry"
     with new_entry(entry) as one:
         (one / "text").write_text("one")
@@ -128,7 +128,7 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
 
 
 @pytest.mark.slow
-def test_processes_that_start_together_share_the_folder(numba, folder):
+def test_simultaneous_processes_share_the_folder(numba, folder):
     code = f"from kinetostatics.engines.code_cache import load; print(load({TEXT!r}, keep=True).twice(2.1))"
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
@@ -191,7 +191,7 @@ NOWHERE = {
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="names and messages of POSIX")
 @pytest.mark.parametrize("name", NOWHERE)
-def test_without_a_folder_programs_are_compiled_in_memory(numba, folder, monkeypatch, tmp_path, name):
+def test_no_folder_compiles_in_memory(numba, folder, monkeypatch, tmp_path, name):
     pytest.importorskip("platformdirs")
     monkeypatch.delenv("KINETOSTATICS_CACHE")
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
@@ -205,7 +205,7 @@ def test_without_a_folder_programs_are_compiled_in_memory(numba, folder, monkeyp
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="limits of POSIX")
 @pytest.mark.parametrize("limit", [0, 10, 200, 1000, 3000])
-def test_on_a_full_disk_programs_are_compiled_in_memory(numba, folder, limit):
+def test_a_full_disk_compiles_in_memory(numba, folder, limit):
     """The text, numba's index, or the machine code itself does not fit."""
     import resource
 
@@ -235,7 +235,7 @@ def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
     assert len(list(folder.rglob(CHECKSUMS))) == 1
 
 
-def test_a_folder_that_is_named_is_made_for_the_user_alone(tmp_path, monkeypatch):
+def test_a_named_folder_is_made_for_the_user_alone(tmp_path, monkeypatch):
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "deep" / "own"))
     folder = code_cache.programs_folder()
     assert folder == tmp_path / "deep" / "own"

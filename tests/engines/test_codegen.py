@@ -32,7 +32,7 @@ def recorded():
     return program_of(S.dynamics, ("balancing_torque", "guide_force"), False)
 
 
-def test_a_line_of_plain_numbers_is_python_and_gives_the_solution(recorded):
+def test_a_line_of_python_numbers_gives_the_solution(recorded):
     made, leaves = recorded
     scope = {name: getattr(math, name) for name in ("sin", "cos", "sqrt")}
     scope |= {"root": lambda square, unit: math.sqrt(square), "divisor": max}
@@ -42,7 +42,7 @@ def test_a_line_of_plain_numbers_is_python_and_gives_the_solution(recorded):
         assert found == pytest.approx((S.balancing_torque[place], S.guide_force[place]), rel=1e-13, abs=1e-12)
 
 
-def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recorded):
+def test_loop_lines_assign_rows_and_buffers(recorded):
     made, _ = recorded
     loop, (line, buffers) = loop_source(made.outputs), buffered_source(made.outputs)
     compile(loop, "loop", "exec")
@@ -54,7 +54,7 @@ def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recor
     assert 0 < buffers < len(line.splitlines())
 
 
-def test_an_output_that_is_a_sine_of_the_crank_angle_itself_is_computed_too():
+def test_a_sine_of_the_crank_angle_can_be_an_output():
     graph = Graph()
     angle, radius = graph.angle(), graph.parameter(0)
     outputs = angle.sin(), radius * angle.cos(), angle.cos(), angle
@@ -106,7 +106,7 @@ def test_plain_numbers_and_arrays_agree(name):
 
 
 @every("name", ["sin", "cos", "sqrt", "abs", "root", "divisor", "fma", "total", "lost", "rest", "lost_by_squares"])
-def test_numbers_of_numpy_agree_with_arrays_and_stay_so(name):
+def test_numpy_scalars_agree_with_arrays_and_stay_so(name):
     count = {"root": 1, "divisor": 1, "fma": 2, "total": 3, "lost": 3, "rest": 2, "lost_by_squares": 2}.get(name, 0)
     given = np.array([0.3, 1e-300, 0.0, -1.0][: 1 if count == 2 else 4]), *[0.7] * count
     with np.errstate(invalid="ignore"):
@@ -117,7 +117,7 @@ def test_numbers_of_numpy_agree_with_arrays_and_stay_so(name):
             assert scalar == pytest.approx(found, rel=1e-15, abs=1e-33, nan_ok=True)
 
 
-def test_numbers_of_numpy_tell_squares_that_are_too_small():
+def test_numpy_scalars_detect_squares_that_underflow():
     tiny = np.float64(1e-170)
     with np.errstate(under="raise"):
         for name in ("rest", "lost_by_squares"):
@@ -140,6 +140,6 @@ def test_a_root_forgives_rounding_only():
     assert math.isnan(PLAIN["root"](-3 * ROUNDING, 1.0))
 
 
-def test_a_total_of_plain_numbers_too_large_is_infinite_or_nothing():
+def test_a_sum_of_numbers_overflows_to_inf_or_nan():
     assert PLAIN["total"](1e308, 1e308, -1.0, 0.0) != PLAIN["total"](1.0, 2.0, 3.0, 4.0) == 10.0
     assert not math.isfinite(PLAIN["total"](math.inf, -math.inf, 0.0, 0.0))

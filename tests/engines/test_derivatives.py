@@ -48,7 +48,7 @@ def _fields(scene):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name):
+def test_derivatives_match_differences_of_enclosures(name):
     """At 300 bits, each number of the scene moved by 1e-30 of itself: both sides share no arithmetic of derivatives.
 
     Relative to the largest derivative over the angles, or to the quantity over the number where that is more.
@@ -85,7 +85,7 @@ def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name
 
 
 @pytest.mark.parametrize("name", ["sawframe_2r63 plain", "sawframe_2r63 cam-circle"])
-def test_derivatives_are_the_same_compiled_and_by_either_sweep(name):
+def test_derivatives_agree_compiled_and_by_both_sweeps(name):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     quantities = ("balancing_torque", "O")
     found = [
@@ -127,7 +127,7 @@ def along_two_directions(function):
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_value_and_slope_of_operations_are_those_of_sympy(name):
+def test_derivatives_of_operations_match_sympy(name):
     x = sp.Symbol("x", positive=True)
     expression = FUNCTIONS[name](x, sp)
     value, slopes = along_two_directions(lambda number: FUNCTIONS[name](number, Elementary()))

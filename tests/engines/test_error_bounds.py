@@ -42,7 +42,7 @@ def bounded(scene, quantity, angles=TURN):
 
 
 @every("family", FAMILIES)
-def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family):
+def test_values_of_random_machines_lie_within_bounds(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
     found = errors(made, ("balancing_torque", *made.reactions, "crank_angular_acceleration", "kinetic_energy"))
     assert found.values > 10
@@ -50,7 +50,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family
 
 
 @every("case, variant, most", over_worst("double"))
-def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, variant, most):
+def test_bounds_stay_near_the_worst_error_of_a_turn(flint, case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
     s, bound = bounded(scene, "balancing_torque", FINE_TURN)
     exact = enclosure(s, "balancing_torque").exact[0]
@@ -69,7 +69,7 @@ def bounds_of(graph, outputs, values, tight=False, angle=0.0):
     return Program(None, found)._by_numbers(np.array([angle]), values, (1,))[:, 0]
 
 
-def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
+def test_operations_on_numbers_are_bounded_as_by_hand():
     graph = Graph()
     one, two = graph.parameter(0), graph.parameter(1)
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
@@ -86,7 +86,7 @@ def test_a_sign_is_no_rounding_of_what_it_multiplies(tight):
     assert bound == pytest.approx(2.1 * UNIT, rel=1e-8)
 
 
-def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
+def test_no_bound_at_zero_divisors_and_clamped_roots():
     folded = ks.crank_slider(0.5, 0.5, guide_angle=1.0, coupler=ks.Link(1.0), slider=ks.Link(1.0))
     with pytest.warns(ConditionWarning):
         s = ks.solve(folded, [1.3, 1.0 + np.pi / 2], crank_speed=1.0, on_gap="nan")
@@ -95,7 +95,7 @@ def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
     assert not np.isfinite(found[:, 1]).any()
 
 
-def test_a_root_of_what_is_proven_to_be_negative_has_no_bound():
+def test_a_root_of_a_provably_negative_has_no_bound():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     square = one * one - other * other
@@ -103,7 +103,7 @@ def test_a_root_of_what_is_proven_to_be_negative_has_no_bound():
     assert not np.isfinite(bound)
 
 
-def test_a_root_of_what_is_negative_for_sure_has_no_bound():
+def test_a_root_of_a_certain_negative_has_no_bound():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     roots = [(one * other).forgiving_root(unit), (other * other).forgiving_root(unit)]
@@ -112,7 +112,7 @@ def test_a_root_of_what_is_negative_for_sure_has_no_bound():
     assert positive > 0.0
 
 
-def test_a_product_with_a_reciprocal_is_bounded_as_the_quotient():
+def test_a_reciprocal_product_is_bounded_as_a_quotient():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     below = one + other - 1.9999
@@ -132,7 +132,7 @@ def test_rows_of_tables_may_be_of_any_size():
     assert bound >= 1e-140  # computed 0
 
 
-def test_products_with_the_number_zero_count_for_nothing():
+def test_products_with_zero_add_no_error():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     rounded = one + other
@@ -149,7 +149,7 @@ def test_a_bound_that_is_too_small_is_found(flint, monkeypatch):
 
 
 @every("tight", [False, True])
-def test_what_a_factor_of_two_loses_of_the_smallest_numbers_is_bounded(tight):
+def test_halving_a_subnormal_is_bounded(tight):
     graph = Graph()
     tiny, divisor = map(graph.parameter, range(2))
     found = bounds_of(graph, [0.5 * tiny, 0.5 * tiny / divisor], [5e-324, 1e-29], tight)
@@ -158,7 +158,7 @@ def test_what_a_factor_of_two_loses_of_the_smallest_numbers_is_bounded(tight):
 
 
 @every("tight", [False, True])
-def test_a_product_of_two_numbers_lost_as_too_small_is_bounded(tight):
+def test_a_product_that_underflows_is_bounded(tight):
     graph = Graph()
     one, other, huge = map(graph.parameter, range(3))
     for scaled in (lambda square: square * (huge * huge), lambda square: square * huge * huge):
@@ -168,7 +168,7 @@ def test_a_product_of_two_numbers_lost_as_too_small_is_bounded(tight):
         assert np.isfinite(found[1])
 
 
-def test_a_tight_bound_takes_the_error_of_what_derivatives_hold():
+def test_tight_bounds_include_errors_of_stop_gradient():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     outputs = [(one + other).held() * one, (one + other) * one]
@@ -188,7 +188,7 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
     assert 0.0 < bound[0] < 1e-270
 
 
-def test_bounds_on_the_steep_flank_of_a_table_are_not_much_more_than_its_worst_error(flint):
+def test_bounds_on_steep_tables_stay_near_the_error(flint):
     scene = ks.load_case("shaper").variants["cutting"].scene
     made = scene.solve(np.radians(np.linspace(177.3, 178.3, 60)))
     (worst, most), (_, tightest) = (_worst(made, "O2", tight) for tight in (False, True))
@@ -203,7 +203,7 @@ def _worst(solution, quantity, tight):
     return np.max(np.hypot(*found)), np.max(np.hypot(*solution.error_bound(quantity, tight)))
 
 
-def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
+def test_a_sum_of_inputs_is_bounded_by_one_rounding():
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
@@ -214,7 +214,7 @@ def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
     assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)
 
 
-def test_a_length_and_its_rest_are_bounded_together_where_they_are_taken_so():
+def test_a_length_and_its_rest_are_bounded_together():
     graph = Graph()
     x, y, other = map(graph.parameter, range(3))
     length = (x * x + y * y).sqrt()
@@ -236,7 +236,7 @@ def test_a_length_and_its_rest_are_bounded_together_where_they_are_taken_so():
     assert off == pytest.approx(exact, rel=1e-8)
 
 
-def test_parts_of_a_length_that_are_rounded_count_in_its_rest():
+def test_rounded_parts_of_a_length_count_in_its_rest():
     graph = Graph()
     x, y, other = map(graph.parameter, range(3))
     rounded = x * y
@@ -246,7 +246,7 @@ def test_parts_of_a_length_that_are_rounded_count_in_its_rest():
 
 
 @every("digits, finite", [(30, True), (46, True), (52, True), (60, False)])
-def test_what_is_divided_by_a_sum_is_bounded_as_long_as_that_is_known(digits, finite):
+def test_a_quotient_by_a_sum_is_bounded_while_known(digits, finite):
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     quotient = graph.angle().cos() / (one * one - other * other)
@@ -268,7 +268,7 @@ def test_a_guard_that_acts_is_an_error(form):
 
 @every("form", [lambda root: root / root, lambda root: root * (1.0 / root)])
 @every("graph", [Graph, SimplifiedGraph])
-def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
+def test_an_undefined_root_that_cancels_has_no_bound(graph, form):
     recorded = graph()
     one, other, unit = map(recorded.parameter, range(3))
     share = form((recorded.angle().cos() * one - other).forgiving_root(unit))
@@ -278,7 +278,7 @@ def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
 
 
 @every("unit", [1e-150, 1e-297, 1e-300, 1e-305, 5e-324])
-def test_a_guard_that_acts_leaves_no_bound_but_one_as_large_however_small_it_is(unit):
+def test_an_active_guard_leaves_only_a_large_bound(unit):
     graph = Graph()
     one, small = map(graph.parameter, range(2))
     part = one * graph.angle()
@@ -289,7 +289,7 @@ def test_a_guard_that_acts_leaves_no_bound_but_one_as_large_however_small_it_is(
     assert not share < 1.0 - inside
 
 
-def test_a_quotient_by_what_a_guard_makes_larger_elsewhere_keeps_its_own_bound():
+def test_an_unguarded_quotient_keeps_its_own_bound():
     graph = Graph()
     other, unit = map(graph.parameter, range(2))
     sine = graph.angle().sin()
@@ -298,7 +298,7 @@ def test_a_quotient_by_what_a_guard_makes_larger_elsewhere_keeps_its_own_bound()
     assert bounds[-1] >= UNIT * 0.3e3
 
 
-def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
+def test_an_input_that_underflows_still_counts():
     graph = Graph()
     tiny, small = map(graph.parameter, range(2))
     product = (graph.angle().cos() / small) * tiny
@@ -308,7 +308,7 @@ def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
 
 
 @every("function", [lambda part: part.arctan(), sign])
-def test_a_function_of_what_is_too_large_for_a_double_has_a_bound_that_is_one(function):
+def test_a_function_of_an_overflow_has_a_finite_bound(function):
     graph = Graph()
     huge, other = map(graph.parameter, range(2))
     part = graph.angle() * huge + other
@@ -317,7 +317,7 @@ def test_a_function_of_what_is_too_large_for_a_double_has_a_bound_that_is_one(fu
 
 
 @every("power", [1, 3, 12, 20])
-def test_errors_of_pivots_make_others_larger_that_they_multiply(power):
+def test_pivot_errors_enlarge_errors_they_multiply(power):
     """A difference that is lost has an error of 1e-16, and what divides it one of a hundredth each time."""
     graph = Graph()
     one, other, tiny = map(graph.parameter, range(3))
@@ -331,7 +331,7 @@ def test_errors_of_pivots_make_others_larger_that_they_multiply(power):
     assert Fraction(bound) >= abs(tiny / (one * one - other * other) ** power)
 
 
-def test_a_root_of_what_is_or_may_be_negative_has_no_bound():
+def test_a_root_of_a_possible_negative_has_no_bound():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     product = (one * other).forgiving_root(unit)
@@ -341,7 +341,7 @@ def test_a_root_of_what_is_or_may_be_negative_has_no_bound():
     assert np.isfinite(bounds_of(graph, [difference, 1.0 / difference], [1.0, 0.9, 2.0])).all()
 
 
-def test_a_guarded_divisor_is_off_by_what_its_guard_adds():
+def test_a_guarded_divisor_is_off_by_its_guard():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     guarded = 1.0 / (one * one - other * other).sqrt().kept_off_zero(unit)
@@ -350,7 +350,7 @@ def test_a_guarded_divisor_is_off_by_what_its_guard_adds():
     assert 1.0 / 0.75**0.5 - 1.0 / 0.9 <= acting < 0.05
 
 
-def test_a_product_of_two_differences_that_are_lost_is_bounded_in_second_order():
+def test_a_product_of_lost_differences_is_bounded():
     graph = Graph()
     one, tiny = map(graph.parameter, range(2))
     lost = [(part + tiny) - part for part in (one, 2.0 * one)]  # computed 0, truly 2^-54
@@ -358,7 +358,7 @@ def test_a_product_of_two_differences_that_are_lost_is_bounded_in_second_order()
     assert bound >= 2.0**-108
 
 
-def test_what_is_lost_as_too_small_is_bounded_beside_a_sum_that_is_zero():
+def test_underflow_beside_a_zero_sum_is_bounded():
     graph = Graph()
     one, other, huge = map(graph.parameter, range(3))
     zero = graph.angle().sin() - graph.angle().sin() * 3.0
@@ -366,7 +366,7 @@ def test_what_is_lost_as_too_small_is_bounded_beside_a_sum_that_is_zero():
     assert bound >= 1e-310
 
 
-def test_a_total_of_given_numbers_is_bounded_by_few_roundings_of_itself():
+def test_a_sum_of_inputs_is_bounded_by_few_roundings():
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
@@ -374,7 +374,7 @@ def test_a_total_of_given_numbers_is_bounded_by_few_roundings_of_itself():
     assert bound < 1e-31
 
 
-def test_a_length_and_its_rest_leave_few_roundings_of_what_a_design_is_off_another():
+def test_designs_near_each_other_lose_few_roundings():
     graph = Graph()
     x, y, other = (graph.parameter(place) for place in range(3))
     length = (x * x + y * y).sqrt()
@@ -383,7 +383,7 @@ def test_a_length_and_its_rest_leave_few_roundings_of_what_a_design_is_off_anoth
     assert bound < 8 * UNIT * (0.83679 - 0.83)
 
 
-def test_a_length_of_the_angle_and_its_rest_are_bounded_to_their_last_bits():
+def test_a_length_of_the_angle_is_bounded_to_its_bits():
     graph = Graph()
     x, y = graph.parameter(0), graph.angle()
     length = (x * x + y * y).sqrt()
@@ -391,7 +391,7 @@ def test_a_length_of_the_angle_and_its_rest_are_bounded_to_their_last_bits():
     assert 0.5 * UNIT * 0.83 < bound < 12 * UNIT * 0.84
 
 
-def test_what_is_turned_by_the_sign_of_a_clear_sum_keeps_its_error():
+def test_the_sign_of_a_clear_sum_keeps_the_error():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     turning = graph.angle().sin() * one - other
@@ -399,7 +399,7 @@ def test_what_is_turned_by_the_sign_of_a_clear_sum_keeps_its_error():
     assert bound < 1e-9 * UNIT
 
 
-def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value():
+def test_one_over_one_plus_magnitude_uses_its_slope():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     cosine = graph.angle().cos() * one - other
@@ -407,7 +407,7 @@ def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value(
     assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT) + 100.0 / 51.0 * UNIT)
 
 
-def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
+def test_a_product_with_an_offset_from_zero_counts_all():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     product = apart(one, UNSEEN) * other
@@ -417,7 +417,7 @@ def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
         assert values[1] >= values[0] > 0.0
 
 
-def test_a_bound_does_not_hang_on_what_else_is_asked_for():
+def test_a_bound_does_not_depend_on_other_outputs():
     s = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene.solve(np.linspace(0.1, 6.0, 5))
     alone, together = (
         program_of(s.dynamics, names)[0].bounded().run(s.dynamics, s.dynamics.apart[1])
@@ -430,14 +430,14 @@ def test_a_bound_does_not_hang_on_what_else_is_asked_for():
     "case, variant",
     [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("mower_drive", "full")],
 )
-def test_values_with_bounds_take_few_times_the_operations(case, variant):
+def test_bounds_take_few_times_the_operations(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = program_of(s.dynamics, ("balancing_torque",))
     assert operations(program.bounded().outputs) <= 4.1 * operations(program.outputs)
 
 
 @every("case, variant", [("chain_unit", "rho-0.5"), ("toggle_press", "idle")])
-def test_values_with_bounds_are_those_alone_to_the_last_bit(case, variant):
+def test_values_with_bounds_keep_their_bits(case, variant):
     s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 20))
     program, leaves = program_of(s.dynamics, ("balancing_torque", *s.reactions))
     alone = program.run(s.dynamics, leaves)
@@ -445,7 +445,7 @@ def test_values_with_bounds_are_those_alone_to_the_last_bit(case, variant):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-def test_a_fold_leaves_a_bound_though_the_crank_angle_is_a_rounding_from_it():
+def test_a_fold_has_a_bound_a_rounding_from_the_angle():
     """A design's number beside the sine may be a rounding itself, as is a component of gravity, and tells no size."""
     link = ks.Link(2.0, 0.05, 0.01)
     folding = ks.crank_slider(0.3, 0.3, coupler=link, slider=link, assembly="open")
@@ -454,7 +454,7 @@ def test_a_fold_leaves_a_bound_though_the_crank_angle_is_a_rounding_from_it():
 
 
 @every("other", [lambda turning, two: two * turning, lambda turning, two: two * (turning * turning).sqrt()])
-def test_a_sum_of_what_vanishes_with_what_turns_is_known_where_it_does(other):
+def test_a_sum_of_a_zero_and_a_rotation_is_known(other):
     graph = Graph()
     one, two = map(graph.parameter, range(2))
     turning = graph.angle().sin()
@@ -462,7 +462,7 @@ def test_a_sum_of_what_vanishes_with_what_turns_is_known_where_it_does(other):
     assert bound < 8.0 * UNIT * 1e-9
 
 
-def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound():
+def test_a_root_whose_square_overflows_has_no_bound():
     """One over the root is computed 0, and truly 5.8e-155."""
     graph = Graph()
     one, tiny, huge = map(graph.parameter, range(3))
@@ -477,7 +477,7 @@ def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound(
 
 
 @every("first", [lambda one, angle: one, lambda one, angle: angle])
-def test_what_a_root_lost_counts_times_what_a_sum_lost_that_is_zero(first):
+def test_errors_of_a_root_and_a_zero_sum_multiply(first):
     graph = Graph()
     one, tiny, small, huge = map(graph.parameter, range(4))
     angle = graph.angle()
@@ -491,14 +491,14 @@ def test_what_a_root_lost_counts_times_what_a_sum_lost_that_is_zero(first):
 
 
 @every("function", ["sin", "arctan"])
-def test_a_function_of_the_smallest_numbers_is_not_told_to_be_exact(function):
+def test_functions_of_subnormals_are_not_exact(function):
     graph = Graph()
     one = graph.parameter(0)
     (bound,) = bounds_of(graph, [getattr(one, function)()], [5e-324])
     assert bound > 0.0
 
 
-def test_a_reciprocal_of_a_tiny_number_is_none_to_tell_a_pivot_by():
+def test_a_reciprocal_of_a_tiny_number_is_no_pivot():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     part = graph.angle() * one * one * one
@@ -508,12 +508,12 @@ def test_a_reciprocal_of_a_tiny_number_is_none_to_tell_a_pivot_by():
     assert bound >= 3.5 * UNIT * 1e-30 / 2.0**270
 
 
-def test_no_random_graph_of_extreme_numbers_is_off_by_more_than_its_bounds(flint):
+def test_random_extreme_graphs_lie_within_bounds(flint):
     """Every operation, zeros, numbers of every size; many thousands: ``Case(seed).wrong`` of more seeds."""
     assert [wrong for seed in range(60) for wrong in Case(seed).wrong(WAYS)] == []
 
 
-def test_no_random_graph_is_off_by_more_than_its_bounds_compiled(flint, numba):
+def test_compiled_random_graphs_lie_within_bounds(flint, numba):
     assert [wrong for seed in range(2) for wrong in Case(seed).wrong(COMPILED)] == []
 
 
@@ -522,7 +522,7 @@ def test_an_output_that_is_a_plain_number_is_exact():
 
 
 @every("case, variant", [("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("shaper", "cutting")])
-def test_nothing_is_too_small_in_ordinary_machines_so_that_numpy_takes_the_shorter_bounds(case, variant):
+def test_nothing_underflows_in_ordinary_machines(case, variant):
     """Where anything were, all would be computed again with what may be lost."""
     s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 30))
     program, leaves = program_of(s.dynamics, (*s.reactions, "balancing_torque"))
@@ -544,7 +544,7 @@ def bound_of(way, graph, output, angle, *values):
 
 
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
-def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(flint, function, exact):
+def test_functions_of_both_engines_keep_to_their_ulp(flint, function, exact):
     random = np.random.default_rng(1)
     angles = np.concatenate(
         [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
@@ -559,7 +559,7 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
 
 
 @every("function", OTHER)
-def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
+def test_a_sine_is_a_sign_where_the_cosine_is_small(function):
     random = np.random.default_rng(2)
     folds = (np.arange(-3000, 3000) + 0.5 * (function == "sin")) * np.pi
     angles = [folds, folds + random.choice([-1, 1], 6000) * 10.0 ** -random.uniform(8, 17, 6000)]
@@ -577,7 +577,7 @@ def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
 @every("way", BOUNDS)
 @every("function", OTHER)
 @every("side", [1.0, -1.0])
-def test_one_less_a_sine_or_cosine_is_bounded_as_the_square_of_the_other_is_small(way, function, side):
+def test_one_minus_cosine_is_bounded_by_sine_squared(way, function, side):
     for distance in (1e-12, 1e-9, 3e-8, 1e-4):
         graph = Graph()
         part = sign(graph.parameter(0)) * getattr(graph.angle(), function)()
@@ -601,7 +601,7 @@ def test_a_sign_that_may_be_the_other_is_no_known_one(way):
 
 
 @every("way", BOUNDS)
-def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
+def test_an_exact_sum_of_inputs_has_no_error(way):
     """As where lengths fall in line: an error of their sum would count beside what is however small."""
     graph = Graph()
     parts = [graph.parameter(place) for place in range(5)]
@@ -615,13 +615,13 @@ def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
 @pytest.mark.slow
 @every("family, seed", [("place", 70019), ("place", 70138), ("inclined", 70017), ("inclined", 70115)])
 @every("tight", [False, True])
-def test_what_is_moved_off_zero_to_have_a_direction_is_in_bounds(flint, family, seed, tight):
+def test_an_offset_that_gives_a_direction_is_bounded(flint, family, seed, tight):
     """Where linkages fold, 4e-121 of their lengths make 6e-93 of an acceleration that is truly none."""
     assert errors(solution(family, seed, 8), tight=tight).wrong == []
 
 
 @every("way", BOUNDS)
-def test_what_is_moved_by_a_share_of_lengths_is_in_bounds(way):
+def test_an_offset_by_a_share_of_lengths_is_bounded(way):
     graph = Graph()
     moved = apart(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
     assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= APART * 7.0
@@ -629,7 +629,7 @@ def test_what_is_moved_by_a_share_of_lengths_is_in_bounds(way):
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("angle", [1e-100, 1e-121, 1e-150, -1e-150, 1e-300])
-def test_however_near_to_a_change_point_bounds_hold_or_are_infinite(flint, angle):
+def test_bounds_near_change_points_hold_or_are_inf(flint, angle):
     links = {name: ks.Link(1.0, (0.15, 0.0), 0.01) for name in ("crank", "coupler", "rocker")}
     for assembly in (1, "open", "crossed"):
         rhombus = ks.four_bar(0.3, 0.3, 0.3, rocker_pivot=(0.3, 0.0), assembly=assembly, **links)
@@ -639,7 +639,7 @@ def test_however_near_to_a_change_point_bounds_hold_or_are_infinite(flint, angle
 
 @every("way", BOUNDS)
 @every("given", [-1e-130, -0.9 * APART * UNSEEN])
-def test_a_sign_that_is_turned_by_what_moves_it_off_zero_is_no_known_one(way, given):
+def test_an_offset_may_turn_an_unknown_sign(way, given):
     """Along an axis a pivot so near to O is taken to lie on its other side."""
     graph = Graph()
     folded = sign(apart(graph.parameter(0), UNSEEN)) * graph.angle().cos() - 1.0
@@ -648,7 +648,7 @@ def test_a_sign_that_is_turned_by_what_moves_it_off_zero_is_no_known_one(way, gi
 
 
 @every("way", BOUNDS)
-def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_turn_it(way):
+def test_a_sign_is_known_if_its_error_cannot_turn_it(way):
     graph = Graph()
     given = graph.parameter(0)
     inputs = {given: lambda bounds: Error(4.0, None)}
@@ -675,7 +675,7 @@ def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_
         lambda root, one: 0.0 * sign(root - one),
     ],
 )
-def test_a_product_of_zero_with_a_root_that_may_not_be_there_has_no_bound(kind, made):
+def test_zero_times_an_undefined_root_has_no_bound(kind, made):
     graph = kind()
     one, other, unit = map(graph.parameter, range(3))
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
@@ -687,7 +687,7 @@ def test_a_product_of_zero_with_a_root_that_may_not_be_there_has_no_bound(kind, 
         assert (np.isfinite(bounds) == known).all()
 
 
-def test_a_constant_is_exact_where_what_is_behind_it_is_known():
+def test_a_constant_of_known_parts_is_exact():
     graph = SimplifiedGraph()
     one, other, unit = map(graph.parameter, range(3))
     output = one + 0.0 * (graph.angle().cos() * one - other).forgiving_root(unit).held()
@@ -696,7 +696,7 @@ def test_a_constant_is_exact_where_what_is_behind_it_is_known():
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-def test_the_rate_of_a_crank_has_no_bound_where_its_machine_may_not_be_assembled():
+def test_no_bound_of_a_rate_where_assembly_is_open():
     """A rounding from where the coupler is barely long enough; elsewhere the rate is exact."""
     machine = ks.crank_slider(0.3, 0.25, coupler=ks.Link(2.0, 0.1, 0.1), slider=ks.Link(1.0))
     edge = np.nextafter(np.arcsin(0.25 / 0.3), 0.0)
@@ -709,7 +709,7 @@ def test_the_rate_of_a_crank_has_no_bound_where_its_machine_may_not_be_assembled
 # as users have them
 
 
-def test_the_bound_of_a_magnitude_covers_the_errors_of_its_components_and_its_own_rounding():
+def test_a_magnitude_covers_components_and_rounding():
     rng = np.random.default_rng(3)
     values, bounds = rng.normal(size=(2, 200)), 1e-9 * rng.random((2, 200))
     off = np.abs(np.hypot(*(values + bounds)) - np.hypot(*values))
@@ -717,7 +717,7 @@ def test_the_bound_of_a_magnitude_covers_the_errors_of_its_components_and_its_ow
     assert np.all(of_magnitude(values, 0.0 * bounds) > 0.0)
 
 
-def test_a_bound_that_is_none_is_infinite_and_that_of_a_gap_is_none():
+def test_a_missing_bound_is_inf_and_of_a_gap_nan():
     bounds = where_known(np.array([1.0, 2.0, np.nan]), np.array([0.1, np.nan, 0.1]))
     np.testing.assert_array_equal(bounds, [0.1, np.inf, np.nan])
 

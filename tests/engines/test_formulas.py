@@ -44,11 +44,11 @@ def spelled(make):
         (lambda a, b, c: a.held() + b.arctan() * c.sign(), "a + atan(b)*sign(c)"),
     ],
 )
-def test_what_is_there_for_rounding_is_left_out_and_signs_and_factors_are_gathered(make, text):
+def test_rounding_terms_are_dropped_and_signs_gathered(make, text):
     assert spelled(make) == text
 
 
-def test_a_formula_names_where_it_ends_each_once_in_order():
+def test_a_formula_lists_its_inputs_once_in_order():
     graph = Graph()
     a, b = graph.parameter(0), graph.parameter(1)
     inner = b * b

@@ -31,13 +31,13 @@ class Stop(Pan):
             placement.links["pan"] = placement.links["crank"]
 
 
-def test_kernel_that_branches_on_values_is_refused_with_the_reason():
+def test_a_kernel_that_branches_on_values_is_refused():
     s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]), on_gap="nan")
     with pytest.raises(NotGivenError, match="kernels must not branch on values"):
         program(s, ["O"])
 
 
-def test_values_of_recorded_numbers_cannot_be_looked_at():
+def test_recorded_numbers_have_no_value():
     recorded = []
     force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
     program(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])

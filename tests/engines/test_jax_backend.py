@@ -44,7 +44,7 @@ def test_jax_keeps_to_its_bounds_in_both_precisions(jax):
         assert found.wrong == [], backend
 
 
-def test_jax_gives_nan_where_the_mechanism_does_not_close_and_numbers_elsewhere(jax):
+def test_jax_gives_nan_only_where_assembly_is_open(jax):
     short = ks.Scene(ks.crank_slider(0.5, 0.3, slider=ks.Link(1.0)), 1.0, loads=ks.Gravity())
     angles = np.linspace(0.01, 6.2, 40)
     expected = ks.compile(short, ("B", "slider_acceleration"), engine="numpy")(angles)
@@ -55,7 +55,7 @@ def test_jax_gives_nan_where_the_mechanism_does_not_close_and_numbers_elsewhere(
             assert np.array_equal(np.isnan(found[name]), np.isnan(value))
 
 
-def test_xla_writes_quotients_and_roots_as_they_are_recorded(jax):
+def test_xla_keeps_quotients_and_roots_as_recorded(jax):
     """Else (a / b) / c becomes a / (b c) and a / sqrt(b) a product, and bounds would be those of other arithmetic."""
 
     def compute(a, b, c):
@@ -77,18 +77,18 @@ def test_the_mode_of_jax_is_as_it_was(jax):
         assert jax.config.jax_enable_x64 == before
 
 
-def test_the_device_is_the_first_that_jax_has_or_the_one_asked_for(jax):
+def test_the_device_is_the_first_or_the_one_requested(jax):
     assert jax_backend.device_of() is jax.devices()[0]
     assert jax_backend.device_name(jax_backend.device_of("cpu")) == DOUBLE.device == "cpu"
     assert jax_backend.device_name(SimpleNamespace(platform="gpu", device_kind="NVIDIA X")) == "gpu: NVIDIA X"
 
 
-def test_a_device_that_is_not_there_is_refused_with_those_that_are(jax):
+def test_a_missing_device_is_refused_with_a_list(jax):
     with pytest.raises(ks.ParameterError, match=r"device 'abacus': JAX finds none, only .*cpu"):
         jax_backend.device_of("abacus")
 
 
-def test_no_bound_is_given_on_a_device_whose_functions_are_not_tested(jax, monkeypatch):
+def test_no_bound_on_a_device_of_untested_functions(jax, monkeypatch):
     s = diverse()["plain"]
     program, leaves = program_of(s.dynamics, ("slider_acceleration",))
     strange = SimpleNamespace(platform="gpu", device_kind="NVIDIA X")
@@ -112,7 +112,7 @@ def state(angles):
 
 @every("precision, dtype", [("double", np.float64), ("single", np.float32)])
 @every("angles", [0.3, [0.1, 0.2], np.linspace(0, 6, 40), np.zeros((2, 1, 5))], ids=np.shape)
-def test_results_and_bounds_have_the_shape_of_the_angles(precision, dtype, angles):
+def test_results_and_bounds_have_the_shape_of_angles(precision, dtype, angles):
     backend = Backend("numpy", precision)
     made, leaves = program_of(state(angles), ("O",))
     found, bounds = backend.run(made, state(angles), leaves), backend.bounds(made, state(angles), leaves)
@@ -120,7 +120,7 @@ def test_results_and_bounds_have_the_shape_of_the_angles(precision, dtype, angle
     assert (found.dtype, bounds.dtype) == (dtype, float)
 
 
-def test_in_double_precision_it_is_the_program_itself_with_the_bounds_of_a_solution():
+def test_double_is_the_program_and_its_bounds():
     solution = ks.solve(SMALL_PUMP, [0.1, 0.2], crank_speed=100.0)
     made, leaves = program_of(solution.dynamics, ("O",))
     backend = Backend("numpy")
@@ -155,7 +155,7 @@ def rows(backend, solution, names=("balancing_torque", "O", "A", "slider_acceler
 
 
 @every("name", diverse())
-def test_a_loop_gives_the_bits_of_numpy_in_single_precision(interpreted, name):
+def test_a_loop_gives_numpy_s_bits_in_single(interpreted, name):
     """Programs run by Python as they are written: what numba makes of them is tested below."""
     s = diverse()[name]
     found, same = rows(COMPILED, s), rows(NUMPY, s)
@@ -165,7 +165,7 @@ def test_a_loop_gives_the_bits_of_numpy_in_single_precision(interpreted, name):
 
 
 @pytest.mark.slow_start
-def test_compiled_loops_give_the_bits_of_numpy_in_single_precision(monkeypatch):
+def test_compiled_loops_give_numpy_s_bits_in_single(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     s = diverse()["designs"]
     expected = rows(NUMPY, s)
@@ -178,7 +178,7 @@ def test_compiled_loops_give_the_bits_of_numpy_in_single_precision(monkeypatch):
 
 
 @every("name", diverse())
-def test_single_precision_is_within_its_digits_of_double(name):
+def test_single_agrees_with_double_to_its_digits(name):
     s = diverse()[name]
     program, leaves, state = made(s, ("balancing_torque", "O"))
     exact = program.run(state, leaves)
@@ -201,7 +201,7 @@ def test_what_a_design_fixes_is_computed_in_double():
     assert np.max(np.abs(rows(NUMPY, s, ("O",)) - exact)) < 1e-6 * np.max(np.abs(exact))
 
 
-def test_all_constants_and_fixed_numbers_are_parameters_of_what_is_left():
+def test_constants_are_parameters_of_the_remainder():
     split = MixedPrecision(made(solve(SCENES["plain"], ANGLES), ("balancing_torque",))[0])
     graph = split.at_angles.outputs[0].graph
     assert all(node.varies or node.operation == "parameter" for node in graph)
@@ -210,7 +210,7 @@ def test_all_constants_and_fixed_numbers_are_parameters_of_what_is_left():
 
 
 @every("backend", [NUMPY, COMPILED])
-def test_gaps_of_machines_too_small_for_single_precision_are_gaps(interpreted, backend):
+def test_gaps_too_small_for_single_remain_gaps(interpreted, backend):
     s = ks.Scene(ks.crank_slider(0.3e-30, 0.25e-30, slider=ks.Link(1.0)), 7.0).solve([0.1, 1.5], on_gap="nan")
     assert np.isnan(s.slider_position).tolist() == [False, True]
     assert np.isnan(rows(backend, s, ("slider_position", "coupler_rate"))).all(), "no sign of a square is known"

@@ -33,7 +33,7 @@ def test_formulas_are_short_and_name_lines_before_them(name):
     assert sum(one != other for one, other in pairwise(titles)) < 1.5 * len(set(titles))
 
 
-def test_a_line_that_is_used_once_and_not_explained_is_part_of_the_formula_that_uses_it():
+def test_an_unexplained_line_joins_its_only_user():
     _, told_lines = found(solve(SCENES["plain"], np.array(0.7)), "balancing_torque")
     assert {line.named.kind for line in told_lines} == {"given", "told", "term"}
 

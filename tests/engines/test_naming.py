@@ -30,7 +30,7 @@ def recorded():
     return graph, names, given, pair
 
 
-def test_lines_of_a_kernel_are_called_as_its_variables_or_as_its_terms_say():
+def test_lines_are_named_by_variables_or_terms():
     _, names, given, pair = recorded()
     found = {named.symbol.text: named for named in names.of.values()}
     assert set(found) == {"W", "G", "narrow", "pairx", "pairy"}
@@ -42,7 +42,7 @@ def test_lines_of_a_kernel_are_called_as_its_variables_or_as_its_terms_say():
     assert names.of[pair[1]].symbol == Symbol("pair", "y")
 
 
-def test_the_mechanisms_name_comes_before_a_line_of_a_kernel():
+def test_a_mechanism_s_name_precedes_a_line():
     _, names, _, pair = recorded()
     x, y = names.vector(pair, Symbol("R", owner="B"), "reaction", "N")
     assert (x, y) == tuple(pair) or (x is pair[0] and y is pair[1])
@@ -50,7 +50,7 @@ def test_the_mechanisms_name_comes_before_a_line_of_a_kernel():
     assert names.is_told(pair[0])
 
 
-def test_a_second_name_is_another_number_that_is_told_from_the_first():
+def test_a_second_name_makes_another_number():
     _, names, given, _ = recorded()
     first = names.number(given, Symbol("a"))
     again = names.number(first, Symbol("b"), again=True)
@@ -61,7 +61,7 @@ def test_a_second_name_is_another_number_that_is_told_from_the_first():
     assert node.arguments == (given,)
 
 
-def test_a_turned_number_keeps_its_name_onward_and_everywhere_if_told_so():
+def test_a_negated_number_keeps_its_name_if_asked():
     _, names, given, _ = recorded()
     turned = -given
     (onward,) = names.number(turned, Symbol("a"))
@@ -109,7 +109,7 @@ def kernels(module):
     return found
 
 
-def test_terms_of_the_library_name_variables_that_its_kernels_have():
+def test_terms_name_variables_of_their_kernels():
     looked_at = 0
     for module in modules():
         variables = kernels(module)

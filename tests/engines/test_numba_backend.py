@@ -27,7 +27,7 @@ from support.scenes import (
 )
 
 
-def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeypatch):
+def test_threads_do_not_change_machine_code_results(numba, monkeypatch):
     """Of many designs each thread takes some, of a single one some angles."""
     expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)
     alone = [again(s).reaction("O") for s in expected]
@@ -49,14 +49,14 @@ def test_parameters_stand_in_a_row_for_each_design():
     )
 
 
-def test_a_row_of_a_table_for_one_design_may_have_an_axis_of_designs():
+def test_a_table_row_may_have_an_axis_of_designs():
     rows = [np.arange(3.0)[None], 7.0, np.arange(3.0)]
     expected = [[[0.0, 1.0, 2.0]], [[7.0] * 3], [[0.0, 1.0, 2.0]]]
     for shape in ((3,), (1, 3), (1, 1, 3), (5, 3)):
         np.testing.assert_array_equal(numba_backend.row_table(rows, shape), expected)
 
 
-def test_memory_begins_where_vectors_are_loaded_at_once():
+def test_buffers_are_aligned_for_vector_loads():
     held = [numba_backend.aligned_memory(count, 3, 8) for count in (1, 2, 5)]
     assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]
     assert [part.ctypes.data % 64 for part in held] == [0, 0, 0]
@@ -67,7 +67,7 @@ def too_short(engine, **options):
     return ks.solve(mechanism, ANGLES, crank_speed=3.0, engine=engine, **options)
 
 
-def test_gaps_are_refused_with_the_same_words_or_left_open(interpreted):
+def test_gaps_are_refused_alike_or_left_open(interpreted):
     messages = []
     for engine in ("numpy", "compiled"):
         with pytest.raises(ks.AssemblyError) as caught:
@@ -77,7 +77,7 @@ def test_gaps_are_refused_with_the_same_words_or_left_open(interpreted):
     assert_same(too_short("compiled", on_gap="nan"), too_short("numpy", on_gap="nan"))
 
 
-def test_a_limit_position_is_warned_of_with_the_same_words_from_the_same_place(interpreted):
+def test_limit_positions_warn_alike_on_both_engines(interpreted):
     found = []
     for engine in ("numpy", "compiled"):
         with warnings.catch_warnings(record=True) as caught:
@@ -104,13 +104,13 @@ def seconds(program, state, leaves):
     return perf_counter() - begun
 
 
-def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
+def test_missing_numba_names_the_extra_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]".*engine="numpy"'):
         solve(SCENES["plain"], SAMPLES, engine="compiled")
 
 
-def test_single_precision_is_refused_by_the_compiled_engine(interpreted):
+def test_the_compiled_engine_refuses_single_precision(interpreted):
     with (
         pytest.warns(UserWarning, match="single precision"),
         pytest.raises(ks.ParameterError, match='double precision; use engine="numpy"'),
@@ -135,7 +135,7 @@ def of_rows(write, rows):
 
 
 @pytest.mark.slow_start
-def test_each_operation_is_that_of_numbers_at_signs_of_zero_infinities_and_what_is_none(numba):
+def test_operations_agree_at_zeros_infs_and_nans(numba):
     one, other = (part.ravel() for part in np.meshgrid(SPECIAL, SPECIAL))
     more = np.roll(one, 5)
 
@@ -158,7 +158,7 @@ def test_each_operation_is_that_of_numbers_at_signs_of_zero_infinities_and_what_
 
 
 @pytest.mark.slow_start
-def test_functions_called_for_each_number_are_those_of_the_library(numba):
+def test_scalar_functions_are_those_of_the_library(numba):
     values = np.linspace(-7.0, 7.0, 37)
     found = of_rows(lambda a: (a.sin(), a.cos(), a.arctan()), values[None])
     for row, function in zip(found, (math.sin, math.cos, math.atan), strict=True):
@@ -166,7 +166,7 @@ def test_functions_called_for_each_number_are_those_of_the_library(numba):
 
 
 @pytest.mark.slow_start
-def test_any_number_of_angles_and_designs_gives_the_same_bits(numba):
+def test_angle_and_design_counts_do_not_change_bits(numba):
     graph = Graph()
     angle, length, offset = graph.angle(), graph.parameter(0), graph.parameter(1)
     sine = length * angle.sin() + offset
@@ -203,7 +203,7 @@ def counted():
     return compute, calls
 
 
-def test_equal_angles_are_computed_once_and_others_anew(counted):
+def test_equal_angles_are_computed_once(counted):
     compute, calls = counted
     angle = np.linspace(0.0, 1.0, 5)
     first = compute(angle)
@@ -221,7 +221,7 @@ def test_the_same_numbers_in_another_shape_are_others(counted):
     assert calls == [4, 4]
 
 
-def test_too_many_are_not_kept_each_thread_has_its_own_and_all_may_be_forgotten(counted):
+def test_the_cache_is_bounded_per_thread_and_clearable(counted):
     compute, calls = counted
     for _ in range(2):
         compute(np.zeros(numba_backend.MAX_KEPT_ANGLES + 1))

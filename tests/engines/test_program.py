@@ -92,7 +92,7 @@ def middles(found, flint):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_double_precision_lies_within_rounding_of_the_arb_enclosure(flint, name):
+def test_double_precision_agrees_with_the_enclosure(flint, name):
     """The same binary inputs, so the enclosures hold the true values of what NumPy was asked."""
     angles = np.array([flint.arb(angle) for angle in ANGLES.tolist()])
     found = results(solve(SCENES[name], angles))
@@ -121,7 +121,7 @@ def sawframe(variant, flint):
 
 
 @pytest.mark.parametrize("variant", ["plain", "cam_circle", "cam_cosine"])
-def test_arb_enclosures_equal_the_50_digit_tables_to_24_digits(flint, variant):
+def test_enclosures_equal_50_digit_tables_to_24_digits(flint, variant):
     path = DATA / f"sawframe_{variant}.json"
     rows = json.loads(path.read_text(encoding="utf-8"))["rows"]
     columns = {"guide_force": "N", "balancing_torque": "T", "cam_force": "cam", "slot_force": "slot"}
@@ -136,7 +136,7 @@ def test_arb_enclosures_equal_the_50_digit_tables_to_24_digits(flint, variant):
 
 
 @pytest.mark.parametrize("name", DIVERSE)
-def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
+def test_dask_arrays_stay_lazy_and_equal_numpy(name):
     dask = pytest.importorskip("dask", reason="dask is not installed (extra: distributed)")
     array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
     found = results(solve(SCENES[name], array.from_array(ANGLES, chunks=90)))
@@ -175,7 +175,7 @@ def test_recorded_program_equals_solve(interpreted, name):
 
 
 @pytest.mark.slow
-def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba):
+def test_compiled_programs_equal_solve(numba):
     assert_program_equals(solve(SCENES["circle cam, everything"], ANGLES))
     sine, cosine = numba_backend.compiled_sines(ANGLES[None])
     assert largest(sine - np.sin(ANGLES)) <= 2**-52
@@ -194,7 +194,7 @@ def test_program_on_plain_numbers_equals_the_kernels(name, angles):
         assert largest(found - expected[quantity]) <= ROUNDED * max(1.0, largest(expected[quantity])), quantity
 
 
-def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
+def test_programs_in_blocks_equal_one_block(monkeypatch):
     """NumPy takes so many crank angles at once that its buffers stay in the cache."""
     s = solve(SCENES["six-bar"], np.linspace(0, 7, 5000))
     found = [program(s, everything(s))[1]()]
@@ -204,7 +204,7 @@ def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_derivatives_by_every_number_equal_differences_with_60_digits(interpreted, flint, name):
+def test_derivatives_equal_60_digit_differences(interpreted, flint, name):
     """By NumPy and by the loop, against central differences of the kernels on arb numbers."""
     s = solve(SCENES[name], ANGLES[5::45])
     names, state = ("balancing_torque", *s.reactions), s.dynamics
@@ -236,7 +236,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
-def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
+def test_compiled_programs_keep_gaps_and_limits(numba):
     """The six-bar with a second coupler that is too short over a part of the turn, and one that just reaches."""
     scene = SCENES["six-bar"]
     first, second = scene.mechanism.groups
@@ -250,7 +250,7 @@ def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_program_of_a_users_own_cam_or_group_equals_solve(interpreted, name):
+def test_programs_of_own_groups_equal_solve(interpreted, name):
     """What takes plain numbers only is computed by NumPy beforehand."""
     scene, tables = OWN[name]
     assert_program_equals(solve(scene, ANGLES), tables)
@@ -302,7 +302,7 @@ def test_what_is_absent_or_not_asked_for_costs_nothing():
     assert operations(plain, "balancing_torque", "A", "A") == operations(plain, "A", "balancing_torque")
 
 
-def test_designs_of_one_structure_share_a_program_and_others_do_not():
+def test_designs_of_one_structure_share_a_program():
     def found(**changes):
         values = {"guide_offset": 0.1, "assembly": 1, "slider": 600.0} | changes
         mass = ks.Link(values.pop("slider"))
@@ -317,7 +317,7 @@ def test_designs_of_one_structure_share_a_program_and_others_do_not():
 
 
 @pytest.mark.slow
-def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monkeypatch, capsys):
+def test_a_second_process_loads_the_compiled_program(numba, tmp_path, monkeypatch, capsys):
     """Nothing is compiled anew, neither there nor here for crank angles that are locked against writing."""
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path))
     code = (
@@ -354,7 +354,7 @@ def test_program_of_a_table_at_other_angles_is_refused():
             made(angles)
 
 
-def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
+def test_missing_numba_names_the_extra_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", None)
     scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
@@ -369,7 +369,7 @@ RUBBING = ks.Scene(
 )
 
 
-def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monkeypatch):
+def test_repeated_calls_with_few_angles_use_the_loop(monkeypatch):
     pytest.importorskip("numba")
     program = ks.compile(RUBBING, "friction_torque", engine="compiled")
     angles = np.linspace(0.1, 6.0, 5)
@@ -383,7 +383,7 @@ def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monk
     assert program.unlooked(0.3, {}, True)["friction_torque"] == before[0]
 
 
-def test_few_angles_stay_on_plain_numbers_without_numba(monkeypatch):
+def test_few_angles_use_plain_numbers_without_numba(monkeypatch):
     program = ks.compile(RUBBING, "friction_loss", engine="numpy")
     monkeypatch.setattr("kinetostatics.engines.program.MIN_LONG_OPERATIONS", 0)
     monkeypatch.setattr("kinetostatics.engines.program.MIN_COMPILED_OPERATIONS", 0)

@@ -88,7 +88,7 @@ def _sampled(size):
 
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 @pytest.mark.parametrize("name", FAMILIES)
-def test_other_numbers_in_the_same_structure_record_and_compile_nothing(counted, interpreted, name, engine):
+def test_other_numbers_of_a_structure_record_nothing(counted, interpreted, name, engine):
     first = FAMILIES[name](1.0).solve(ANGLES, engine=engine).balancing_torque
     before = dict(counted)
     second = FAMILIES[name](1.05).solve(ANGLES, engine=engine).balancing_torque
@@ -115,7 +115,7 @@ def test_other_constants_of_a_function_are_seen(factor):
     assert np.allclose(found, wanted, rtol=0.0, atol=1e-14 * np.abs(wanted).max())
 
 
-def test_what_is_zero_is_absent_and_makes_another_structure():
+def test_a_zero_is_absent_and_makes_another_structure():
     one, other = (Dynamics(*_fields(plain())), Dynamics(*_fields(cam())))
     assert one.apart[0] != other.apart[0]
     without = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0)
@@ -142,14 +142,14 @@ def values(recorder, output):
 @every(
     "name, open_", [("balancing_torque", True), ("guide_force2", True), ("crank_rate", True), ("guide_force", False)]
 )
-def test_a_constant_is_missing_where_a_group_behind_its_quantity_is_open(output, name, open_):
+def test_a_constant_is_nan_where_its_group_is_open(output, name, open_):
     found = recorder()
     first, second = values(found, Gaps(found.graph, found.recorded).added(output, name))
     assert first == output
     assert np.isnan(second) == open_
 
 
-def test_an_output_that_is_computed_from_all_behind_it_stays_as_it_is():
+def test_an_output_that_needs_everything_is_unchanged():
     found = recorder()
     (x, *_), *_ = (joint.position for joint in (found.recorded.placement.joints["C"],))
     gaps, node, count = Gaps(found.graph, found.recorded), np.ravel(x)[0], len(found.graph)

@@ -30,7 +30,7 @@ def jitted(intrinsic, arguments):
 
 
 @pytest.mark.slow_start
-def test_bits_are_set_where_conditions_hold_and_nowhere_else(numba):
+def test_bits_are_set_exactly_where_conditions_hold(numba):
     conditions = [getattr(scanning, name) for name in SCANS]
     own, expected = jitted(scanning.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
     for size in SIZES:

@@ -22,7 +22,7 @@ def run(outputs, parameters, tables):
 
 
 @every("seed", range(60))
-def test_random_programs_give_the_same_bits_in_two_parts(seed):
+def test_programs_split_in_two_give_the_same_bits(seed):
     random = np.random.default_rng(seed)
     graph = (SimplifiedGraph if seed % 2 else Graph)()
     angle, count = graph.angle(), graphs.PARAMETERS + graphs.UNITS
@@ -50,7 +50,7 @@ def of_saw(varied):
     return program.outputs, *shared_work.split_common(program.outputs, places)
 
 
-def test_the_motion_is_common_where_a_spring_and_a_mass_vary():
+def test_motion_is_shared_if_spring_and_mass_vary():
     outputs, common, rest = of_saw(["spring.stiffness", "slider.mass"])
     assert operations(common) > 0.6 * operations(outputs)
     assert operations(rest) < 0.5 * operations(outputs)
@@ -61,7 +61,7 @@ def test_little_is_common_where_lengths_vary():
     assert operations(common) < shared_work.MIN_SHARE * operations(outputs)
 
 
-def test_two_loops_are_made_where_there_are_many_designs_only(numba, monkeypatch):
+def test_two_loops_are_made_for_many_designs_only(numba, monkeypatch):
     scene = shipped("sawframe_2r63").variants["plain"].scene
     scene = scene.varied({"slider.mass": np.array([[500.0], [600.0]])})
     state = scene.solve(ANGLE).dynamics

@@ -32,7 +32,7 @@ def test_quotients_by_one_divisor_share_a_reciprocal(lean):
     assert (sine / length).arguments[1].varies == length.varies  # once for a design
 
 
-def test_a_quotient_by_a_quotient_is_one_by_its_numerator(lean):
+def test_a_quotient_by_a_quotient_becomes_one(lean):
     sine, cosine, length, _ = lean
     assert told(sine / (cosine.sqrt() / length)) == ["sin", "cos", "sqrt", "/", "*", "*"]
 
@@ -43,7 +43,7 @@ def test_a_quotient_leaves_its_sign_to_sums(lean):
     assert told(length + -sine / cosine) == ["sin", "cos", "/", "-"]
 
 
-def test_the_secant_of_a_leaning_root_is_no_root_of_its_own(lean):
+def test_the_secant_of_an_inclined_root_adds_no_root(lean):
     """1 + x^2 / (a^2 - x^2) = a^2 / (a^2 - x^2), whatever the sign of a, and in whichever order it is written."""
     sine, _, length, _ = lean
     for one, other in ((length - sine, length + sine), (sine + length, length - sine)):
@@ -55,7 +55,7 @@ def test_the_secant_of_a_leaning_root_is_no_root_of_its_own(lean):
     assert told((1.0 + slope * slope).sqrt()).count("sqrt") == 2
 
 
-def test_what_is_zero_at_every_crank_angle_is_left_out_but_not_what_may_be_a_gap(lean):
+def test_zeros_are_dropped_unless_they_may_be_gaps(lean):
     sine, cosine, length, _ = lean
     assert 0.0 * sine == 0.0
     assert cosine * 0.0 == 0.0
@@ -65,7 +65,7 @@ def test_what_is_zero_at_every_crank_angle_is_left_out_but_not_what_may_be_a_gap
     assert told(0.0 + gap)[-1] == "+"
 
 
-def test_what_is_multiplied_and_divided_by_the_same_number_is_left(lean):
+def test_a_factor_multiplied_and_divided_cancels(lean):
     sine, cosine, length, other = lean
     assert sine / length * length is sine
     assert length * (sine / length) is sine
@@ -80,12 +80,12 @@ def test_products_leave_signs_to_sums(lean):
     assert cosine + -sine / length is cosine - sine / length
 
 
-def test_zero_divisors_of_a_design_are_divided_by_where_they_stand(lean):
+def test_zero_divisors_of_a_design_stay_in_place(lean):
     sine, *_ = lean
     assert told(sine / 0.0) == ["sin", "/"]
 
 
-def test_what_may_be_so_small_that_it_has_no_reciprocal_is_divided_by_as_it_is():
+def test_divisors_without_a_reciprocal_stay():
     """Zero by the smallest number is zero; zero times infinity would be none."""
     graph = SimplifiedGraph()
     x, length = graph.angle(), graph.parameter(0)
@@ -95,7 +95,7 @@ def test_what_may_be_so_small_that_it_has_no_reciprocal_is_divided_by_as_it_is()
     assert (x / (length * x.sqrt())).operation == "*"
 
 
-def test_the_size_of_what_lies_along_the_crank_or_across_it_needs_no_root(lean):
+def test_a_size_along_the_crank_needs_no_root(lean):
     sine, cosine, length, other = lean
     force = length * cosine + other
     for x, y in ((force * sine, cosine * force), (-force * cosine, force * sine)):
@@ -123,7 +123,7 @@ def parts(total):
     return found and (found.sign, {found.one, found.other}, found.rest_sign, found.rest)
 
 
-def test_a_product_goes_into_its_sum_with_the_sign_it_has(graph):
+def test_a_product_enters_a_sum_with_its_sign(graph):
     sine, cosine, one, other, *_ = numbers(graph)
     product = sine * cosine
     assert parts(product + one) == (1, {sine, cosine}, 1, one)
@@ -134,14 +134,14 @@ def test_a_product_goes_into_its_sum_with_the_sign_it_has(graph):
     assert parts(one * other + one) is None  # once for a design
 
 
-def test_of_two_products_the_one_that_is_known_later_is_fused(graph):
+def test_the_product_known_later_is_fused(graph):
     sine, cosine, one, *_ = numbers(graph)
     early, late = sine * sine, (cosine + one) * cosine
     for total in (early + late, late + early):
         assert parts(total) == (1, {cosine + one, cosine}, 1, early)
 
 
-def test_products_that_twins_could_make_equal_stay_rounded(graph):
+def test_products_of_equal_structure_are_not_fused(graph):
     sine, cosine, one, other, third, fourth = numbers(graph)
     force, twin = one * (other * sine + one) * cosine, third * (fourth * sine - other) * cosine
     for total in (force - twin, twin + (force + one), (one - force) - (twin + cosine).held()):
@@ -149,7 +149,7 @@ def test_products_that_twins_could_make_equal_stay_rounded(graph):
     assert parts(force - sine * sine) is not None
 
 
-def test_a_fused_loop_keeps_the_zero_of_twins_with_equal_numbers(graph):
+def test_fused_loops_keep_the_zero_of_equal_products(graph):
     pytest.importorskip("numba")
     sine, cosine, one, other, third, fourth = numbers(graph)
     lever, twin = one * sine + other * cosine, third * sine + fourth * cosine
@@ -161,7 +161,7 @@ def test_a_fused_loop_keeps_the_zero_of_twins_with_equal_numbers(graph):
 
 
 @pytest.mark.slow
-def test_a_value_is_the_same_to_the_last_bit_whatever_is_computed_with_it():
+def test_values_do_not_depend_on_other_outputs():
     pytest.importorskip("numba")
     saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, (1.0, 0.1), 20.5), slider=ks.Link(600.0))
     s = ks.solve(saw, np.linspace(0.0, 6.0, 500), crank_speed=33.5, loads=ks.Gravity(), engine="compiled")

@@ -42,7 +42,7 @@ def test_mathml_is_well_formed(name):
         ET.fromstring(f"<math>{written(TREES[name], MATHML, given)}</math>")
 
 
-def test_values_have_six_digits_and_constants_all_theirs():
+def test_values_have_six_digits_and_constants_all():
     assert in_digits(1 / 3) == "0.333333"
     assert in_digits(0.0) == "0"
     assert in_digits(1 / 3, True) == "0.3333333333333333"

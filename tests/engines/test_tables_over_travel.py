@@ -91,7 +91,7 @@ def test_beyond_a_steep_table_it_is_an_error():
         ks.Scene(PUMPS["level"](), 30.0, loads=[ks.ProcessForce(table)]).solve(36).balancing_torque  # noqa: B018
 
 
-def test_programs_read_it_with_the_numbers_they_are_given():
+def test_programs_read_a_table_with_their_numbers():
     """Zeros among them, which are no numbers of a scene."""
     scene = pump(back=BACK)
     program = ks.compile(scene, "B", parameters=("guide_offset",), engine="numpy")

@@ -27,7 +27,7 @@ def found(graph, output, angle, *values):
 
 
 @every("family", FAMILIES)
-def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(flint, family):
+def test_random_machines_lie_within_tight_bounds(flint, family):
     made = next(found for found in (solution(family, seed, 20) for seed in range(9)) if found is not None)
     compared = errors(made, ("balancing_torque", "O"), tight=True)
     assert compared.values > 10
@@ -35,7 +35,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(flint, 
 
 
 @every("design", [True, False])
-def test_what_is_lost_under_roots_of_roots_counts_in_full(design):
+def test_errors_under_nested_roots_count_in_full(design):
     graph = Graph()
     tiny = graph.parameter(0) if design else graph.parameter(0) * graph.angle()
     root = (tiny * tiny + tiny * tiny).sqrt().sqrt().sqrt()  # computed 0
@@ -43,7 +43,7 @@ def test_what_is_lost_under_roots_of_roots_counts_in_full(design):
     assert not tight < 3.4e-42
 
 
-def test_an_adjoint_is_not_lost_by_numbers_of_a_design_that_are_tiny():
+def test_tiny_design_numbers_do_not_lose_an_adjoint():
     graph = Graph()
     row, tiny, unit = graph.row(0), *map(graph.parameter, range(2))
     root = (row.kept_off_zero(unit) * tiny).forgiving_root(unit)
@@ -61,7 +61,7 @@ def test_errors_of_what_is_used_twice_cancel():
     assert tight == pytest.approx(1.6 * UNIT, rel=0.01, abs=0.0)
 
 
-def test_what_a_design_fixes_has_the_errors_of_all_that_it_is_computed_from():
+def test_design_constants_carry_all_their_errors():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     lost = (one + other) - one  # computed 0, truly 2^-54
@@ -70,7 +70,7 @@ def test_what_a_design_fixes_has_the_errors_of_all_that_it_is_computed_from():
     assert tight >= 2.0**-54 * (1.0 + np.sin(1.0) + 3000.0 * np.cos(1.0))
 
 
-def test_what_may_have_the_other_sign_than_its_magnitude_has_no_tight_bound_of_its_own():
+def test_uncertain_signs_have_no_tight_bound():
     graph = Graph()
     one, tiny = map(graph.parameter, range(2))
     doubtful = (graph.angle() + tiny) - one  # computed 0, truly 2^-54
@@ -88,7 +88,7 @@ def test_functions_have_terms_of_second_order():
     assert bound >= error + 0.5 * STRETCH * error**2
 
 
-def test_errors_that_count_in_second_order_alone_are_bounded():
+def test_second_order_errors_are_bounded():
     graph = Graph()
     other, tiny = map(graph.parameter, range(2))
     lost = [(part + tiny) - part for part in (graph.angle(), other)]  # computed 0, truly 2^-54
@@ -96,7 +96,7 @@ def test_errors_that_count_in_second_order_alone_are_bounded():
     assert tight >= 2.0**-108
 
 
-def test_where_terms_of_second_order_are_not_small_the_forward_bound_stands_in():
+def test_large_second_order_uses_the_running_bound():
     graph = Graph()
     one, other = graph.angle(), graph.parameter(0)
     difference = one * one - other * other
@@ -111,7 +111,7 @@ def test_where_terms_of_second_order_are_not_small_the_forward_bound_stands_in()
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
+def test_tight_bounds_are_finite_and_no_larger():
     for size in (1e-9, 1.0, 1e9):
         pump = ks.crank_slider(0.05 * size, 0.2 * size, slider=ks.Link(mass=1e-12), coupler=ks.Link(1e9, 0.1 * size))
         s = ks.solve(pump, np.linspace(0.1, 6.0, 40), crank_speed=1e-3)
@@ -121,7 +121,7 @@ def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
 
 
 @every("family", FAMILIES)
-def test_a_tight_bound_is_no_larger_than_the_plain_one_but_for_its_remainder(family):
+def test_tight_exceeds_plain_by_its_remainder_only(family):
     """That makes the plain one larger by terms of second order, stretched; at a place, it is seen."""
     made = next(found for found in (solution(family, seed, 40) for seed in range(9)) if found is not None)
     names = ("balancing_torque", "O")
@@ -131,20 +131,20 @@ def test_a_tight_bound_is_no_larger_than_the_plain_one_but_for_its_remainder(fam
         assert np.all(tight[name][known] <= 1.01 * plain[name][known])
 
 
-def test_a_tight_bound_is_no_larger_where_a_table_steps_at_dead_centres():
+def test_tight_is_no_larger_where_tables_jump():
     s = shipped("yoke_pump").variants["pumping"].scene.solve(np.pi / 4 * np.arange(8))
     for name in ("O", "A", "guide"):
         assert np.all(s.error_bound(name, tight=True) <= MORE * s.error_bound(name))
 
 
-def test_where_no_errors_cancel_the_tight_bound_is_that_of_running_error_analysis():
+def test_without_cancellation_tight_is_running():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     forward, tight = found(graph, (graph.angle() + one) * other / (one + 0.3), 1.0, 0.7, 0.9)
     assert tight == pytest.approx(forward, rel=1e-12, abs=0.0)
 
 
-def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
+def test_an_exact_zero_has_tight_bound_zero_by_numpy():
     graph = Graph()
     one = graph.parameter(0)
     recording = SimpleNamespace(graph=graph, inputs={})
@@ -157,13 +157,13 @@ def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
     "case, variant",
     [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("toggle_press", "idle")],
 )
-def test_tight_bounds_take_at_most_eight_times_the_operations_of_values(case, variant):
+def test_tight_takes_at_most_8_times_the_operations(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = program_of(s.dynamics, ("balancing_torque",))
     assert operations(program.bounded(tight=True).outputs) <= 8.0 * operations(program.outputs)
 
 
-def test_numpy_tells_where_a_product_is_too_small_for_a_double():
+def test_numpy_tells_where_a_product_underflows():
     for count in range(1, 70):
         values = np.full((count, 2), 1e-200)
         for part in (values[:, 0], values[:, 0].copy()):
@@ -173,7 +173,7 @@ def test_numpy_tells_where_a_product_is_too_small_for_a_double():
                 np.divide(part, 1e200, out=np.empty(count))
 
 
-def test_bounds_of_arrays_with_values_too_small_for_a_double_are_those_of_plain_numbers():
+def test_arrays_that_underflow_have_numbers_bounds():
     pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1e-300))
     angles = np.linspace(0.3, 6.0, 30)
     many, alone = (ks.Scene(pump, 1e-9).solve(part).dynamics for part in (angles, angles[:1]))

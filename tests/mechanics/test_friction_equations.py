@@ -23,7 +23,7 @@ SIZES = {"length": np.hypot, "larger": lambda a, b: max(abs(a), abs(b))}
 
 @pytest.mark.parametrize("parts", PARTS)
 @pytest.mark.parametrize("kind", SIZES)
-def test_factor_times_direction_times_parts_is_factor_times_size(kind, parts):
+def test_factor_times_direction_times_parts(kind, parts):
     law = FrictionLaw("B", 0.3, None, kind, ())
     size = SIZES[kind](*(0.0 if part is None else part for part in parts))
     assert size_of(kind, parts) == pytest.approx(size, rel=1e-15)
@@ -39,7 +39,7 @@ def test_a_number_has_its_size_or_is_itself():
     assert size_of("length", (None, None)) is None
 
 
-def test_kinks_lie_where_a_size_turns_and_where_the_larger_changes():
+def test_kinks_lie_where_a_size_or_the_larger_changes():
     assert kink_functions("size", (-2.0,)) == [-2.0]
     assert kink_functions("length", (3.0, 4.0)) == []
     assert kink_functions("larger", (3.0, -4.0)) == [3.0, -4.0, -1.0]
@@ -76,7 +76,7 @@ def test_one_force_is_its_closed_form(load, kappa):
     assert made.residual < 1e-15
 
 
-def test_two_forces_that_feed_each_other_satisfy_their_laws():
+def test_coupled_friction_forces_satisfy_their_laws():
     columns, free, factors = np.array([[0.2, -0.5], [0.7, 0.1]]), np.array([4.0, -7.0]), np.array([0.3, 0.2])
     found = np.array(equations(factors.tolist(), free.tolist(), columns).solve(PASSES, 0.0))
     np.testing.assert_allclose(found, factors * np.abs(free + columns @ found), rtol=1e-15)

@@ -16,7 +16,7 @@ def solved(mu, **options):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-def test_a_rod_within_the_angle_of_friction_jams_and_says_at_which_angles():
+def test_a_rod_within_the_friction_angle_jams():
     """The rod leans by at most 30 degrees: a slider jams where mu times its slope reaches one."""
     assert np.isfinite(solved(1.7).balancing_torque).all()
     with pytest.raises(ks.errors.JammingError, match="friction jams at") as caught:
@@ -32,12 +32,12 @@ def test_it_is_left_open_where_asked():
 
 
 @pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
-def test_a_crank_that_stands_has_no_direction_of_friction(speed, acceleration, stands):
+def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
     s = ks.solve(PUMP, TURN, crank_speed=speed, crank_acceleration=acceleration)
     assert bool(jamming.problem_at_rest(s)) == stands
 
 
-def test_friction_is_found_where_one_more_pass_changes_no_digit():
+def test_friction_converges_to_the_last_digit():
     assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
 
 
@@ -69,7 +69,7 @@ def states(kappa, free):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-def test_of_a_guide_alone_the_margin_tells_exactly_whether_there_is_one_state_of_forces():
+def test_the_margin_of_a_guide_decides_uniqueness():
     s = solved(2.5, on_gap="nan")
     kappa = 1.0 - s.friction_margin
     assert kappa == pytest.approx(2.5 * np.abs(np.sin(TURN)) / np.sqrt(4.0 - np.sin(TURN) ** 2), rel=1e-12)

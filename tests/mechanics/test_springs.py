@@ -93,7 +93,7 @@ def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration
 
 
 @every("name", [name for name in MACHINES if name not in APART])
-def test_inertia_and_a_spring_that_balances_it_are_taken_together(name):
+def test_inertia_and_a_balancing_spring_are_one_force(name):
     run = loaded(MACHINES[name], "balancing").dynamics
     loads, pushes = springs.acting(run)
     assert loads["slider"].force is not run.link_loads["slider"].force
@@ -118,7 +118,7 @@ def test_without_springs_or_mass_nothing_is_done():
 
 
 @every("name, guide", [(name, guide) for name in CAMS for guide in (LEVEL, INCLINED)])
-def test_together_they_take_hardly_more_operations_than_apart(name, guide):
+def test_one_force_takes_hardly_more_operations(name, guide):
     """Two products and two sums more at each crank angle."""
     counts = []
     for kind in (ks.SliderGroup, Apart):
@@ -159,7 +159,7 @@ def test_a_spring_of_the_user_s_pushes_as_it_says(own, plain):
 
 
 @every("name", CAMS)
-def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
+def test_a_balancing_spring_leaves_the_exact_force(name, flint):
     """Within 1e-16 of the spring's force, most of it the rounding of m omega^2; subtracted it were 3e-16."""
     s = ks.Scene(saw(*CAMS[name]), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN)
     found = NUMPY.values(s.dynamics, ("B",))["B"][0]
@@ -170,7 +170,7 @@ def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
 
 
 @every("guide", [LEVEL, INCLINED])
-def test_what_a_stiffening_spring_leaves_is_near_the_exact(guide, flint):
+def test_a_stiffening_spring_leaves_the_exact_force(guide, flint):
     """Within 4e-16 of the spring's force; by a rate that changes with the crank angle it were 7e-16."""
     cam = ks.cams.Harmonic((0.27, -0.012, 0.024), (0.0002,))
     s = ks.Scene(saw(cam, 2.012, guide), SPEED, 0.0, [ks.Spring(1e4, 2.0, cubic=1.2e7)]).solve(360)
@@ -186,7 +186,7 @@ class Softened(ks.Spring):
         return 0.5 * super().spring_rate(motion)
 
 
-def test_a_stiffening_spring_of_the_user_s_keeps_its_rate():
+def test_a_user_s_stiffening_spring_keeps_its_rate():
     machine = saw(*CAMS["harmonic"])
     own, plain = (
         ks.Scene(machine, SPEED, 0.0, [spring]).solve(TURN)
@@ -197,7 +197,7 @@ def test_a_stiffening_spring_of_the_user_s_keeps_its_rate():
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("speed", [0.0, 1e-12])
-def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
+def test_a_slow_machine_at_a_limit_keeps_its_spring(speed):
     """There the slider's second derivative is a million times its elongation, and nothing of it counts."""
     close = plain(length=0.3 * (1.0 + 1e-13))
     run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics

@@ -33,7 +33,7 @@ def test_bare_numbers_name_the_allowed_forms(given):
     "given",
     ["600..900 kN/m", "normal 712 kN/m +- 5 kN/m", *(f"triangular 69..{mode}..78 kN/m" for mode in (69, 71, 76))],
 )
-def test_median_and_deviation_are_those_of_the_distribution(given):
+def test_median_and_deviation_match_the_distribution(given):
     spread = spreads.spread_of(given)
     assert spread.median == pytest.approx(spread.distribution.median(), rel=1e-14)
     assert spread.deviation == pytest.approx(spread.distribution.std(), rel=1e-14)

@@ -29,7 +29,7 @@ def unwarned(mechanism, angle, loads=(ks.Gravity(),), speed=5.0):
 # What it means
 
 
-def test_condition_of_a_batch_has_a_row_for_each_design():
+def test_a_batch_has_a_row_of_conditions_per_design():
     lengths = np.array([[0.31], [0.5], [2.0]])
     found = solved(ks.crank_slider(0.3, lengths)).condition
     assert found.shape == (3, ANGLES.size)
@@ -37,20 +37,20 @@ def test_condition_of_a_batch_has_a_row_for_each_design():
         np.testing.assert_allclose(row, solved(ks.crank_slider(0.3, length)).condition, rtol=1e-12)
 
 
-def test_condition_of_many_crank_angles_is_found_in_blocks(monkeypatch):
+def test_conditions_of_many_angles_come_in_blocks(monkeypatch):
     whole = solved(ks.crank_slider(0.3, 0.5)).condition
     monkeypatch.setattr(condition, "BLOCK_SIZE", 7)
     assert np.array_equal(solved(ks.crank_slider(0.3, 0.5)).condition, whole)
 
 
-def test_condition_grows_with_the_crank_angle_itself_after_many_turns():
+def test_condition_grows_with_the_number_of_turns():
     turns = 2 * np.pi * np.array([1e3, 1e5, 1e7])
     found = unwarned(ks.crank_slider(0.3, 2.0, slider=BODY), 0.7 + turns).condition
     assert np.all(found > turns)
     np.testing.assert_allclose(found[1:] / found[:-1], 100.0, rtol=0.05)
 
 
-def test_a_table_of_radii_has_about_the_condition_of_the_cam_it_is_of():
+def test_a_radius_table_has_the_cam_s_condition():
     """Of a table the size alone counts as a length, not each radius."""
     circle = ks.cams.Circle(0.3, (0.1, 0.05))
     table = ks.cams.Sampled(TURN[:-1], circle.radius(TURN[:-1])[0])
@@ -101,7 +101,7 @@ def test_groups_not_recorded_have_it_by_differences(kind, angles):
     np.testing.assert_allclose(found, exact, rtol=1e-6)
 
 
-def test_condition_of_another_librarys_lengths_is_refused():
+def test_lengths_of_another_library_are_refused():
     jnp = pytest.importorskip("jax.numpy", reason="JAX is not installed (extra: grad)")
     s = unwarned(ks.crank_slider(jnp.asarray(0.3), 0.5, slider=BODY), ANGLES)
     with pytest.raises(ks.errors.NotGivenError, match=r"no condition, .* arrays of another library"):
@@ -116,7 +116,7 @@ def test_condition_of_another_librarys_lengths_is_refused():
         ks.four_bar(2.0, 3.0, 3.5, rocker_pivot=(0.3, 5.0)),
     ],
 )
-def test_condition_is_nan_exactly_in_gaps_as_all_results_are(mechanism):
+def test_condition_is_nan_exactly_in_gaps(mechanism):
     s = solved(mechanism, TURN, on_gap="nan")
     gap = np.isnan(s.position("B")[0])
     assert 0 < gap.sum() < TURN.size
@@ -166,7 +166,7 @@ def everything(s):
 
 
 @pytest.mark.slow
-def test_all_results_at_exact_limit_positions_are_finite_and_warned_of():
+def test_results_at_limit_positions_are_finite():
     for mechanism, angle in at_limits():
         with pytest.warns(ks.ConditionWarning, match="near a limit position"):
             s = solved(mechanism, np.array([angle, angle + 0.3]), [ks.Gravity()], on_gap="raise")
@@ -176,7 +176,7 @@ def test_all_results_at_exact_limit_positions_are_finite_and_warned_of():
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
-def test_loops_close_at_and_around_limit_positions_on_the_chosen_side():
+def test_loops_close_around_limits_on_the_chosen_side():
     """Coupler and rocker keep their lengths to rounding, the slider stays on its guide, and B on its side."""
     steps = np.concatenate([[0.0], *(sign * 10.0 ** -np.arange(1.0, 18.0) for sign in (1, -1))])
     for mechanism, angle in at_limits():
@@ -226,26 +226,26 @@ def four_bar(*lengths):
         (ks.crank_slider(1.0, 1.0), np.pi / 2, "0"),
     ],
 )
-def test_warning_names_the_digits_that_the_condition_leaves(mechanism, angle, digits, loads):
+def test_the_warning_names_the_digits_left(mechanism, angle, digits, loads):
     (text,) = caught(mechanism, [0.7, angle, 0.9], loads)
     assert f"about {digits} correct digits" in text
     assert f"at crank angle {np.degrees(angle):.9g} deg" in text
     assert "1 of 3 crank angles lose half of their digits" in text
 
 
-def test_torque_without_a_correct_digit_is_said_to_have_none():
+def test_a_torque_without_a_correct_digit_is_reported():
     """6706 N m for 39.24 N m, 1e-6 rad after A has passed O2."""
     with pytest.warns(ks.ConditionWarning, match="about 0 correct digits"):
         s = ks.solve(four_bar(1, 1, 1, 1), 1e-6, crank_speed=5.0, loads=ks.Gravity())
     assert s.condition > 1e16
 
 
-def test_crank_angles_after_too_many_turns_are_warned_of():
+def test_angles_after_too_many_turns_give_a_warning():
     (text,) = caught(ks.crank_slider(0.3, 2.0, slider=BODY), [0.3, 1e9 + 0.3])
     assert "1 of 2 crank angles" in text
 
 
-def test_ordinary_mechanisms_never_have_their_condition_computed_unasked(monkeypatch):
+def test_ordinary_mechanisms_skip_the_condition(monkeypatch):
     def never(*_):
         raise AssertionError
 
@@ -352,7 +352,7 @@ def assert_bound(solution, allowed=1e4):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", RANDOM)
-def test_condition_bounds_the_true_magnification_of_random_mechanisms_and_is_no_hundred_times_as_large(kind):
+def test_condition_bounds_the_true_magnification(kind):
     """Fifty of each kind, at four crank angles."""
     draw = Draw(11, 50)
     angle = draw.random.uniform(0.0, 2 * np.pi, (50, 4))
@@ -384,7 +384,7 @@ SPECIAL = {
 
 
 @pytest.mark.parametrize("name", SPECIAL)
-def test_condition_bounds_the_true_magnification_toward_special_positions(name):
+def test_condition_bounds_it_near_special_positions(name):
     """From 0.1 to 1e-10 rad on both sides; infinite within some roundings of the position."""
     mechanism, angle = SPECIAL[name]
     steps = 10.0 ** -np.arange(1.0, 11.0)
@@ -394,7 +394,7 @@ def test_condition_bounds_the_true_magnification_toward_special_positions(name):
 
 
 @pytest.mark.parametrize("distance", 10.0 ** -np.arange(1.0, 11.0))
-def test_condition_bounds_the_true_magnification_of_unequal_lengths_and_many_turns(distance):
+def test_condition_bounds_it_for_unequal_lengths(distance):
     far = 1 / distance
     for mechanism, angle in (
         (ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.3 * (1 - distance), 0.0)), 2.0, **HEAVY), [0.0, 0.3, np.pi / 2]),
@@ -435,7 +435,7 @@ def rows(item, number):
 
 
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])
-def test_no_loss_of_half_the_digits_passes_the_first_look_at_margins(kind):
+def test_the_plausibility_test_misses_no_large_loss(kind):
     draw = Draw(23, 400)
     batch, angle = near_limits(draw, kind)
     s = unwarned(batch, angle)
@@ -451,7 +451,7 @@ def test_no_loss_of_half_the_digits_passes_the_first_look_at_margins(kind):
 
 
 @pytest.mark.parametrize("kind", RANDOM)
-def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in_gaps_too(kind):
+def test_lossy_angles_are_those_of_large_condition(kind):
     draw = Draw(29, 12)
     s = ks.Solution(RANDOM[kind](draw), TURN[::4], 7.0, 0.0, (ks.Gravity(),))
     points, found = ill_conditioned(s.dynamics, s.dynamics.closure)
@@ -460,7 +460,7 @@ def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in
     np.testing.assert_array_equal(found, whole[points])
 
 
-def test_a_slotted_lever_is_ordinary_at_its_dead_centres():
+def test_a_slotted_lever_is_ordinary_at_dead_centres():
     """There it stands still for an instant, and forces are what they are nearby."""
     lever = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(3.0, 0.2, 0.05), block=ks.Link(1.0))
     dead = -np.arcsin(0.5) + np.array([-1e-3, -1e-9, 0.0, 1e-9, 1e-3])
@@ -469,7 +469,7 @@ def test_a_slotted_lever_is_ordinary_at_its_dead_centres():
     assert np.all(s.condition > 1.0)
 
 
-def test_a_cylinder_and_a_yoke_are_ordinary_where_they_stand_still():
+def test_cylinder_and_yoke_are_ordinary_at_rest():
     swinging = ks.Mechanism("pump", ks.Crank(0.1), (ks.CylinderGroup((0.4, 0.0), cylinder=ks.Link(3.0, 0.1, 0.02)),))
     yoke = ks.Mechanism("yoke", ks.Crank(0.1), (ks.YokeGroup(ks.Guide.at(0.0), slider=ks.Link(3.0)),))
     still = ks.solve(swinging, [np.arccos(0.25), np.arccos(0.25) + 1e-9], crank_speed=9.0)

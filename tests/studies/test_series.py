@@ -23,7 +23,7 @@ def by_series(solution, order):
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
-def test_truncated_series_has_the_first_harmonics_of_the_slider_motion(order):
+def test_the_series_has_the_first_harmonics(order):
     full = solved(cranked(guide_offset=0.05))
     series = by_series(full, order)
     spectrum = np.fft.rfft(full.slider_acceleration)
@@ -33,7 +33,7 @@ def test_truncated_series_has_the_first_harmonics_of_the_slider_motion(order):
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
-def test_error_of_truncated_series_falls_with_the_order(few_models, name):
+def test_the_series_error_falls_with_the_order(few_models, name):
     full = solved(MECHANISMS[name])
     errors = [change(by_series(full, order), full, "O") for order in (1, 2, 4, 8, 16)]
     assert errors == sorted(errors, reverse=True)

@@ -10,7 +10,7 @@ from kinetostatics.machine.loads import table_pieces
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 
 
-def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_rounding():
+def test_a_steep_last_piece_is_within_its_rounding():
     """Where the first row is not at 0, the end of the last piece is rounded."""
     first, last = 0.1, 6.37
     table = ks.Table([first, 1.0, last], [0.0, 500.0, 1000.0])
@@ -35,7 +35,7 @@ def exactly(table, angle):
 
 @pytest.mark.parametrize("turns", [1, 2])
 @pytest.mark.parametrize("first", [0.0, 0.1, -2.7, -777.3])
-def test_no_value_by_angle_is_off_by_more_than_its_rounding(first, turns):
+def test_values_by_angle_lie_within_their_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns
     for _ in range(8):
         x = first + period / 20 * (np.arange(20) + rng.uniform(0.0, 0.9, 20) * (np.arange(20) > 0))
@@ -74,7 +74,7 @@ def test_on_level_pieces_of_a_table_nothing_is_rounded():
     assert 1e-16 < rising < 6e-16
 
 
-def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
+def test_kinks_and_jumps_stand_at_rows_and_ends_only():
     pump = ks.crank_slider(0.05, 0.2)
     table = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0], slider="slider")
     s = ks.solve(pump, [0.0, 1.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
@@ -85,7 +85,7 @@ def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
     np.testing.assert_allclose(distance, np.min(np.abs(s.slider_position - table.x[:, None]), axis=0), atol=1e-16)
 
 
-def test_beside_a_row_the_slope_beyond_counts_as_far_as_rounding_reaches(flint):
+def test_beside_a_row_the_next_slope_counts(flint):
     """Where the travel rounded lies before a kink, and the exact one behind it, or the other way round."""
     pump, angle = ks.crank_slider(0.05, 0.2), 1.1
     row = float(ks.solve(pump, angle, crank_speed=1.0).slider_position)
@@ -101,7 +101,7 @@ def test_beside_a_row_the_slope_beyond_counts_as_far_as_rounding_reaches(flint):
 
 
 @pytest.mark.parametrize("beside", [0.0, 5e-8, -5e-8])
-def test_at_the_end_of_a_stroke_a_table_jumps_by_what_its_ways_differ_there_not_elsewhere(beside):
+def test_at_the_end_of_a_stroke_a_table_jumps(beside):
     """At the inner end both ways are 0; the outer end is a row at which they differ by a peak, or lies just beside."""
     pump = ks.crank_slider(0.05, 0.2)
     x = [0.14, 0.16, 0.24, 0.25 + beside, 0.26, 0.3]
