@@ -614,8 +614,9 @@ def test_tolerances_take_quantities():
     assert found.table.equals(wanted.table)
 
 
-FOREIGN = pint.UnitRegistry()
-FOREIGN.define("inch = 3 * cm = in")
+FOREIGN = pint.UnitRegistry(None)
+FOREIGN.define("meter = [length]")
+FOREIGN.define("inch = 0.03 * meter = in")
 NO_SPREADS = [
     (UNITS.kg, "quantities of pint"), ([], "quantities of pint"), ((MASS["kg"][0], 2.0), "each with its unit"),
     ((MASS["kg"][0], UNITS.Quantity(2.0, "m")), r"must measure \[mass\], in kg, got 2.0 meter"),

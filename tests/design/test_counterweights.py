@@ -1,5 +1,6 @@
 """Counterweights: masses, arms and limits, the link with its counterweight, and what they did elsewhere."""
 
+import functools
 import re
 
 import numpy as np
@@ -181,31 +182,27 @@ def test_crank_counterweight_leaves_the_rest_unchanged():
 # The table of balanced variants
 
 
-CASE = shipped("mower_drive")
-NAME = next(name for name, variant in CASE.variants.items() if variant.balanced is not None)
-BALANCED = CASE.variants[NAME].balanced
-
-
 @pytest.fixture(scope="module")
-def solutions():
-    return CASE.solve(CASE.reference, 36), CASE.solve(NAME, 36)
+def mower_table():
+    """The first balanced variant of the mower drive: name, report, solution, and a function that makes the table."""
+    case = shipped("mower_drive")
+    name = next(name for name, variant in case.variants.items() if variant.balanced is not None)
+    balanced, before, after = case.variants[name].balanced, case.solve(case.reference, 36), case.solve(name, 36)
+    return name, balanced.report(), after, functools.partial(balancing_table, before, {name: (balanced, after)})
 
 
-def test_rows_are_those_of_the_report_in_millimetres(solutions):
-    table = balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])})
-    for link, row in BALANCED.report().iterrows():
-        column = table[f"{NAME} {link}"]
+def test_rows_are_those_of_the_report_in_millimetres(mower_table):
+    name, report, _, table = mower_table
+    for link, row in report.iterrows():
+        column = table()[f"{name} {link}"]
         assert column["counterweight arm [mm]"] == pytest.approx(1e3 * row["counterweight arm [m]"], abs=1e-8)
         assert column["counterweight mass [kg]"] == pytest.approx(row["counterweight mass [kg]"], abs=1e-8)
 
 
-def test_the_largest_force_is_the_true_extreme(solutions):
-    table = balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])}, sampling=np.radians(5.0))
-    first = table.iloc[:, 0]
-    largest = ks.extremes(solutions[1], "shaking_force").range[1]
+def test_the_largest_force_is_the_true_extreme(mower_table):
+    *_, after, table = mower_table
+    first = table(sampling=np.radians(5.0)).iloc[:, 0]
+    largest = ks.extremes(after, "shaking_force").range[1]
     assert first["largest |F| [N]"] == pytest.approx(largest, rel=1e-9)
     assert first["largest |F| on the study's grid [N]"] <= largest * (1 + 1e-12)
-    assert (
-        "largest |F| on the study's grid [N]"
-        not in balancing_table(solutions[0], {NAME: (BALANCED, solutions[1])}).index
-    )
+    assert "largest |F| on the study's grid [N]" not in table().index

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 
 import kinetostatics as ks
 from kinetostatics.engines.derivatives import Evaluation, tangents
@@ -11,6 +10,7 @@ from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers import arithmetic
 from kinetostatics.numbers.parameter_tree import put_together
+from support.case_files import shipped, variant_names
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 SIZES = np.array([[0.9], [1.0], [1.1]])
@@ -32,29 +32,31 @@ SIX_BAR = ks.Mechanism(
 )
 
 
-def shipped():
-    for name in ("sawframe_2r63", "mower_drive", "chain_unit"):
-        for variant, found in ks.load_case(name).variants.items():
-            loads = found.loads
-            yield f"{name} {variant}", ks.Scene(found.mechanism, found.crank_speed, 3.0, loads)
-    yield "six-bar", ks.Scene(SIX_BAR, 12.0, -20.0, (ks.Gravity(9.81, -1.2), ks.ProcessForce(40.0, "slider2")))
+def scene_of(name):
+    """A variant of a shipped case with a crank acceleration, or the six-bar with two loads."""
+    if name == "six-bar":
+        return ks.Scene(SIX_BAR, 12.0, -20.0, (ks.Gravity(9.81, -1.2), ks.ProcessForce(40.0, "slider2")))
+    case, variant = name.split(" ", 1)
+    found = shipped(case).variants[variant]
+    return ks.Scene(found.mechanism, found.crank_speed, 3.0, found.loads)
 
 
-SCENES = dict(shipped())
+CASES = ("sawframe_2r63", "mower_drive", "chain_unit")
+NAMES = [*(f"{case} {variant}" for case in CASES for variant in variant_names(case)), "six-bar"]
 
 
 def _fields(scene):
     return scene.mechanism, ANGLES, scene.crank_speed, scene.crank_acceleration
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", NAMES)
 def test_derivatives_match_differences_of_enclosures(name):
     """At 300 bits, each number of the scene moved by 1e-30 of itself: both sides share no arithmetic of derivatives.
 
     Relative to the largest derivative over the angles, or to the quantity over the number where that is more.
     """
     flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    scene = SCENES[name]
+    scene = scene_of(name)
     quantities = ("balancing_torque", *(name for name in ("O", "B", "cam_force") if name in scene.mechanism.outputs))
     program = ks.compile(scene, quantities, engine="numpy")
     found = program.derivatives(ANGLES)
@@ -89,9 +91,9 @@ def test_derivatives_agree_compiled_and_by_both_sweeps(name):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     quantities = ("balancing_torque", "O")
     found = [
-        ks.compile(SCENES[name], quantities, engine=engine).derivatives(ANGLES) for engine in ("numpy", "compiled")
+        ks.compile(scene_of(name), quantities, engine=engine).derivatives(ANGLES) for engine in ("numpy", "compiled")
     ]
-    one_by_one = ks.compile(SCENES[name], quantities, engine="numpy")
+    one_by_one = ks.compile(scene_of(name), quantities, engine="numpy")
     for quantity in quantities:
         for path, slope in found[0][quantity].items():
             largest = np.abs(slope).max()
@@ -128,6 +130,7 @@ def along_two_directions(function):
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_derivatives_of_operations_match_sympy(name):
+    sp = pytest.importorskip("sympy")
     x = sp.Symbol("x", positive=True)
     expression = FUNCTIONS[name](x, sp)
     value, slopes = along_two_directions(lambda number: FUNCTIONS[name](number, Elementary()))

@@ -133,3 +133,8 @@ def saw_with(text, folder):
 
 
 shipped = cache(ks.load_case)
+
+
+def variant_names(case):
+    """Names of the variants of a shipped case; none is built."""
+    return list(tomllib.loads(shipped_cases()[case].read_text(encoding="utf-8"))["variants"])

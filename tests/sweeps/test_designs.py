@@ -4,7 +4,6 @@ import re
 
 import numpy as np
 import pandas as pd
-import pint
 import pytest
 from scipy import stats
 
@@ -14,6 +13,7 @@ from kinetostatics.numbers.formatting import si_columns
 from kinetostatics.sweeps import designs
 from support.case_files import shipped
 from support.every import every
+from support.units import UNITS
 
 SPREADS = {
     "spring.stiffness": "normal 700 kN/m +- 5000 N/m",
@@ -111,7 +111,7 @@ def test_spreads_must_be_a_dict(kind):
             getattr(designs, kind)(spreads, *more)
 
 
-KG, M = (pint.UnitRegistry().Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
+KG, M = (UNITS.Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
 
 
 @every("name, given, unit", [

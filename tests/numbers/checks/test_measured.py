@@ -15,7 +15,9 @@ from kinetostatics.numbers.units import to_si
 from support.every import every
 from support.units import UNITS
 
-DECIMALS = pint.UnitRegistry(non_int_type=Decimal)
+DECIMALS = pint.UnitRegistry(None, non_int_type=Decimal)
+DECIMALS.define("meter = [length] = m")
+DECIMALS.define("millimeter = 0.001 * meter = mm")
 UNITS.define("span = 0.25 * meter")
 
 
