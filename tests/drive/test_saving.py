@@ -12,7 +12,7 @@ MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5,
 SAW = shipped("sawframe_2r63").variants
 
 
-def running(variant, motor=MOTOR):
+def running_saw(variant, motor=MOTOR):
     scene = SAW[variant].scene
     loads = (*scene.loads, ks.Torque(-700.0 * (1.0 if motor is None else motor.direction), on="crank"))
     return ks.drive.steady(ks.Scene(scene.mechanism, 33.0, loads=loads[: None if motor else -1]), motor, 1000.0)
@@ -20,7 +20,7 @@ def running(variant, motor=MOTOR):
 
 @pytest.fixture(scope="module")
 def pair():
-    return running("plain"), running("cam-cosine")
+    return running_saw("plain"), running_saw("cam-cosine")
 
 
 @pytest.mark.slow
@@ -71,13 +71,13 @@ def test_flywheel_for_equal_fluctuation_gives_it(pair):
 @pytest.mark.slow
 def test_a_motor_without_air_gap_leaves_its_rows_out():
     linear = ks.drive.Motor.linear(4e3, 40.0)
-    frame = ks.compare(running("plain", linear), running("cam-cosine", linear)).frame()
+    frame = ks.compare(running_saw("plain", linear), running_saw("cam-cosine", linear)).frame()
     assert "energy per turn, at the shaft" in frame.index
     assert not frame.index.str.contains("air gap|rotor").any()
 
 
 def test_textbook_running_is_compared_too():
-    compared = ks.compare(running("plain", None), running("cam-cosine", None))
+    compared = ks.compare(running_saw("plain", None), running_saw("cam-cosine", None))
     assert compared.fluctuations[0] > 3.0 * compared.fluctuations[1]
     assert compared.flywheels()[1] < 500.0
 

@@ -287,7 +287,7 @@ def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes)
 # What a program costs
 
 
-def operations(scene, *names):
+def cost(scene, *names):
     s = solve(scene, ANGLES)
     return program(s, names or everything(s))[0].recording.operations
 
@@ -295,11 +295,11 @@ def operations(scene, *names):
 def test_what_is_absent_or_not_asked_for_costs_nothing():
     plain, weightless = SCENES["plain"], SCENES["plain, weightless"]
     light = plain._replace(mechanism=plain.mechanism.with_link("coupler", ks.Link()))
-    assert operations(light) < operations(weightless) < operations(plain) < operations(SCENES["plain, everything"])
-    assert operations(plain, "slider_position") <= 10
-    torque, reactions = operations(plain, "balancing_torque"), operations(plain, "O", "A", "B", "guide")
-    assert operations(plain, "coupler_rate") < torque < reactions < operations(plain)
-    assert operations(plain, "balancing_torque", "A", "A") == operations(plain, "A", "balancing_torque")
+    assert cost(light) < cost(weightless) < cost(plain) < cost(SCENES["plain, everything"])
+    assert cost(plain, "slider_position") <= 10
+    torque, reactions = cost(plain, "balancing_torque"), cost(plain, "O", "A", "B", "guide")
+    assert cost(plain, "coupler_rate") < torque < reactions < cost(plain)
+    assert cost(plain, "balancing_torque", "A", "A") == cost(plain, "A", "balancing_torque")
 
 
 def test_designs_of_one_structure_share_a_program():

@@ -8,7 +8,7 @@ import pytest
 from kinetostatics.engines import scanning
 from support import by_arrays
 
-SIZES = (12, 63, 64, 65, 66, 67, 127, 128, 130, 360, 1441)
+ROWS = (12, 63, 64, 65, 66, 67, 127, 128, 130, 360, 1441)
 SCANS = ("rising", "falling", "negative")
 
 
@@ -33,7 +33,7 @@ def jitted(intrinsic, arguments):
 def test_bits_are_set_exactly_where_conditions_hold(numba):
     conditions = [getattr(scanning, name) for name in SCANS]
     own, expected = jitted(scanning.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
-    for size in SIZES:
+    for size in ROWS:
         results = np.zeros((2, 3, size))
         results[1, 2] = values_of(size)
         words, wanted = np.full((2, 3, size // 64 + 1), 2**64 - 1, np.uint64)
@@ -76,7 +76,7 @@ def test_sums_of_every_other_value_lose_little(numba):
     terms = {"plain": lambda value: value, "sizes": abs, "squares": lambda value: value * value}
     for name, term in terms.items():
         own = jitted(scanning.summing(term), 3)
-        for size in SIZES:
+        for size in ROWS:
             values = np.random.default_rng(size).normal(size=size)
             wanted = [math.fsum(term(values[first::2]).tolist()) for first in (0, 1)]
             scale = np.abs(term(values)).sum()

@@ -6,7 +6,7 @@ import kinetostatics as ks
 from support.case_files import problems
 from support.every import every
 
-HEAD = """
+DRIVE_HEAD = """
 title = "t"
 reference = "a"
 [variants.a]
@@ -40,7 +40,7 @@ def libraries():
 
 
 MOTOR = "variants.a.drive.motor"
-WRONG = {
+WRONG_DRIVES = {
     "empty": ("", f"{MOTOR} is missing"),
     "motor no table": ('motor = "55 kW"', f"{MOTOR} must be a table with a kind, of 'kloss', 'linear'"),
     "no kind": ("motor = {}", f"{MOTOR}.kind is missing; allowed: 'kloss', 'linear', 'constant', 'table'"),
@@ -74,12 +74,12 @@ WRONG = {
 }
 
 
-@every(("text", "message"), WRONG.values(), ids=WRONG)
+@every(("text", "message"), WRONG_DRIVES.values(), ids=WRONG_DRIVES)
 def test_a_wrong_drive_is_named_with_its_key(tmp_path, text, message):
-    assert message in "\n".join(problems(tmp_path, HEAD + text))
+    assert message in "\n".join(problems(tmp_path, DRIVE_HEAD + text))
 
 
 @pytest.mark.parametrize("text", ['"55 kW"', "true", "[]", "[{}]"])
 def test_a_drive_that_is_no_table_is_named(tmp_path, text):
-    (found,) = problems(tmp_path, HEAD.replace("[variants.a.drive]", f"drive = {text}"))
+    (found,) = problems(tmp_path, DRIVE_HEAD.replace("[variants.a.drive]", f"drive = {text}"))
     assert found.startswith("variants.a.drive")

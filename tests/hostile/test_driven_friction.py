@@ -13,14 +13,14 @@ from support.multibody import Body, CrankSlider, pin_on_crank
 
 WEIGHT = (9.81, -math.pi / 2)
 HEAVY = ks.crank_slider(0.3, 0.5, slider=ks.Link(200.0))
-PUMP = ks.crank_slider(0.1, 0.35, slider=ks.Link(5.0))
+PRESS = ks.crank_slider(0.1, 0.35, slider=ks.Link(5.0))
 
 
 @pytest.fixture(scope="module", autouse=True)
 def libraries():
     """Loads scipy before the clock of any test runs."""
-    ks.drive.coast(ks.Scene(PUMP, 1.0, friction={"guide": ks.GuideFriction(0.1)}), 1.0, 0.3, 1.0, until=1e-3)
-    ks.drive.steady(ks.Scene(PUMP, 1.0), None, 1.0)
+    ks.drive.coast(ks.Scene(PRESS, 1.0, friction={"guide": ks.GuideFriction(0.1)}), 1.0, 0.3, 1.0, until=1e-3)
+    ks.drive.steady(ks.Scene(PRESS, 1.0), None, 1.0)
 
 
 # friction that has a kink at the acceleration
@@ -81,7 +81,7 @@ WINDOW = 1e-3
 
 
 def _steady(value, crank_speed=10.0):
-    scene = ks.Scene(PUMP, crank_speed, loads=ks.ProcessForce(value))
+    scene = ks.Scene(PRESS, crank_speed, loads=ks.ProcessForce(value))
     return ks.drive.steady(scene, None, flywheel=50.0, angles=40)
 
 
@@ -95,7 +95,7 @@ def test_function_of_angle_runs_without_a_motor(speed):
 
 def test_function_of_position_never_stands_still():
     """It gives back in a turn what it takes, which only a load that cannot depend on the speed surely does."""
-    scene = ks.Scene(PUMP, 1.0, loads=ks.ProcessForce(lambda motion: np.round(0.0 * motion.slider_position) - 10.0))
+    scene = ks.Scene(PRESS, 1.0, loads=ks.ProcessForce(lambda motion: np.round(0.0 * motion.slider_position) - 10.0))
     with pytest.raises(ks.DriveError, match="give back all that they take in a turn"):
         ks.drive.coast(scene, 1.0, from_angle=0.3, from_speed=20.0, until="standstill")
 

@@ -70,7 +70,7 @@ def cam(profile, **bodies):
 
 
 CIRCLE = ks.cams.Circle(0.3, (-0.02, 0.0))
-PLAIN = ks.crank_slider(0.1, 0.4, **BODIES)
+MACHINE = ks.crank_slider(0.1, 0.4, **BODIES)
 SPRING = ks.Spring(500.0, 0.9)
 SIX_BAR = ks.Mechanism(
     "six-bar", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.05)), ks.SliderGroup(0.5, on="B", pin="C", label="2"))
@@ -79,13 +79,13 @@ COLUMN = np.array([[1.0], [2.0]])
 BATCHES = {
     "lengths": solved(ks.crank_slider(0.1 * COLUMN, 0.4, **BODIES)),
     "masses": solved(ks.crank_slider(0.1, 0.4, coupler=BODIES["coupler"], slider=ks.Link(COLUMN))),
-    "gravities": ks.solve(PLAIN, TURN, crank_speed=10.0, loads=[ks.Gravity(9.81 * COLUMN)]),
+    "gravities": ks.solve(MACHINE, TURN, crank_speed=10.0, loads=[ks.Gravity(9.81 * COLUMN)]),
     "one of one": solved(ks.crank_slider(np.array([[0.1]]), 0.4, **BODIES)),
     "rockers": solved(ks.four_bar(0.1, 0.4, 0.1 * COLUMN + 0.2, rocker_pivot=(0.35, 0.1))),
     "cams": solved(cam(ks.cams.Circle(0.3, (-0.01 * COLUMN, 0.0))), loads=[SPRING]),
     "springs": solved(cam(CIRCLE), loads=[ks.Spring(100.0 * COLUMN, 0.9)]),
-    "one angle, no row": solved(PLAIN, np.array(0.3)),
-    "rows of angles": solved(PLAIN, np.tile(TURN, (2, 1))),
+    "one angle, no row": solved(MACHINE, np.array(0.3)),
+    "rows of angles": solved(MACHINE, np.tile(TURN, (2, 1))),
 }
 FOREIGN = {
     "group": solved(ks.Mechanism("own", ks.Crank(0.1), (OwnSlider(0.4, **BODIES),))),
@@ -101,11 +101,11 @@ MIXED = [
     (PAPERS, solved(SIX_BAR), "O", "no study has formulas for the groups"),
     (PAPERS, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no study has formulas for the groups"),
     (KANE, solved(ks.Mechanism("own", ks.Crank(0.1), (Wheel(),))), "O", "Wheel does not declare in its pairs"),
-    (KANE, solved(PLAIN), "nonsense", "not set up to give nonsense"),
-    *((name, solved(PLAIN, friction=RUBBING), "O", "no friction, but there is some in O") for name in (KANE, PAPERS)),
-    (NEWTON, solved(PLAIN), "nonsense", "give no nonsense"),
-    (NEWTON, solved(PLAIN), "cam_force", "give no cam_force"),
-    (PRINTED, solved(PLAIN), "O", "circular cam; crank-slider has none"),
+    (KANE, solved(MACHINE), "nonsense", "not set up to give nonsense"),
+    *((name, solved(MACHINE, friction=RUBBING), "O", "no friction, but there is some in O") for name in (KANE, PAPERS)),
+    (NEWTON, solved(MACHINE), "nonsense", "give no nonsense"),
+    (NEWTON, solved(MACHINE), "cam_force", "give no cam_force"),
+    (PRINTED, solved(MACHINE), "O", "circular cam; crank-slider has none"),
     (PRINTED, solved(cam(OwnCam()), loads=[SPRING]), "O", "has the cam OwnCam"),
     (PRINTED, solved(cam(CIRCLE)), "O", "no spring"),
     (PRINTED, solved(SIX_BAR), "O", "circular cam; six-bar has none"),
@@ -113,8 +113,8 @@ MIXED = [
     ("two-mass coupler", solved(ks.crank_slider(0.1, 0.4, slider=ks.Link(5.0))), "O", "no coupler mass"),
     ("two-mass coupler", solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no coupler mass"),
     *((name, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "fan is a crank alone") for name in BY_TURN),
-    ("spectral differentiation", solved(PLAIN, TURN[:-1]), "O", "evenly over one turn"),
-    ("spectral differentiation", solved(PLAIN, TURN[:4] * 6), "O", "8 samples are more than the 4"),
+    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "evenly over one turn"),
+    ("spectral differentiation", solved(MACHINE, TURN[:4] * 6), "O", "8 samples are more than the 4"),
 ]  # fmt: skip
 
 

@@ -33,7 +33,7 @@ def test_machine_stops_against_opposing_loads(law, sense, until, friction):
 
 # What a program is told of the sense
 
-INDICATOR = ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, over="travel", back=[30.0, 0.0]))
+WORK = ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, over="travel", back=[30.0, 0.0]))
 
 
 @pytest.mark.slow
@@ -45,7 +45,7 @@ def test_jax_differentiates_with_a_given_sense(drive, friction):
 
     def torque(value, angle):
         motion = {"crank_speed": 2.0, "crank_acceleration": 1.0, drive: value}
-        return ks.solve(PRESS, angle, loads=INDICATOR, friction=friction, **motion).balancing_torque.sum()
+        return ks.solve(PRESS, angle, loads=WORK, friction=friction, **motion).balancing_torque.sum()
 
     with jax.enable_x64(True):
         slope = jax.grad(torque)(2.0, jax.numpy.array([0.5]))
@@ -57,9 +57,9 @@ def test_jax_differentiates_with_a_given_sense(drive, friction):
 def test_a_speed_of_jax_that_is_known_is_looked_at():
     jax = pytest.importorskip("jax")
     with pytest.raises(ks.ParameterError, match=r"give sense=\+1 or sense=-1"):
-        _ = ks.solve(PRESS, jax.numpy.array([0.5]), crank_speed=jax.numpy.array(0.0), loads=INDICATOR).balancing_torque
+        _ = ks.solve(PRESS, jax.numpy.array([0.5]), crank_speed=jax.numpy.array(0.0), loads=WORK).balancing_torque
     with pytest.raises(ks.ParameterError, match="sense is for a crank at rest"):
-        ks.solve(PRESS, jax.numpy.array([0.5]), crank_speed=jax.numpy.array(3.0), sense=-1, loads=INDICATOR)
+        ks.solve(PRESS, jax.numpy.array([0.5]), crank_speed=jax.numpy.array(3.0), sense=-1, loads=WORK)
 
 
 DERIVED = {
@@ -71,7 +71,7 @@ DERIVED = {
 @pytest.mark.parametrize("name", DERIVED)
 def test_nothing_is_derived_by_the_sense(name):
     """It is one of two; a slope between them was told: 0.29 N m a unit of it."""
-    scene = ks.Scene(PRESS, 0.0, loads=INDICATOR, friction=RUBS, sense=-1)
+    scene = ks.Scene(PRESS, 0.0, loads=WORK, friction=RUBS, sense=-1)
     with pytest.raises(ks.ParameterError, match=r"no derivative by sense: it is \+1 or -1 and nothing between"):
         DERIVED[name](scene)
     slopes = ks.compile(scene, "balancing_torque").derivatives(0.5)["balancing_torque"]

@@ -10,7 +10,7 @@ from kinetostatics.machine.group import RESERVED
 from kinetostatics.mechanics.quantities import of_mechanism
 from support.every import every
 
-NAMES = (
+WORDS = (
     *(
         "A",
         "A2",
@@ -37,10 +37,10 @@ COUNTS |= {"yoke": (2, 1, 6), "pin": (0, 1, 0)}
 
 
 def group(kind, choose):
-    on, pin, label = choose(("A", "A", "B", "C", "O2")), choose(NAMES), choose(LABELS)
+    on, pin, label = choose(("A", "A", "B", "C", "O2")), choose(WORDS), choose(LABELS)
     make = {
         "slider": lambda: ks.SliderGroup(1.0, on=on, pin=pin, label=label),
-        "rocker": lambda: ks.RockerGroup(0.4, 0.3, (0.3, 0.1), on=on, pin=pin, pivot_name=choose(NAMES), label=label),
+        "rocker": lambda: ks.RockerGroup(0.4, 0.3, (0.3, 0.1), on=on, pin=pin, pivot_name=choose(WORDS), label=label),
         "dyad": lambda: ks.Dyad(0.4, 0.3, (on, "O"), pin, label=label),
         "lever": lambda: ks.LeverGroup((0.3, 0.1), on=on, pivot_name=pin, label=label),
         "cylinder": lambda: ks.CylinderGroup((0.3, 0.1), on=on, pivot_name=pin, label=label),

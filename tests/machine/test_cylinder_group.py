@@ -9,19 +9,19 @@ from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT
 from kinetostatics.studies.methods.high_precision.certified import differences, enclosure, relative_errors
 
-R, PIVOT = 0.1, (0.05, -0.35)
+CRANK, PIVOT = 0.1, (0.05, -0.35)
 ANGLES = np.linspace(0.1, 6.2, 9)
 ROD, CYLINDER = ks.Link(1.5, (0.15, 0.01), 0.05), ks.Link(3.0, (0.1, -0.02), 0.04)
 LOADS = [ks.Gravity(9.81, -1.2)]
 
 
-def solve(*parts, angles=ANGLES, **options):
-    made = ks.Mechanism("oscillating engine", ks.Crank(R), parts)
+def solve_engine(*parts, angles=ANGLES, **options):
+    made = ks.Mechanism("oscillating engine", ks.Crank(CRANK), parts)
     return ks.solve(made, angles, **{"crank_speed": 20.0, "crank_acceleration": 5.0, "loads": LOADS} | options)
 
 
 def test_cylinder_moves_as_a_slotted_lever():
-    cylinder, lever = solve(ks.CylinderGroup(PIVOT)), solve(ks.LeverGroup(PIVOT))
+    cylinder, lever = solve_engine(ks.CylinderGroup(PIVOT)), solve_engine(ks.LeverGroup(PIVOT))
     for link in ("rod", "cylinder"):
         assert np.array_equal(cylinder.rate(link), lever.rate("lever"))
         assert np.array_equal(cylinder.angular_acceleration(link), lever.angular_acceleration("lever"))
@@ -33,24 +33,24 @@ def test_cylinder_moves_as_a_slotted_lever():
 
 def test_its_length_is_by_the_law_of_cosines():
     d, lean = np.hypot(*PIVOT), np.arctan2(PIVOT[1], PIVOT[0])
-    expected = np.sqrt(R**2 + d**2 - 2 * R * d * np.cos(ANGLES - lean))
-    assert np.max(np.abs(solve(ks.CylinderGroup(PIVOT)).measure("cylinder_length") - expected)) < 1e-15
+    expected = np.sqrt(CRANK**2 + d**2 - 2 * CRANK * d * np.cos(ANGLES - lean))
+    assert np.max(np.abs(solve_engine(ks.CylinderGroup(PIVOT)).measure("cylinder_length") - expected)) < 1e-15
 
 
 def test_a_cylinder_of_no_mass_bears_no_couple():
-    s = solve(ks.CylinderGroup(PIVOT, rod=ROD))
+    s = solve_engine(ks.CylinderGroup(PIVOT, rod=ROD))
     assert np.all(s.scalar("cylinder_moment") == 0.0)
     assert np.max(np.abs(s.scalar("cylinder_force"))) > 1.0
 
 
-def test_pin_meeting_the_pivot_warns():
+def test_a_cylinder_pin_at_its_pivot_warns():
     with pytest.warns(ConditionWarning, match="at crank angle 0 deg .* near a limit position"):
-        solve(ks.CylinderGroup((R, 0.0)), angles=np.array([0.0, 1.0]))
+        solve_engine(ks.CylinderGroup((CRANK, 0.0)), angles=np.array([0.0, 1.0]))
 
 
 def test_requirement_tells_the_distances():
     group = ks.CylinderGroup(PIVOT)
-    placement = ks.Mechanism("engine", ks.Crank(R), (group,)).place(ANGLES)
+    placement = ks.Mechanism("engine", ks.Crank(CRANK), (group,)).place(ANGLES)
     words = group.requirement(placement)
     assert words.startswith("the distance from A to O2, 0.2")
     assert words.endswith("must be greater than zero")

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 
-TURN = 2 * np.pi * np.arange(72) / 72
+AROUND = 2 * np.pi * np.arange(72) / 72
 ROD = ks.Link(2.0, (0.2, 0.05), 0.03)
 
 
@@ -16,7 +16,7 @@ def mechanism(**changes):
     return ks.crank_slider(**values)
 
 
-def solve(made=None, angle=TURN, **changes):
+def solve(made=None, angle=AROUND, **changes):
     return ks.solve(made or mechanism(), angle, **{"crank_speed": 5.0, "loads": ks.Gravity()} | changes)
 
 
@@ -41,7 +41,16 @@ def test_angles_in_degrees_are_hinted_at(angles):
 
 @pytest.mark.parametrize(
     "angles",
-    [TURN, 10 * TURN, np.arange(7.0), np.arange(0, 100, 0.1), np.linspace(0, 50, 101), 100.0, [3.0, 90.0], TURN - 100],
+    [
+        AROUND,
+        10 * AROUND,
+        np.arange(7.0),
+        np.arange(0, 100, 0.1),
+        np.linspace(0, 50, 101),
+        100.0,
+        [3.0, 90.0],
+        AROUND - 100,
+    ],
 )
 def test_angles_in_radians_are_not(angles):
     with warnings.catch_warnings():

@@ -11,8 +11,8 @@ from support.every import every
 
 CRANK, COUPLER, ROCKER = 0.085, 0.512, 0.3
 AWAY, BESIDE = 0.6, 0.35
-TURN = np.linspace(0.0, 2 * np.pi, 240, endpoint=False) + 0.007
-SIDES = {"right": (1, 1), "left": (-1, 1), "right, upside down": (1, -1), "left, upside down": (-1, -1)}
+AROUND = np.linspace(0.0, 2 * np.pi, 240, endpoint=False) + 0.007
+PRESSES = {"right": (1, 1), "left": (-1, 1), "right, upside down": (1, -1), "left, upside down": (-1, -1)}
 
 
 def press(away=AWAY, beside=BESIDE, coupler=COUPLER, way=(1, 1), axis=0, off=0.0, guide=None, on="B"):
@@ -32,15 +32,15 @@ def plainly(mechanism):
 
 
 def directions(mechanism):
-    return ks.Scene(mechanism, 6.0).solve(TURN).dynamics.placement.links["rocker"].direction
+    return ks.Scene(mechanism, 6.0).solve(AROUND).dynamics.placement.links["rocker"].direction
 
 
 @pytest.mark.slow
-@every("side, axis", [(side, axis) for side in SIDES for axis in (0, 1)])
+@every("side, axis", [(side, axis) for side in PRESSES for axis in (0, 1)])
 def test_toggle_pin_is_off_its_line_by_lengths(side, axis, flint):
-    mechanism = press(way=SIDES[side], axis=axis)
+    mechanism = press(way=PRESSES[side], axis=axis)
     assert mechanism.groups[0].knuckle == "xy"[axis]
-    exact = on_arb(flint.arb, ks.Scene(mechanism, 6.0).solve(TURN)).placement.links["rocker"].direction[axis]
+    exact = on_arb(flint.arb, ks.Scene(mechanism, 6.0).solve(AROUND)).placement.links["rocker"].direction[axis]
     straight = np.abs(exact.astype(float)) < 0.1
     known, plain = (
         np.max(np.abs(differences(directions(made)[axis], [exact])[0])[straight])

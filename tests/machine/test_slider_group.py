@@ -6,20 +6,20 @@ import pytest
 import kinetostatics as ks
 
 TURN = np.linspace(0.05, 2 * np.pi, 25)
-R, L, E = 0.1, 0.4, 0.03
+CRANK, L, E = 0.1, 0.4, 0.03
 
 
 @pytest.mark.parametrize("assembly", [1, -1])
 def test_position_and_velocity_are_the_closed_form(assembly):
-    s = ks.solve(ks.crank_slider(R, L, guide_offset=E, assembly=assembly), TURN, crank_speed=3.0)
-    root = np.sqrt(L**2 - (E - R * np.sin(TURN)) ** 2)
-    assert s.slider_position == pytest.approx(R * np.cos(TURN) + assembly * root, rel=1e-14)
-    slope = -R * np.sin(TURN) + assembly * (E - R * np.sin(TURN)) * R * np.cos(TURN) / root
+    s = ks.solve(ks.crank_slider(CRANK, L, guide_offset=E, assembly=assembly), TURN, crank_speed=3.0)
+    root = np.sqrt(L**2 - (E - CRANK * np.sin(TURN)) ** 2)
+    assert s.slider_position == pytest.approx(CRANK * np.cos(TURN) + assembly * root, rel=1e-14)
+    slope = -CRANK * np.sin(TURN) + assembly * (E - CRANK * np.sin(TURN)) * CRANK * np.cos(TURN) / root
     assert s.slider_velocity == pytest.approx(3.0 * slope, abs=1e-14)
 
 
 def test_a_massless_coupler_is_a_two_force_member():
-    s = ks.solve(ks.crank_slider(R, L, slider=ks.Link(2.0)), TURN, crank_speed=30.0, loads=ks.Gravity())
+    s = ks.solve(ks.crank_slider(CRANK, L, slider=ks.Link(2.0)), TURN, crank_speed=30.0, loads=ks.Gravity())
     rod, force = s.position("B") - s.position("A"), s.reaction("B")
     assert np.abs(rod[0] * force[1] - rod[1] * force[0]).max() < 1e-13 * np.abs(force).max()
     assert s.guide_force - 2.0 * 9.81 == pytest.approx(force[1] * np.sign(force[1] * (s.guide_force - 19.62)), abs=1e-9)

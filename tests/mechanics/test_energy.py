@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 
-ANGLES = np.linspace(0.05, 6.2, 23)
+AROUND = np.linspace(0.05, 6.2, 23)
 LINKS = {"crank": ks.Link(3.0, (0.1, 0.04), 0.2), "coupler": ks.Link(7.0, (0.4, -0.06), 0.9)}
 POTENTIALS = (
     ks.Gravity(9.81, -1.2),
@@ -35,7 +35,7 @@ def cam():
 @pytest.mark.parametrize("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
 @pytest.mark.parametrize("engine", ["numpy", "kernels"])
 def test_reduced_inertia_makes_up_the_torque(scene, engine):
-    s = scene.solve(ANGLES)
+    s = scene.solve(AROUND)
     s = s.dynamics if engine == "kernels" else s
     whole = s.reduced_inertia * scene.crank_acceleration
     whole = whole + s.reduced_inertia_slope * scene.crank_speed**2 / 2 + s.load_torque
@@ -55,7 +55,7 @@ def test_energies_are_integrals_of_torque_and_slope(scene):
 
 def test_kinetic_energy_is_of_mass_centres_and_rates():
     scene = bar()
-    s = scene.solve(ANGLES)
+    s = scene.solve(AROUND)
     found = sum(
         0.5 * link.mass * np.sum(s.velocity(name) ** 2, axis=0) + 0.5 * link.inertia * s.rate(name) ** 2
         for name, link in scene.mechanism.links.items()
@@ -73,9 +73,9 @@ def test_energies_are_outputs_outside_tables():
 
 
 def test_machine_without_mass_has_no_energy():
-    s = ks.solve(ks.crank_slider(0.1, 0.4), ANGLES, crank_speed=5.0)
+    s = ks.solve(ks.crank_slider(0.1, 0.4), AROUND, crank_speed=5.0)
     for name in ("reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "potential_energy", "load_torque"):
-        assert np.array_equal(getattr(s, name), np.zeros(ANGLES.size)), name
+        assert np.array_equal(getattr(s, name), np.zeros(AROUND.size)), name
 
 
 @pytest.mark.parametrize("speed", [7.0, -7.0])

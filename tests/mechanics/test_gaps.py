@@ -11,7 +11,7 @@ from kinetostatics.mechanics.quantities import of_scene
 from support.every import every
 
 BODY, NONE = ks.Link(1.0, 0.02, 0.004), ks.Link()
-TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+AROUND = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
 
 def short_slider(on, body, **options):
@@ -85,13 +85,13 @@ def computed(scene, angles):
 @pytest.mark.filterwarnings("ignore:crank angles are in single precision")
 def test_dependents_of_a_gap_have_no_value(machine, inner, outer, loads):
     scene = made(machine, inner, outer, loads)
-    s = scene.solve(TURN, on_gap="nan")
+    s = scene.solve(AROUND, on_gap="nan")
     open_ = np.any([margin < 0.0 for margin in s.closure], axis=0)
-    assert 0 < open_.sum() < TURN.size
+    assert 0 < open_.sum() < AROUND.size
     np.testing.assert_array_equal(s.closed, ~open_)
-    for way, found in computed(scene, TURN):
+    for way, found in computed(scene, AROUND):
         for name, values in found.items():
-            finite = np.isfinite(values).reshape(-1, TURN.size).all(axis=0)
+            finite = np.isfinite(values).reshape(-1, AROUND.size).all(axis=0)
             assert finite[~open_].all(), (way, name)
             assert (finite[open_] == (name in STAYING[machine])).all(), (way, name)
 
@@ -100,7 +100,7 @@ def test_dependents_of_a_gap_have_no_value(machine, inner, outer, loads):
 def test_a_compiled_loop_has_the_gaps_of_numpy(numba):
     scene = made(yoke, NONE, NONE)
     names = tuple(of_scene(scene))
-    found, expected = (ks.compile(scene, names, engine=engine)(TURN) for engine in ("compiled", "numpy"))
+    found, expected = (ks.compile(scene, names, engine=engine)(AROUND) for engine in ("compiled", "numpy"))
     for name in names:
         np.testing.assert_array_equal(np.isnan(found[name]), np.isnan(expected[name]), name)
 
@@ -108,7 +108,9 @@ def test_a_compiled_loop_has_the_gaps_of_numpy(numba):
 def test_groups_beside_a_gap_keep_their_values():
     inner, outer = vee(BODY, BODY)
     both, alone = (
-        ks.Scene(ks.Mechanism("engine", ks.Crank(0.05, BODY), groups), 7.0, 3.0, ks.Gravity()).solve(TURN, on_gap="nan")
+        ks.Scene(ks.Mechanism("engine", ks.Crank(0.05, BODY), groups), 7.0, 3.0, ks.Gravity()).solve(
+            AROUND, on_gap="nan"
+        )
         for groups in ((inner, outer), (inner,))
     )
     for name in STAYING[vee]:
@@ -119,7 +121,7 @@ def test_groups_beside_a_gap_keep_their_values():
 def test_friction_has_the_gaps_of_its_forces(machine):
     """Of the first group a cylinder's joint stays beside the other's gap, a rocker's that carries it does not."""
     pin = ks.PinFriction(0.1, 0.01)
-    s = replace(made(machine), friction={"O": pin, "A": pin, "C": pin}).solve(TURN, on_gap="nan")
+    s = replace(made(machine), friction={"O": pin, "A": pin, "C": pin}).solve(AROUND, on_gap="nan")
     for name, stays in (("A", machine is vee), ("C", False), ("O", False)):
         for found in (s.friction_at(name), s.friction_loss_at(name)):
             np.testing.assert_array_equal(np.isfinite(found), s.closed | stays)
@@ -130,10 +132,10 @@ def test_friction_has_the_gaps_of_its_forces(machine):
 def test_jax_derivatives_are_finite_outside_gaps(double):
     """Beside a gap nothing of it comes into what is differentiated."""
     mechanism = made(vee, outer=NONE).mechanism
-    closed = ks.solve(mechanism, TURN, crank_speed=7.0, on_gap="nan").closed
+    closed = ks.solve(mechanism, AROUND, crank_speed=7.0, on_gap="nan").closed
 
     def torques(speed):
-        s = ks.solve(mechanism, double.numpy.asarray(TURN), crank_speed=speed, on_gap="nan")
+        s = ks.solve(mechanism, double.numpy.asarray(AROUND), crank_speed=speed, on_gap="nan")
         return s.balancing_torque_by_power
 
     slope = np.asarray(double.jacfwd(torques)(7.0))

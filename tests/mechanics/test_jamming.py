@@ -7,12 +7,12 @@ import kinetostatics as ks
 from kinetostatics.mechanics import jamming
 
 PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
-TURN = np.linspace(0.1, 2 * np.pi, 30)
+AROUND = np.linspace(0.1, 2 * np.pi, 30)
 
 
 def solved(mu, **options):
     loads, friction = (ks.Gravity(), ks.ProcessForce(500.0)), {"guide": ks.GuideFriction(mu)}
-    return ks.solve(PUMP, TURN, crank_speed=3.0, loads=loads, friction=friction, **options)
+    return ks.solve(PUMP, AROUND, crank_speed=3.0, loads=loads, friction=friction, **options)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
@@ -21,8 +21,8 @@ def test_a_rod_within_the_friction_angle_jams():
     assert np.isfinite(solved(1.7).balancing_torque).all()
     with pytest.raises(ks.errors.JammingError, match="friction jams at") as caught:
         solved(2.5)
-    slope = np.abs(np.sin(TURN)) / np.sqrt(4.0 - np.sin(TURN) ** 2)
-    assert set(caught.value.angles) <= set(TURN[2.5 * slope >= 1.0].tolist())
+    slope = np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2)
+    assert set(caught.value.angles) <= set(AROUND[2.5 * slope >= 1.0].tolist())
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
@@ -33,7 +33,7 @@ def test_it_is_left_open_where_asked():
 
 @pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
 def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
-    s = ks.solve(PUMP, TURN, crank_speed=speed, crank_acceleration=acceleration)
+    s = ks.solve(PUMP, AROUND, crank_speed=speed, crank_acceleration=acceleration)
     assert bool(jamming.problem_at_rest(s)) == stands
 
 
@@ -72,7 +72,7 @@ def states(kappa, free):
 def test_the_margin_of_a_guide_decides_uniqueness():
     s = solved(2.5, on_gap="nan")
     kappa = 1.0 - s.friction_margin
-    assert kappa == pytest.approx(2.5 * np.abs(np.sin(TURN)) / np.sqrt(4.0 - np.sin(TURN) ** 2), rel=1e-12)
+    assert kappa == pytest.approx(2.5 * np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2), rel=1e-12)
     for size, jams in zip(kappa, np.isnan(s.balancing_torque), strict=True):
         counts = {len(states(way * size, free)) for way in (1.0, -1.0) for free in (1.0, -1.0)}
         assert counts == ({0, 2} if jams else {1})

@@ -11,8 +11,8 @@ from kinetostatics.explain.pages import STYLE
 from support.chains import chain
 from support.friction_machines import Drawn
 
-R, L, MASS, SPEED, ANGLE = 0.05, 0.2, 1.5, 100.0, 0.7
-PUMP = ks.solve(ks.crank_slider(R, L, slider=ks.Link(MASS)), 0.0, crank_speed=SPEED)
+R, L, MASS, PUMP_SPEED, ANGLE = 0.05, 0.2, 1.5, 100.0, 0.7
+PUMP = ks.solve(ks.crank_slider(R, L, slider=ks.Link(MASS)), 0.0, crank_speed=PUMP_SPEED)
 TOLD = PUMP.explain("balancing_torque", ANGLE)
 
 
@@ -26,7 +26,7 @@ def test_explanation_is_the_textbook_calculation():
     ratio = -R * cos(ANGLE) / (L * cos(beta))
     slope = (R * sin(ANGLE) + L * sin(beta) * ratio**2) / (L * cos(beta))
     acceleration = -R * cos(ANGLE) - L * cos(beta) * ratio**2 - L * sin(beta) * slope
-    along = MASS * SPEED**2 * acceleration
+    along = MASS * PUMP_SPEED**2 * acceleration
     across = along * sin(beta) / cos(beta)
     torque = R * cos(ANGLE) * across - R * sin(ANGLE) * along
     for symbol, wanted in {

@@ -12,7 +12,7 @@ import kinetostatics as ks
 from kinetostatics.solution.certainty import Terms, second_order_effects
 from support.every import every
 
-TURN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
+AROUND = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 FOLDING = ks.crank_slider(0.3, 0.3001, slider=ks.Link(1.0))
 
@@ -31,7 +31,7 @@ def told(machine, angles, quantity, inputs):
 @every("inputs", [{"crank_length": 1e-4, "slider.mass": 2.0, "guide_offset": 1e-4}, {"guide_offset": 1e-4}, {}])
 def test_ordinary_machines_are_of_first_order(quantity, inputs):
     """Also where the first order vanishes at some angle, as of the guide's offset at the dead centres."""
-    assert told(SAW, TURN, quantity, inputs) == []
+    assert told(SAW, AROUND, quantity, inputs) == []
 
 
 def orders(text):
@@ -65,7 +65,7 @@ def test_value_without_first_order_is_reported():
 
 def test_designs_of_a_batch_are_told_together():
     batch = ks.crank_slider(0.3, np.array([[2.0], [0.3001]]), slider=ks.Link(1.0))
-    (text,) = told(batch, TURN, "O", {"crank_length": 1e-5})
+    (text,) = told(batch, AROUND, "O", {"crank_length": 1e-5})
     assert "of 240 crank angles" in text
 
 

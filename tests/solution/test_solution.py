@@ -10,28 +10,28 @@ TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 
 
-def solved(angle=TURN, **change):
+def balanced_pump(angle=TURN, **change):
     return ks.solve(SAW, angle, **{"crank_speed": 33.5, "loads": [ks.Gravity()], **change})
 
 
 def test_torque_by_power_computes_no_reaction(monkeypatch):
-    expected = solved().balancing_torque
+    expected = balanced_pump().balancing_torque
 
     def refuse(*_):
         raise AssertionError("forces were resolved")
 
     monkeypatch.setattr(Mechanism, "resolve", refuse)
-    np.testing.assert_allclose(solved().balancing_torque_by_power, expected, atol=1e-9)
+    np.testing.assert_allclose(balanced_pump().balancing_torque_by_power, expected, atol=1e-9)
 
 
 def test_motion_and_shaking_force_compute_no_reaction(monkeypatch):
     monkeypatch.setattr(Mechanism, "resolve", None)
-    solution = solved()
+    solution = balanced_pump()
     assert solution.position("B").shape == solution.shaking_force.shape == (2, TURN.size)
 
 
 def test_standing_mechanism_is_in_static_equilibrium():
-    standing = solved(crank_speed=0.0)
+    standing = balanced_pump(crank_speed=0.0)
     work = 150 * 9.81 * standing.at(TURN).position("coupler")[1]
     slope = np.fft.irfft(1j * np.arange(TURN.size // 2 + 1) * np.fft.rfft(work), TURN.size)
     np.testing.assert_allclose(standing.balancing_torque, slope, atol=1e-6)
@@ -40,7 +40,7 @@ def test_standing_mechanism_is_in_static_equilibrium():
 
 def test_power_residual_shows_a_torque_that_is_wrong(monkeypatch):
     monkeypatch.setattr(ks.Solution, "balancing_torque", property(lambda s: s.scalar("balancing_torque") + 1.0))
-    solution = solved()
+    solution = balanced_pump()
     assert solution.power_residual == pytest.approx(1.0 / solution.largest_torque_term, rel=1e-9)
     assert 1e-5 < solution.power_residual < 1e-4
 
@@ -85,7 +85,7 @@ def test_sliders_that_move_are_not_warned_of(mechanism):
 
 
 def test_a_single_crank_angle_gives_single_values():
-    solution = solved(0.5)
+    solution = balanced_pump(0.5)
     assert solution.balancing_torque.shape == ()
     assert solution.reaction("O").shape == (2,)
     assert solution.power_residual < 1e-14
@@ -93,7 +93,7 @@ def test_a_single_crank_angle_gives_single_values():
 
 def test_results_are_read_only_and_stay():
     turn = TURN.copy()
-    solution = solved(turn)
+    solution = balanced_pump(turn)
     before = solution.guide_force.copy()
     turn[:] = 0.0
     np.testing.assert_array_equal(solution.at(TURN).guide_force, before)
@@ -102,7 +102,7 @@ def test_results_are_read_only_and_stay():
 
 
 def test_integer_angles_do_not_truncate_results():
-    np.testing.assert_array_equal(solved(np.arange(4)).rate("crank"), np.full(4, 33.5))
+    np.testing.assert_array_equal(balanced_pump(np.arange(4)).rate("crank"), np.full(4, 33.5))
 
 
 # A scene
@@ -143,12 +143,12 @@ def test_scene_and_solution_print_in_a_line():
 
 
 def test_frame_has_a_row_an_angle_with_units():
-    table = solved().frame()
+    table = balanced_pump().frame()
     assert len(table) == TURN.size
     assert all(name.endswith("]") for name in table.columns)
     np.testing.assert_allclose(table["crank_angle [deg]"], np.arange(0, 360, 15))
-    np.testing.assert_array_equal(table["balancing_torque [N m]"], solved().balancing_torque)
-    np.testing.assert_array_equal(table["reaction_O_x [N]"], solved().reaction("O")[0])
+    np.testing.assert_array_equal(table["balancing_torque [N m]"], balanced_pump().balancing_torque)
+    np.testing.assert_array_equal(table["reaction_O_x [N]"], balanced_pump().reaction("O")[0])
 
 
 def test_frame_of_a_batch_numbers_its_designs():

@@ -9,13 +9,13 @@ from kinetostatics.views import canvas, peaks
 from kinetostatics.views.peaks import with_peaks
 from support.every import every
 
-TURN = np.radians(np.arange(0.0, 360.0, 0.5))
+HALF_DEGREES = np.radians(np.arange(0.0, 360.0, 0.5))
 SHORT = ks.crank_slider(0.3, 0.25, coupler=ks.Link(5.0, 0.1, 0.05), slider=ks.Link(60.0))
 LONG = ks.crank_slider(0.3, 0.9, slider=ks.Link(60.0))
 
 
 def solved(mechanism, speed=7.0, **options):
-    return ks.solve(mechanism, TURN, crank_speed=speed, on_gap="nan", **options)
+    return ks.solve(mechanism, HALF_DEGREES, crank_speed=speed, on_gap="nan", **options)
 
 
 def shades(ax):

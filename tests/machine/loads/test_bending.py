@@ -8,7 +8,7 @@ import kinetostatics as ks
 from kinetostatics.machine.loads.table_pieces import STRAIGHT, bending
 from support.every import every
 
-TURN = 2 * np.pi
+FULL_TURN = 2 * np.pi
 FINE = np.linspace(0.1, 0.3, 1101)
 UNEVEN = 0.1 + 5.0 * (FINE - 0.1) ** 2
 
@@ -22,7 +22,7 @@ def along(x, y, back=None):
 
 
 def waves(count, start=0.0):
-    x = start + np.linspace(0.0, TURN, count, endpoint=False)
+    x = start + np.linspace(0.0, FULL_TURN, count, endpoint=False)
     return x, 2e3 * np.exp(np.cos(x - 0.7)) + 300.0 * np.sin(3.0 * x)
 
 
@@ -34,7 +34,7 @@ SMOOTH = {
     "line": along([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]),
     "line with rows close together": along([0.1, 0.2, 0.2 + 1e-7, 0.2 + 2e-7, 0.3], np.full(5, 7.0)),
     "nothing": along(FINE, 0.0 * FINE),
-    "two turns": ks.Table(2.0 * waves(2200)[0], waves(2200)[1], period=2 * TURN),
+    "two turns": ks.Table(2.0 * waves(2200)[0], waves(2200)[1], period=2 * FULL_TURN),
 }
 
 
