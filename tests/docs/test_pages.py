@@ -1,11 +1,16 @@
-"""Every page is found, its links lead somewhere, its code is run by the build; the first page keeps its promise."""
+"""Pages, notebooks and references of the documentation."""
 
 import re
+import tomllib
+import types
 
 import numpy as np
 import pytest
 
-from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, shown_code, text_of
+import kinetostatics as ks
+from kinetostatics.casefile import schema
+from kinetostatics.casefile.schema import MechanismVariant
+from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, script, shown_code, text_of
 
 PAGES = pages()
 LINES = 15
@@ -85,3 +90,85 @@ def test_certainty_page_says_what_its_code_finds(capsys):
     assert f"{s.balancing_torque[peak]:.0f} N m +- " in printed
     single, double = (float(line.split(" +- ")[1]) for line in sorted(printed.splitlines()[-3:-1], reverse=True))
     assert double < 1e-10 < 1e-3 < single
+
+
+# Every public name stands on one page of the API reference, and no other does
+
+
+def listed():
+    """Names that the pages list, with how often."""
+    texts = [text_of(path) for name, path in pages().items() if name.startswith("api/")]
+    blocks = [block for text in texts for block in re.findall(r"```\{api\}\n(.*?)```", text, flags=re.DOTALL)]
+    return [line for block in blocks for line in block.split() if not line.startswith(":")]
+
+
+def public():
+    """Names as users call them, without the ``ks.``; a name called in two ways by the shorter one."""
+    modules = {name: found for name in ks.__all__ if isinstance(found := getattr(ks, name), types.ModuleType)}
+    short = [name for name in ks.__all__ if name not in modules]
+    objects = {id(getattr(ks, name)) for name in short if isinstance(getattr(ks, name), type)}
+    deep = [
+        f"{module}.{name}"
+        for module, found in modules.items()
+        for name in found.__all__
+        if id(getattr(found, name)) not in objects
+    ]
+    return short + deep
+
+
+def test_each_public_name_stands_on_one_page():
+    assert sorted(listed()) == sorted(public())
+
+
+# Notebooks are kept as they were run, with pictures, and small; that they run is for ``.ci/run``
+
+NOTEBOOKS = script("execute_notebooks")
+
+
+@pytest.mark.parametrize("path", sorted(NOTEBOOKS.FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebook_is_kept_with_its_outputs(path):
+    assert not list(NOTEBOOKS.problems(path)), "run: python docs/execute_notebooks.py " + path.stem
+
+
+# The case-file reference has every key of the schema, each with a meaning and an example that the schema takes
+
+KEYS = script("casefile_keys")
+PARTS = KEYS.parts_of_the_reference()
+MODELS = {title: model for title, model, _ in KEYS.sections.sections()}
+
+
+def test_every_table_of_a_case_file_has_a_section():
+    whole = KEYS.sections.reached([schema.CaseTable, *schema.VARIANTS.values(), *schema.designs.KINDS.values()])
+    told = set(MODELS.values()) - {MechanismVariant}
+    assert {model.__name__ for model in whole} == {model.__name__ for model in told}
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.title)
+def test_every_key_of_a_table_is_told_of(part):
+    elsewhere = set(MechanismVariant.model_fields) if part.title.startswith("Mechanism") else set()
+    assert {key.name for key in part.keys} | elsewhere >= set(MODELS[part.title].model_fields)
+    for key in part.keys:
+        assert key.meaning.endswith("."), key.name
+        assert key.takes, key.name
+        assert key.default, key.name
+        assert key.example, key.name
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.title)
+def test_examples_are_toml(part):
+    for key in part.keys:
+        assert tomllib.loads(key.example)
+
+
+def test_reference_links_lead_to_sections():
+    page = KEYS.page()
+    anchors = {part.anchor for part in PARTS}
+    assert len(anchors) == len(PARTS)
+    assert all(link.partition(")")[0] in anchors for link in page.split("](#")[1:])
+
+
+def test_documented_meanings_belong_to_known_keys():
+    keys = {
+        name for model in schema.MADE_OF for key in model.model_fields for name in (key, f"{KEYS.word_of(model)}.{key}")
+    }
+    assert set(KEYS.parts.MEANINGS) <= keys

@@ -1,11 +1,11 @@
-"""Groups, loads and tables of values in case files that are wrong: each named with file, key, and what is allowed."""
+"""Case files with faults in mechanisms, loads, designs or drives: each message names the key and the remedy."""
 
 import re
 
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
+from support.case_files import case_file, problems, saw_with
 from support.every import every
 
 HEAD = 'title = "t"\nreference = "a"\n'
@@ -307,3 +307,188 @@ def test_a_table_as_programs_write_them_is_read(tmp_path, name):
     entry = f'{{ file = "t.csv"{", " if options else ""}{options} }}'
     case = ks.load_case(case_file(tmp_path, HEAD + CHAIN + FORCE.replace('"1 N"', entry)))
     assert re.match("(angle|travel)", case.variant("a").loads[0].value.over)
+
+
+# Designs in case files that are wrong
+
+INTRO = '[design.one]\nkind = "optimum"\nvariant = "cam-circle"\n'
+VARY = 'vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"] }\n'
+AIM = 'minimise = "largest O"\n'
+CAM = '[design.one]\nkind = "torque-free-cam"\nvariant = "cam-cosine"\n'
+SPREADS = '"slider.mass" = "normal 0 % +- 1 %"'
+WRONG_DESIGNS = {
+    "no table": ("[design]\none = 3\n", "design.one must be a table of keys and values, found 3"),
+    "no kind": ("[design.one]\n", "design.one.kind is missing; allowed: 'optimum', 'torque-free-cam', 'front'"),
+    "kind misspelt": (
+        f"{INTRO}{VARY}{AIM}".replace("optimum", "optimun"),
+        "design.one.kind is 'optimun', allowed: 'optimum'",
+    ),
+    "key misspelt": (f"{INTRO}{VARY}{AIM}limit = []\n", "design.one.limit is not a key here; did you mean 'limits'?"),
+    "key of another kind": (f"{INTRO}{VARY}{AIM}cosine = 3\n", "design.one.cosine is not a key here"),
+    "nothing varies": (f"{INTRO}{AIM}", "design.one.vary is missing"),
+    "no aim": (f"{INTRO}{VARY}", "design.one needs either minimise or maximise"),
+    "variant not there": (
+        f'[design.one]\nkind = "optimum"\nvariant = "cam-circl"\n{VARY}{AIM}',
+        "design.one.variant is 'cam-circl', allowed: 'plain', 'cam-circle', 'cam-cosine'; did you mean 'cam-circle'?",
+    ),
+    "reference not there": (f'{INTRO}{VARY}{AIM}reference = "plane"\n', "design.one.reference is 'plane', allowed"),
+    "variant is itself": (
+        '[design.cam-circle]\nkind = "torque-free-cam"\nvariant = "cam-circle"\n',
+        "design.cam-circle.variant is what it is to find: give another",
+    ),
+    "number not there": (
+        f'{INTRO}{AIM}vary = {{ "spring.stifness" = ["6 N/m", "9 N/m"] }}\n',
+        "design.one.vary: parameter is 'spring.stifness', allowed",
+    ),
+    "bounds fall": (
+        f'{INTRO}{AIM}vary = {{ "spring.stiffness" = ["9 N/m", "6 N/m"] }}\n',
+        "design.one.vary: bounds of spring.stiffness must be (low, high), got ('9 N/m', '6 N/m'): they must be finite",
+    ),
+    "bounds of another unit": (
+        f'{INTRO}{AIM}vary = {{ "spring.stiffness" = ["9 N", "60 N"] }}\n',
+        '"N" does not measure the same as "N/m"',
+    ),
+    "output misspelt": (f'{INTRO}{VARY}minimise = "largest Q"\n', "design.one.minimise: cam-balanced crank-slider: "),
+    "output a place": (
+        f'{INTRO}{VARY}minimise = "largest_at O"\n',
+        "design.one.minimise: output 'largest_at O' is a pl",
+    ),
+    "limit of no form": (
+        f'{INTRO}{VARY}{AIM}limits = ["largest O < 3 kN"]\n',
+        "design.one.limits[1]: limit 'largest O < 3 kN' must be an output, a relation and a value",
+    ),
+    "limit of another unit": (
+        f'{INTRO}{VARY}{AIM}limits = ["mean O <= 3 kN", "largest O <= 3 m"]\n',
+        'design.one.limits[2]: limit \'largest O <= 3 m\': "m" does not measure the same as "N"',
+    ),
+    "no counterweight": (f'{CAM}counterweight = "0 kg"\n', "design.one: counterweight must be greater than 0, got 0.0"),
+    "limits a text": (
+        f'{INTRO}{VARY}{AIM}limits = "largest O <= 3 kN"\n',
+        "design.one.limits: input should be a valid t",
+    ),
+    "ratio to what the reference has not": (
+        f'{INTRO}{VARY}maximise = "ratio largest cam_force"\n',
+        "design.one.maximise: crank-slider: quantity is 'cam_force', allowed",
+    ),
+    "starts none": (f"{INTRO}{VARY}{AIM}starts = 0\n", "design.one.starts: input should be greater than or equal to 1"),
+    "starts a million": (f"{INTRO}{VARY}{AIM}starts = 1000000\n", "design.one.starts: input should be less than or"),
+    "seed below 0": (f"{INTRO}{VARY}{AIM}seed = -1\n", "design.one.seed: input should be greater than or equal to 0"),
+    "angles few": (f"{INTRO}{VARY}{AIM}angles = 3\n", "design.one.angles: input should be greater than or equal to 12"),
+    "harmonics none": (f"{CAM}cosine = 0\n", "design.one.cosine: input should be greater than or equal to 1, found 0"),
+    "harmonics half": (f"{CAM}sine = 2.5\n", "design.one.sine: input should be a valid integer"),
+    "ends one": (f'{CAM}ends = ["1.7 m"]\n', "design.one.ends must be a pair"),
+    "ends without unit": (f"{CAM}ends = [1.7, 2.3]\n", "design.one.ends must be text of a number and a unit"),
+    "counterweight below 0": (f'{CAM}counterweight = "-3 kg"\n', "design.one.counterweight must be at least 0 kg"),
+    "coupler spring on the wrong side": (
+        f'{CAM}coupler_spring = "90 deg"\n',
+        "design.one: coupler_spring, a free angle, must be negative, got 1.5708 rad",
+    ),
+    "quantile beyond 1": (
+        f"{CAM}robust = {{ quantile = 2.0, spreads = {{ {SPREADS} }} }}\n",
+        "design.one.robust is no spread: quantile must lie between 0 and 1, got 2.0",
+    ),
+    "spread of what is not there": (
+        f'{CAM}robust = {{ quantile = 0.1, spreads = {{ "slider.mas" = "normal 0 % +- 1 %" }} }}\n',
+        "design.one.robust.spreads: parameter is 'slider.mas', allowed",
+    ),
+    "spread of no form": (
+        f'{CAM}robust = {{ quantile = 0.1, spreads = {{ "slider.mass" = "1 %" }} }}\n',
+        "design.one.robust is no spread: cannot read '1 %' for slider.mass",
+    ),
+    "front of one": (f'[design.one]\nkind = "front"\n{VARY}minimise = ["largest O"]\n', "design.one.minimise: "),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_DESIGNS)
+def test_a_wrong_design_is_told_with_its_key(tmp_path, name):
+    text, message = WRONG_DESIGNS[name]
+    with pytest.raises(ks.CaseError) as caught:
+        ks.load_case(saw_with(text, tmp_path))
+    assert len(caught.value.problems) == 1
+    assert message in caught.value.problems[0]
+
+
+def test_problems_of_all_designs_are_told_at_once(tmp_path):
+    some = ("kind misspelt", "number not there", "limit of no form", "harmonics none", "quantile beyond 1")
+    text = "".join(
+        WRONG_DESIGNS[name][0].replace("[design.one", f"[design.{place}")
+        for place, name in zip("abcde", some, strict=True)
+    )
+    with pytest.raises(ks.CaseError) as caught:
+        ks.load_case(saw_with(text, tmp_path))
+    assert [problem.split(".")[1][0] for problem in caught.value.problems] == list("abcde")
+
+
+# Drives in case files that are wrong
+
+DRIVE_HEAD = """
+title = "t"
+reference = "a"
+[variants.a]
+mechanism = "crank-slider"
+crank_speed = "60 rpm"
+crank_length = "0.1 m"
+coupler_length = "0.4 m"
+[variants.a.drive]
+"""
+KLOSS = {
+    "kind": '"kloss"',
+    "power": '"55 kW"',
+    "speed": '"1475 rpm"',
+    "synchronous_speed": '"1500 rpm"',
+    "overload": "2.5",
+}
+
+
+def kloss(**other):
+    return f"motor = {{ {', '.join(f'{key} = {text}' for key, text in {**KLOSS, **other}.items())} }}"
+
+
+def table(speed, torque):
+    return f'motor = {{ kind = "table", speed = {speed}, torque = {torque} }}'
+
+
+MOTOR = "variants.a.drive.motor"
+WRONG_DRIVES = {
+    "empty": ("", f"{MOTOR} is missing"),
+    "motor no table": ('motor = "55 kW"', f"{MOTOR} must be a table with a kind, of 'kloss', 'linear'"),
+    "no kind": ("motor = {}", f"{MOTOR}.kind is missing; allowed: 'kloss', 'linear', 'constant', 'table'"),
+    "kind misspelt": (kloss(kind='"klos"'), f"{MOTOR}.kind is 'klos', allowed: 'kloss'"),
+    "key misspelt": (kloss(transmision="3"), "transmision is not a key here; did you mean 'transmission'?"),
+    "key of another kind": (kloss(torque='"1 N m"'), f"{MOTOR}.torque is not a key here"),
+    "key missing": ('motor = { kind = "linear", speed = "9 rad/s" }', f"{MOTOR}.torque is missing"),
+    "wrong unit": (kloss(power='"55 kN"'), f'{MOTOR}.power "kN" does not measure the same as "W"'),
+    "frequency for a speed": (kloss(speed='"25 Hz"'), f'{MOTOR}.speed "Hz" does not measure the same as "rad/s"'),
+    "no unit": (kloss(speed="1475"), f"{MOTOR}.speed must be text of a number and a unit that converts to rad/s"),
+    "power zero": (kloss(power='"0 W"'), f"{MOTOR}.power must be greater than 0 W, found '0 W'"),
+    "overload a text": (kloss(overload='"2.5"'), f"{MOTOR}.overload"),
+    "overload true": (kloss(overload="true"), f"{MOTOR}.overload"),
+    "overload below 1": (kloss(overload="0.5"), f"{MOTOR} is no motor: overload must be greater than 1, got 0.5"),
+    "slower than rated": (
+        kloss(synchronous_speed='"1400 rpm"'),
+        f"{MOTOR} is no motor: synchronous_speed must be greater than the rated speed",
+    ),
+    "no transmission": (kloss(transmission="0"), f"{MOTOR} is no motor: transmission must not be 0"),
+    "transmission infinite": (kloss(transmission="inf"), f"{MOTOR}.transmission"),
+    "transmission not a number": (kloss(transmission="nan"), f"{MOTOR}.transmission"),
+    "rotor negative": (kloss(inertia='"-1 kg m^2"'), f"{MOTOR}.inertia must be at least 0 kg m^2"),
+    "flywheel a mass": (f'{kloss()}\nflywheel = "1000 kg"', 'variants.a.drive.flywheel "kg" does not measure the same'),
+    "flywheel negative": (f'{kloss()}\nflywheel = "-1 kg m^2"', "variants.a.drive.flywheel must be at least 0 kg m^2"),
+    "constant of nothing": ('motor = { kind = "constant", torque = "0 N m" }', "is no motor: torque must not be 0"),
+    "rows no list": (table('"0 rpm"', '["1 N m"]'), f"{MOTOR}.speed must be a list such as"),
+    "rows empty": (table("[]", "[]"), f"{MOTOR}.speed must be a list such as"),
+    "rows of two lengths": (table('["0 rpm", "9 rpm"]', '["1 N m"]'), "must be of one length, 2 at least, got 2 and 1"),
+    "rows that fall": (table('["9 rpm", "0 rpm"]', '["1 N m", "0 N m"]'), "is no motor: speeds must rise"),
+    "row without unit": (table('["0 rpm", 9]', '["1 N m", "0 N m"]'), f"{MOTOR}.speed must be text of a number"),
+}
+
+
+@every(("text", "message"), WRONG_DRIVES.values(), ids=WRONG_DRIVES)
+def test_a_wrong_drive_is_named_with_its_key(tmp_path, text, message):
+    assert message in "\n".join(problems(tmp_path, DRIVE_HEAD + text))
+
+
+@pytest.mark.parametrize("text", ['"55 kW"', "true", "[]", "[{}]"])
+def test_a_drive_that_is_no_table_is_named(tmp_path, text):
+    (found,) = problems(tmp_path, DRIVE_HEAD.replace("[variants.a.drive]", f"drive = {text}"))
+    assert found.startswith("variants.a.drive")

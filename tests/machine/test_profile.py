@@ -1,4 +1,8 @@
-"""Working curves of cams: against circles, envelopes and curvature by other formulas; what cannot be cut is refused."""
+"""Cam profiles, their roller, and files for the workshop."""
+
+import re
+import sys
+import xml.etree.ElementTree as ET
 
 import mpmath as mp
 import numpy as np
@@ -7,6 +11,9 @@ from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
 import kinetostatics as ks
+from kinetostatics.machine.cams import roller
+from kinetostatics.numbers.files import read_columns
+from support.cam_contacts import CAM, LOADS, STEEL, rolled
 
 TURN = 2 * np.pi
 ANGLES = np.linspace(0.0, TURN, 97)
@@ -171,3 +178,190 @@ def test_base_circle_gives_the_largest_angle(name, degrees):
     radius, slope, _ = cam.radius(np.linspace(0.0, TURN, 100_001))
     moved = radius - radius.min() + base
     assert np.degrees(np.max(np.arctan(np.abs(slope) / moved))) == pytest.approx(degrees, rel=1e-7)
+
+
+# What the workshop is given
+
+CUT_CAM = ks.cams.CosineLaw(0.3, 2.0)
+GIVEN = {"roller_radius": 0.05, "cutter_radius": 0.02, "points": 500}
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("units", UNITS)
+def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
+    ezdxf = pytest.importorskip("ezdxf")
+    CUT_CAM.export(tmp_path / "cam.dxf", units=units, **GIVEN)
+    drawing = ezdxf.readfile(tmp_path / "cam.dxf")
+    made = CUT_CAM.profile(0.05, 500)
+    for layer, points in (("PITCH", made.pitch), ("SURFACE", made.surface), ("CUTTER", made.cutter_path(0.02))):
+        (line,) = drawing.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]')
+        assert line.closed
+        assert_allclose(
+            UNITS[units] * np.array([point[:2] for point in line.get_points()]).T, points, rtol=0, atol=1e-15
+        )
+    assert drawing.units == {"mm": 4, "cm": 5, "m": 6, "in": 1}[units]
+    texts = [text.dxf.text for text in drawing.modelspace().query("TEXT")]
+    assert any("roller goes around counter-clockwise" in text for text in texts)
+    assert "0" in texts
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_csv_gives_back_points_and_cam(tmp_path, units):
+    CUT_CAM.export(tmp_path / "cam.csv", units=units, **GIVEN)
+    names = dict.fromkeys(("roller_x", "roller_y", "surface_x", "surface_y", "cutter_x", "cutter_y", "radius"), "m")
+    columns = dict(zip(names, read_columns(tmp_path / "cam.csv", names), strict=True))
+    made = CUT_CAM.profile(0.05, 500)
+    for name, points in (("roller", made.pitch), ("surface", made.surface), ("cutter", made.cutter_path(0.02))):
+        assert_allclose([columns[f"{name}_x"], columns[f"{name}_y"]], points, rtol=0, atol=1e-15)
+    again = ks.cams.Sampled.from_csv(tmp_path / "cam.csv")
+    assert_allclose(again.radius(0.123)[2], CUT_CAM.radius(0.123)[2], atol=1e-9)
+
+
+def test_a_measured_cam_states_the_error_of_the_forces(tmp_path):
+    angle = np.radians(np.arange(360))
+    cam = ks.cams.Sampled(angle, np.round(CUT_CAM.radius(angle)[0], 6), noise=0.29e-6)
+    for ending in ("csv", "svg"):
+        cam.export(tmp_path / f"cam.{ending}", roller_radius=0.05, points=60)
+        assert "forces are uncertain by 0.0004" in (tmp_path / f"cam.{ending}").read_text(encoding="utf-8")
+
+
+def test_what_cannot_be_cut_leaves_the_file_as_it_was(tmp_path):
+    for name in ("cam.svg", "cam.csv"):
+        (tmp_path / name).write_text("as it was")
+        for wrong in ({"roller_radius": 0.4}, {"roller_radius": 0.05, "side": "ring", "cutter_radius": 0.4}):
+            with pytest.raises(ks.ParameterError, match=r"undercuts|does not fit"):
+                CUT_CAM.export(tmp_path / name, points=60, **wrong)
+        assert (tmp_path / name).read_text() == "as it was"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cam.csv", "cam.svg"]
+
+
+def test_a_dxf_without_ezdxf_names_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    with pytest.raises(ks.KinetostaticsError, match=r'pip install "kinetostatics\[workshop\]"'):
+        CUT_CAM.export(tmp_path / "cam.dxf", roller_radius=0.05, points=60)
+    assert not list(tmp_path.iterdir())
+
+
+# Drawings of cams
+
+
+def read_svg(path):
+    root = ET.parse(path).getroot()
+    return root, {"svg": "http://www.w3.org/2000/svg"}
+
+
+@pytest.mark.parametrize("side", ["disk", "ring"])
+def test_drawing_is_one_to_one(tmp_path, side):
+    CUT_CAM.export(tmp_path / "cam.svg", side=side, **GIVEN)
+    root, space = read_svg(tmp_path / "cam.svg")
+    left, top, width, height = map(float, root.get("viewBox").split())
+    assert root.get("width") == f"{width:.6g}mm"
+    assert root.get("height") == f"{height:.6g}mm"
+    path = root.find("svg:path[@id='surface']", space).get("d")
+    points = np.array(re.findall(r"(\S+) (\S+)(?= [LZ])", path), dtype=float).T * [[1e-3], [-1e-3]]
+    made = CUT_CAM.profile(0.05, 500, side)
+    assert_allclose(points, made.surface, rtol=0, atol=1e-9)
+    for x, y in 1e3 * made.surface.T:
+        assert left < x < left + width
+        assert top < -y < top + height
+
+
+def test_drawing_has_dimensions_and_rotation_mark(tmp_path):
+    CUT_CAM.export(tmp_path / "cam.svg", clockwise=True, **GIVEN)
+    root, space = read_svg(tmp_path / "cam.svg")
+    texts = [item.text for item in root.findall("svg:text", space)]
+    for expected in ("0° zero mark", "roller goes clockwise", "500 mm", "roller ⌀ 100 mm"):
+        assert expected in texts
+    assert "smallest R 278.095 mm at 0°" in texts
+    assert "largest R 321.905 mm at 180°" in texts
+
+
+# Rollers and faces as parts of a scene, and the pressure of Hertz
+
+ROLLER = (0.05, 0.06, *STEEL)
+
+
+def test_cam_material_defaults_to_the_rollers():
+    alike = ks.Roller(*ROLLER).modulus
+    assert ks.Roller(*ROLLER, cam_youngs_modulus=210e9, cam_poissons_ratio=0.3).modulus == alike
+    softer = ks.Roller(*ROLLER, cam_youngs_modulus=110e9)
+    assert softer.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.91 / 110e9), rel=1e-15)
+    assert ks.Face(0.06, *STEEL).modulus == alike
+
+
+WRONG = [
+    ({"radius": 0.0}, "roller: radius must be greater than 0"),
+    ({"width": -0.01}, "roller: width must be greater than 0"),
+    ({"youngs_modulus": 0.0}, "roller: youngs_modulus must be greater than 0"),
+    ({"poissons_ratio": -0.1}, "roller: poissons_ratio must be at least 0"),
+    ({"poissons_ratio": 0.6}, "roller: poissons_ratio must be at most 0.5, got 0.6"),
+    ({"cam_poissons_ratio": 30.0}, "roller: cam_poissons_ratio must be at most 0.5, got 30"),
+    ({"cam_youngs_modulus": "steel"}, "cam_youngs_modulus must be a number"),
+]
+
+
+def test_values_that_no_roller_has_are_refused():
+    given = dict(zip(("radius", "width", "youngs_modulus", "poissons_ratio"), ROLLER, strict=True))
+    for change, text in WRONG:
+        with pytest.raises(ks.ParameterError, match=re.escape(text)):
+            ks.Roller(**given | change)
+    with pytest.raises(ks.ParameterError, match="roller must be a Roller, got"):
+        ks.CamRoller(CAM, roller=0.05)
+    with pytest.raises(ks.ParameterError, match="face must be a Face, got"):
+        ks.FlatFollower(ks.laws.cosine(0.01, 0.05), face=ks.Roller(*ROLLER))
+
+
+def test_roller_numbers_have_paths():
+    scene = ks.Scene(rolled(), 33.5, loads=LOADS)
+    assert {path: scene.parameters[path] for path in scene.parameters if path.startswith("roller")} == dict(
+        zip(("roller.radius", "roller.width", "roller.youngs_modulus", "roller.poissons_ratio"), ROLLER, strict=True)
+    )
+    assert scene.units["roller.youngs_modulus"] == "Pa"
+    assert scene.varied({"roller.width": 0.1}).parameters["roller.width"] == 0.1
+    bare = ks.Scene(rolled(None), 33.5, loads=LOADS)
+    assert not any("roller" in path for path in bare.parameters)
+    with pytest.raises(ks.QuantityError, match=r"no contact pressure.*give its cam a roller"):
+        bare.solve(12).contact_pressure  # noqa: B018
+
+
+def test_friction_radius_must_be_the_rollers():
+    friction = {"cam": ks.RollerFriction(0.01, 0.02, 0.04)}
+    with pytest.raises(
+        ks.ParameterError, match=r"roller_radius of 'cam', 0\.04 m, must be that of the roller .* 0\.05 m"
+    ):
+        ks.Scene(rolled(), 33.5, loads=LOADS, friction=friction)
+    friction = {"cam": ks.RollerFriction(0.01, 0.02, 0.05)}
+    scene = ks.Scene(rolled(), 33.5, loads=LOADS, friction=friction)
+    assert scene.solve(36).contact_pressure.shape == (36,)
+    program = ks.compile(scene, "contact_pressure", engine="numpy")
+    with pytest.raises(ks.ParameterError, match="must be that of the roller"):
+        program(0.5, {"roller.radius": 0.06})
+
+
+def test_two_contacts_of_one_name_are_refused():
+    follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.5), roller=ks.Roller(*ROLLER))
+    with pytest.raises(ks.ParameterError, match="adds quantity 'contact_pressure' a second time"):
+        ks.Mechanism("both", ks.Crank(None), (ks.CamRoller(CAM, roller=ks.Roller(*ROLLER)), follower))
+
+
+# Line contact by Hertz
+
+
+STEEL_PAIR = roller.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+
+
+def test_equal_materials_have_half_a_plane_modulus():
+    assert pytest.approx(2.1e11 / 0.91 / 2.0, rel=1e-14) == STEEL_PAIR
+
+
+def test_pressure_ellipse_bears_the_force():
+    p, b = (part(-5e3, 0.02, STEEL_PAIR, 0.015) for part in (roller.pressure, roller.half_width))
+    assert 0.5 * np.pi * b * p * 0.02 == pytest.approx(5e3, rel=1e-14)
+    assert p / b == pytest.approx(STEEL_PAIR / (2.0 * 0.015), rel=1e-14)
+
+
+def test_roller_conforms_to_a_ring_not_a_disk():
+    disk, ring = roller.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
+    assert 1.0 / disk == pytest.approx(1.0 / 0.03 + 1.0 / 0.27, rel=1e-14)
+    assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)

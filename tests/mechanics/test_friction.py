@@ -1,13 +1,25 @@
-"""Friction: against Newton's equations of all bodies, closed forms, losses, jamming, engines, derivatives."""
+"""Friction: its equations, the passes that solve them, and jamming."""
 
 import itertools
 import warnings
+from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.mechanics import jamming
+from kinetostatics.mechanics.friction import (
+    Channel,
+    FrictionEquations,
+    FrictionLaw,
+    direction_of,
+    kink_functions,
+    larger,
+    size_of,
+    smaller,
+)
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
@@ -353,3 +365,160 @@ def test_jamming_at_change_points_is_reported():
         ks.extremes(between, "balancing_torque")
     with pytest.raises(ks.JammingError, match=r"^losses: four-bar: friction jams"):
         between.efficiency  # noqa: B018
+
+
+# Friction of one pair, and the equations of all friction of a part
+
+PASSES = 6
+PARTS = [(3.0, -4.0), (-3.0, None), (None, 2.0), (-1.0, 0.5), (2.0, 2.5)]
+SIZES = {"length": np.hypot, "larger": lambda a, b: max(abs(a), abs(b))}
+
+
+@pytest.mark.parametrize("parts", PARTS)
+@pytest.mark.parametrize("kind", SIZES)
+def test_factor_times_direction_times_parts(kind, parts):
+    law = FrictionLaw("B", 0.3, None, kind, ())
+    size = SIZES[kind](*(0.0 if part is None else part for part in parts))
+    assert size_of(kind, parts) == pytest.approx(size, rel=1e-15)
+    along = zip(direction_of(law, parts), parts, strict=True)
+    assert sum(one * other for one, other in along if other is not None) == pytest.approx(0.3 * size, rel=1e-15)
+
+
+def test_a_number_has_its_size_or_is_itself():
+    assert size_of("size", (-2.0,)) == 2.0
+    assert size_of("itself", (-2.0,)) == -2.0
+    assert direction_of(FrictionLaw("B", 0.3, None, "itself", ()), (-2.0,)) == (0.3,)
+    assert direction_of(FrictionLaw("B", 0.3, None, "size", ()), (-2.0,)) == (-0.3,)
+    assert size_of("length", (None, None)) is None
+
+
+def test_kinks_lie_where_a_size_or_the_larger_changes():
+    assert kink_functions("size", (-2.0,)) == [-2.0]
+    assert kink_functions("length", (3.0, 4.0)) == []
+    assert kink_functions("larger", (3.0, -4.0)) == [3.0, -4.0, -1.0]
+
+
+def test_larger_and_smaller_are_those_of_two():
+    assert (larger(2.0, -3.0), smaller(2.0, -3.0)) == (2.0, -3.0)
+
+
+def equations(factors, free, columns, kinds=None):
+    """Laws whose reactions are ``free + columns amounts``, each with a channel of its own, one way."""
+    names = [f"channel {number}" for number in range(len(factors))]
+    kinds = kinds or ["size"] * len(factors)
+
+    def reaction(place):
+        return lambda found: (found.values[place],)
+
+    laws = [
+        FrictionLaw(name, factor, reaction(place), kind, ((Channel(name), 1),))
+        for place, (name, factor, kind) in enumerate(zip(names, factors, kinds, strict=True))
+    ]
+    of = [SimpleNamespace(values=values) for values in (free, *np.transpose(columns).tolist())]
+    return FrictionEquations(laws, names, of[0], of[1:])
+
+
+@pytest.mark.parametrize(("load", "kappa"), [(3.0, 0.4), (-3.0, 0.4), (3.0, -0.4), (-3.0, -0.4)])
+def test_one_force_is_its_closed_form(load, kappa):
+    """N = N0 + kappa mu |N|."""
+    made = equations([0.5], [load], [[kappa]])
+    (amount,) = made.solve(PASSES, 0.0)
+    normal = load / (1.0 - 0.5 * kappa * np.sign(load))
+    assert amount == pytest.approx(0.5 * abs(normal), rel=1e-15)
+    assert made.margin == pytest.approx(0.8)
+    assert made.residual < 1e-15
+
+
+def test_coupled_friction_forces_satisfy_their_laws():
+    columns, free, factors = np.array([[0.2, -0.5], [0.7, 0.1]]), np.array([4.0, -7.0]), np.array([0.3, 0.2])
+    found = np.array(equations(factors.tolist(), free.tolist(), columns).solve(PASSES, 0.0))
+    np.testing.assert_allclose(found, factors * np.abs(free + columns @ found), rtol=1e-15)
+
+
+@pytest.mark.parametrize(("kappa", "jams"), [(0.99, False), (1.01, True)])
+def test_it_jams_where_feedback_reaches_one(kappa, jams):
+    made = equations([1.0], [3.0], [[kappa]])
+    with np.errstate(invalid="ignore"):
+        (amount,) = made.solve(PASSES, 0.0)
+    assert (made.margin < 0.0) == jams
+    assert np.isnan(amount) == jams
+
+
+def test_without_feedback_friction_is_found_at_once():
+    made = equations([0.5, 0.25], [3.0, -2.0], [[None, None], [None, None]])
+    assert made.margin is None
+    assert made.solve(PASSES, 0.0) == [1.5, 0.5]
+
+
+# Where friction jams
+
+PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
+AROUND = np.linspace(0.1, 2 * np.pi, 30)
+
+
+def solved(mu, **options):
+    loads, friction = (ks.Gravity(), ks.ProcessForce(500.0)), {"guide": ks.GuideFriction(mu)}
+    return ks.solve(PUMP, AROUND, crank_speed=3.0, loads=loads, friction=friction, **options)
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_a_rod_within_the_friction_angle_jams():
+    """The rod leans by at most 30 degrees: a slider jams where mu times its slope reaches one."""
+    assert np.isfinite(solved(1.7).balancing_torque).all()
+    with pytest.raises(ks.errors.JammingError, match="friction jams at") as caught:
+        solved(2.5)
+    slope = np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2)
+    assert set(caught.value.angles) <= set(AROUND[2.5 * slope >= 1.0].tolist())
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_it_is_left_open_where_asked():
+    found = solved(2.5, on_gap="nan").balancing_torque
+    assert 0 < np.isnan(found).sum() < found.size
+
+
+@pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
+def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
+    s = ks.solve(PUMP, AROUND, crank_speed=speed, crank_acceleration=acceleration)
+    assert bool(jamming.problem_at_rest(s)) == stands
+
+
+def test_friction_converges_to_the_last_digit():
+    assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("margin", "residuals", "passes"),
+    [
+        (0.5, (1e-16,), (3,)),
+        (0.5, (1e-4, 1e-9, 1e-16), (3, 6, 12)),
+        (0.5, (1e-4, 1e-9, 1e-9), (3, 6, 12)),
+        (-0.1, (np.nan,), (3,)),
+    ],
+)
+def test_passes_grow_until_friction_is_found(margin, residuals, passes):
+    scene, taken, left = ks.Scene(PUMP, 3.0, friction={"guide": ks.GuideFriction(0.1)}), [], iter(residuals)
+
+    def evaluate(item):
+        taken.append(item.friction.passes)
+        return np.array([1.0, margin]), np.array([0.0, next(left)])
+
+    assert jamming.solve_friction(scene, evaluate).friction.passes == passes[-1]
+    assert tuple(taken) == passes
+    assert jamming.solve_friction(scene).friction.passes == 6  # nobody looks at it afterwards
+
+
+def states(kappa, free):
+    """Forces N of a guide alone with N = free - kappa |N|."""
+    both = free / (1.0 + kappa), free / (1.0 - kappa)
+    return [force for force, sign in zip(both, (1.0, -1.0), strict=True) if sign * force > 0.0]
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_the_margin_of_a_guide_decides_uniqueness():
+    s = solved(2.5, on_gap="nan")
+    kappa = 1.0 - s.friction_margin
+    assert kappa == pytest.approx(2.5 * np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2), rel=1e-12)
+    for size, jams in zip(kappa, np.isnan(s.balancing_torque), strict=True):
+        counts = {len(states(way * size, free)) for way in (1.0, -1.0) for free in (1.0, -1.0)}
+        assert counts == ({0, 2} if jams else {1})

@@ -1,10 +1,17 @@
-"""Numbers and units as people read them: no digit that is not known."""
+"""Number formats, headings, files and texts of spreads."""
 
 import math
+import os
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from kinetostatics.numbers.formatting import angle, at_most, number, pretty
+import kinetostatics as ks
+from kinetostatics.errors import CaseError
+from kinetostatics.numbers import spreads
+from kinetostatics.numbers.files import headings, read_columns, read_text, written_whole
+from kinetostatics.numbers.formatting import angle, at_most, number, pretty, si_columns
 from support.every import every
 
 
@@ -59,3 +66,74 @@ def test_units_have_raised_exponents_and_dots(unit, text):
 @every("degrees, text", [(1.1e-13, "0"), (-1e-9, "0"), (math.nan, ""), (138.58297, "138.583"), ("at", "at")])
 def test_an_angle_has_three_decimals(degrees, text):
     assert angle(degrees) == text
+
+
+# Headings of columns
+
+
+def test_unit_in_round_brackets_is_corrected():
+    _, problems = si_columns(["length (mm)", "size (mm)"], {"length": "m"})
+    assert problems[0] == "parameter 'length (mm)' has its unit in round brackets; write 'length [mm]'"
+    assert "allowed: 'length'" in problems[1]
+
+
+# Files
+
+
+def test_blanks_in_headings_count_as_underscores(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("crank angle [deg], force back [kN]\n0, 1\n360, 1\n")
+    assert headings(path) == [("crank_angle", "deg"), ("force_back", "kN")]
+    assert [column.tolist() for column in read_columns(path, {"force_back": "N"})] == [[1000.0, 1000.0]]
+
+
+def test_too_large_a_file_is_refused(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text("x" * 100)
+    assert read_text(path, 100) == "x" * 100
+    with pytest.raises(CaseError, match="cannot be read"):
+        read_text(path, 99)
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="the system has no names for open files")
+def test_an_open_pipe_takes_what_is_written():
+    reading, writing = os.pipe()
+    with written_whole(f"/dev/fd/{writing}") as path:
+        Path(path).write_text("whole", encoding="utf-8")
+    os.close(writing)
+    assert os.read(reading, 99) == b"whole"
+    os.close(reading)
+
+
+# Spreads as texts
+
+
+def test_each_form_is_the_distribution_it_names():
+    found = spreads.distributions(
+        {"a": "600..900 kN/m", "b": "normal 712 kN/m +- 5 kN/m", "c": "triangular 690..710..740 kN/m"}
+    )
+    middles = [distribution.mean() for distribution, unit in found.values() if unit == "kN/m"]
+    np.testing.assert_allclose(middles, [750.0, 712.0, (690 + 710 + 740) / 3], rtol=1e-12)
+
+
+@every("reader", [spreads.axis, spreads.spread_of])
+@every("given", ["70..85:10", "70 .. 85", "uniform 70..85", "triangular 70..80..85", "normal 80 +- 2"])
+def test_numbers_without_a_unit_are_said_to_have_none(reader, given):
+    with pytest.raises(ks.ParameterError, match=r'it has no unit \("1" where there is none\); write "600'):
+        spreads.read({"crank_length": given}, reader)
+
+
+@every("given", [[70, 85], (0.07, 0.085, 10), np.linspace(0.07, 0.085, 3), ["70 mm", "85 mm"]])
+def test_bare_numbers_name_the_allowed_forms(given):
+    with pytest.raises(ks.ParameterError, match=r'each with its unit; write "600\.\.900 kN/m:40" for a grid'):
+        spreads.read({"crank_length": given}, spreads.axis)
+
+
+@every(
+    "given",
+    ["600..900 kN/m", "normal 712 kN/m +- 5 kN/m", *(f"triangular 69..{mode}..78 kN/m" for mode in (69, 71, 76))],
+)
+def test_median_and_deviation_match_the_distribution(given):
+    spread = spreads.spread_of(given)
+    assert spread.median == pytest.approx(spread.distribution.median(), rel=1e-14)
+    assert spread.deviation == pytest.approx(spread.distribution.std(), rel=1e-14)

@@ -1,10 +1,11 @@
-"""Reductions by polynomials between kinks: as exact integrals and peaks have them."""
+"""Smooth pieces of a turn between kinks and jumps."""
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.bends import bends, bent
+from kinetostatics.results.changes import sign_changes
 from kinetostatics.results.pieces import Pieces
 from kinetostatics.results.reductions import parsed
 from kinetostatics.results.refining import GOAL, MOST, refined
@@ -239,3 +240,19 @@ def test_friction_of_designs_bends_as_alone():
     for row, length in zip(both, crank[:, 0], strict=True):
         alone = np.sort(bends(solved((), friction, float(length))).angle[0])
         np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
+
+
+# Changes of sign over a period
+
+
+@pytest.mark.parametrize("depth", [1e-4, 1e-6, 1e-9])
+def test_two_changes_between_two_samples_are_found(depth):
+    """What only just passes zero, and turns about, within half a degree."""
+    place = np.array([[2.0012], [3.0034]])
+    _, at = sign_changes(lambda angle: [1.0 - depth - np.cos(angle - place)], TURN, 180)
+    half = np.arccos(1.0 - depth)
+    np.testing.assert_allclose(at, np.column_stack([place - half, place + half]), rtol=0, atol=1e-7)
+
+
+def test_no_function_has_no_changes():
+    assert sign_changes(lambda angle: [], TURN, 720)[1].shape == (1, 0)

@@ -1,10 +1,14 @@
-"""A solution as its user meets it: results on demand, tables, other angles."""
+"""What a solution holds: quantities, contacts, contents."""
+
+import inspect
+import re
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.mechanism import Mechanism
+from support.cam_contacts import rolled, solved
 
 TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
@@ -175,3 +179,111 @@ def test_frame_has_motion_of_every_slider():
         assert np.array_equal(table[f"{slider}_position [m]"], s.travel(slider))
         assert np.array_equal(table[f"{slider}_velocity [m/s]"], s.travel_velocity(slider))
         assert np.array_equal(table[f"{slider}_acceleration [m/s2]"], s.travel_acceleration(slider))
+
+
+# Contact pressure of a solution, by name
+
+FACE = ks.Face(0.02, 210e9, 0.3)
+
+
+def test_a_pressure_is_read_by_name_and_kept():
+    found = solved(machine=rolled())
+    assert found.pressure() is found.contact_pressure
+    assert found.pressure("contact_pressure") is found.contact_pressure
+
+
+def test_that_of_a_second_follower_has_its_label():
+    groups = [ks.FlatFollower(ks.laws.cosine(0.01, 0.05), face=FACE, pin=f"F{n}", label=n) for n in ("1", "2")]
+    loads = [ks.Spring(k, -0.05, on=f"follower{n}") for n, k in (("1", 5e4), ("2", 2e5))]
+    machine = ks.Mechanism("two cams", ks.Crank(None), tuple(groups))
+    found = ks.solve(machine, 0.5, crank_speed=0.0, loads=loads)
+    assert found.pressure("contact_pressure2") == pytest.approx(2 * found.pressure("contact_pressure1"), rel=1e-13)
+    with pytest.raises(ks.QuantityError, match="contact is 'contact_pressure', allowed: 'contact_pressure1', 'con"):
+        found.contact_pressure  # noqa: B018
+
+
+def test_a_quantity_of_another_kind_is_no_pressure():
+    with pytest.raises(ks.QuantityError, match="contact is 'O', allowed: 'contact_pressure'"):
+        solved(machine=rolled()).pressure("O")
+    with pytest.raises(ks.QuantityError, match="has no contact pressure"):
+        ks.solve(ks.crank_slider(0.1, 0.4), np.zeros(2), crank_speed=1.0).contact_pressure  # noqa: B018
+
+
+def test_what_is_no_name_is_no_pressure():
+    with pytest.raises(ks.ParameterError, match="quantity must be a name"):
+        solved(machine=rolled()).pressure([])
+
+
+# What the docstring of `Solution` lists is what there is, with the bodies and units that parts declare
+
+TEXT = ks.Solution.__doc__
+CAM = ks.cams.Circle(0.3, (-0.02, 0.0))
+MACHINES = {
+    "crank-slider": ks.crank_slider(0.3, 2.0),
+    "cam": ks.cam_crank_slider(CAM, 2.02),
+    "four-bar": ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)),
+    "lever": ks.slotted_lever(0.1, pivot=(0.0, -0.2)),
+    "yoke": ks.scotch_yoke(0.1),
+    "cylinder": ks.Mechanism("pump", ks.Crank(0.1), (ks.CylinderGroup((1.0, 0.0)),)),
+    "follower": ks.Mechanism("cam", ks.Crank(), (ks.RollerFollower(ks.laws.cosine(0.01, 0.05)),)),
+}
+
+
+def members():
+    """Public attributes and methods of a solution."""
+    own = [base for base in ks.Solution.__mro__ if base.__module__.startswith("kinetostatics")]
+    names = {name for base in own for name in (*vars(base), *vars(base).get("__annotations__", ()))}
+    return {name for name in names if not name.startswith("_")}
+
+
+def listed():
+    """Names that the docstring lists as attributes and methods."""
+    lists = re.split(r"\n(?:Attributes|Methods|Notes)\n-+\n", TEXT)[1:3]
+    heads = [line.partition(" : ")[0] for text in lists for line in text.splitlines() if line and line[0] != " "]
+    return {name for head in heads for name in re.findall(r"(\w+)(?:\([^)]*\))?", re.sub(r"\([^)]*\)", "", head))}
+
+
+def test_everything_public_is_in_the_docstring():
+    notes = set(re.findall(r"`(\w+)`", TEXT))
+    assert members() - listed() - notes == set()
+
+
+def test_everything_that_the_docstring_lists_exists():
+    assert listed() - members() == set()
+
+
+def test_every_method_is_listed_with_its_arguments():
+    for name, arguments in re.findall(r"(?:^|, )(\w+)\(([^)]*)\)(?=,|$)", TEXT, flags=re.MULTILINE):
+        told = [part.strip() for part in arguments.split(",") if part.strip()]
+        if name in members():
+            assert told == list(inspect.signature(getattr(ks.Solution, name)).parameters)[1:], name
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_reactions_are_listed_with_their_body(name):
+    section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("For groups and loads")].split())
+    for joint, output in MACHINES[name].outputs.items():
+        if not output.vector:
+            continue
+        assert f'"{joint}"' in section
+        giver, _, taker = output.text.partition(" on ")
+        assert output.text in section or (giver == "ground" and f"on {taker}" in section) or "from what" in output.text
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_scalar_is_listed(name):
+    scalars = [scalar for scalar, output in MACHINES[name].outputs.items() if not output.vector]
+    assert scalars
+    assert all(re.search(rf"\b{scalar}\b", TEXT) for scalar in scalars)
+
+
+@pytest.mark.parametrize("speed", [33.5, -33.5])
+def test_drive_power_is_torque_times_speed(speed):
+    """A force that resists the slider: the drive gives its power, however the crank turns."""
+    saw = ks.crank_slider(0.3, 2.0)
+    resisting = ks.ProcessForce(lambda motion: -1e3 * np.sign(motion.slider_velocity))
+    s = ks.solve(saw, np.array([1.0, 2.0, 4.0, 5.0]), crank_speed=speed, loads=resisting)
+    power = s.balancing_torque * s.crank_speed
+    assert (power > 0).all()
+    np.testing.assert_allclose(power, 1e3 * abs(s.slider_velocity), rtol=1e-12)
+    assert (np.sign(s.balancing_torque) == np.sign(speed)).all()
