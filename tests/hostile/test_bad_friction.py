@@ -131,13 +131,6 @@ HEAVY = ks.crank_slider(0.3, 0.5, slider=ks.Link(200.0))
 PRESS = ks.crank_slider(0.1, 0.35, slider=ks.Link(5.0))
 
 
-@pytest.fixture(scope="module", autouse=True)
-def libraries():
-    """Loads scipy before the clock of any test runs."""
-    ks.drive.coast(ks.Scene(PRESS, 1.0, friction={"guide": ks.GuideFriction(0.1)}), 1.0, 0.3, 1.0, until=1e-3)
-    ks.drive.steady(ks.Scene(PRESS, 1.0), None, 1.0)
-
-
 # friction that has a kink at the acceleration
 
 KINKS = {

@@ -23,12 +23,6 @@ LOAD = "[[variants.a.loads]]\n"
 FORCE = LOAD + 'kind = "force"\nvalue = "1 N"\nat = "B"\n'
 
 
-@pytest.fixture(scope="module", autouse=True)
-def libraries():
-    """Loads pint and scipy before the clock of any test runs."""
-    ks.load_case("sawframe_2r63")
-
-
 WRONG = {
     "no kind": (GROUP + 'on = "A"', "variants.a.groups[2].kind is missing; allowed: 'slider', 'rocker'"),
     "kind of a load": (GROUP + 'kind = "torque"', "variants.a.groups[2].kind is 'torque', allowed: 'slider', 'rocker'"),

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.retold import largest_error
 from tests.support.every import every
-from tests.support.retold import largest_error
 
 PUMP = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0), coupler=ks.Link(0.5, (0.1, 0.0), 0.01))
 SOLVED = ks.solve(PUMP, [0.1, 0.2], crank_speed=9.0)

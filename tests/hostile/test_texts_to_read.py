@@ -17,14 +17,6 @@ from kinetostatics.sweeps import designs
 from support.case_files import BADLY_WRITTEN
 from support.every import every
 
-
-@pytest.fixture(scope="module", autouse=True)
-def libraries():
-    """Loads pint and scipy before the clock of any test runs."""
-    designs.distributions({"a": "0..1 m"})
-    ks.load_case("sawframe_2r63")
-
-
 CASE = """
 title = "test"
 reference = "a"

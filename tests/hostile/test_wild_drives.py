@@ -139,12 +139,6 @@ def torque(value):
     return ks.Torque(value, on="crank")
 
 
-@pytest.fixture(scope="module", autouse=True)
-def libraries():
-    """Loads scipy before the clock of any test runs."""
-    steady(scene(torque(-1.0)), kloss(), 1.0)
-
-
 RUNNING = {
     "no inertia": (MASSLESS, (), kloss(), 0.0, "all inertia vanishes at crank angle"),
     "inertia that vanishes at dead points": (LIGHT, (), kloss(), 0.0, "all inertia vanishes at crank angle 180 deg"),

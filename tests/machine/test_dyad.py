@@ -6,6 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import AssemblyError, ConditionWarning, ParameterError
+from support.machines import planar
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 ROD, ARM = ks.Link(2.0, (0.2, 0.03), 0.05), ks.Link(3.0, (0.02, -0.04), 0.1)
@@ -24,10 +25,6 @@ def watt(assembly=1, lengths=(0.5, 0.45), **names):
 
 def solve(made, angles=ANGLES, **options):
     return ks.solve(made, angles, crank_speed=1.0, **options)
-
-
-def planar(vector):
-    return vector[0] + 1j * vector[1]
 
 
 def loop(angle, guess):

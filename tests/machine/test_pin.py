@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import kinetostatics as ks
 from kinetostatics.errors import ParameterError
 from support.chains import error_beside_constraints
+from support.machines import planar
 from support.strategies import reproducible
 
 ANGLES = np.linspace(0.1, 6.2, 9)
@@ -19,10 +20,6 @@ def solve(*parts, crank=None, **options):
     made = ks.Mechanism("chain", crank or ks.Crank(0.1, CASTING), parts)
     motion = {"crank_speed": 20.0, "crank_acceleration": -30.0, "loads": [ks.Gravity(9.81, -1.2)]} | options
     return ks.solve(made, ANGLES, **motion)
-
-
-def planar(vector):
-    return vector[0] + 1j * vector[1]
 
 
 def test_a_pin_moves_with_its_link():

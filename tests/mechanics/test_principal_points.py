@@ -11,6 +11,7 @@ import kinetostatics as ks
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.numbers.planar import moment
 from support.chains import chain
+from support.machines import largest
 from support.strategies import cases, either_sign, number, planar, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
@@ -58,10 +59,6 @@ def linkages(draw, kind):
 def solutions(kind):
     """Random solutions: mass centres off the lines, inclined guides, both assemblies, crank acceleration, all loads."""
     return linkages(kind) if kind.endswith("bar") else cases(kind).map(lambda pair: pair[1])
-
-
-def largest(values):
-    return np.max(np.abs(values))
 
 
 def mass_weighted(s, measure):

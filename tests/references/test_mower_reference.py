@@ -14,6 +14,7 @@ import pytest
 import kinetostatics as ks
 from support import DATA
 from support.case_files import shipped
+from support.machines import largest
 
 VARIANTS = {
     "unbalanced": "unbalanced",
@@ -70,10 +71,6 @@ def balanced(variant):
 
 def solve(mechanism, angle):
     return ks.solve(mechanism, angle, crank_speed=SPEED)
-
-
-def largest(values):
-    return np.max(np.abs(values))
 
 
 def scale(variant, name):

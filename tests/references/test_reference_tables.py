@@ -15,6 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import kinetostatics as ks
 from support import DATA
+from support.machines import largest
 from support.multibody import Body, CrankSlider, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank
 
 TABLES = {"plain": "sawframe_plain", "circle": "sawframe_cam_circle", "cosine": "sawframe_cam_cosine"}
@@ -84,10 +85,6 @@ def columns(variant, angle):
         "inertia2": s.inertia_force("coupler"),
     }
     return found if variant == "plain" else found | {"cam": s.cam_force, "slot": s.slot_force}
-
-
-def largest(values):
-    return np.max(np.abs(values))
 
 
 def wrong_columns(variant, found):

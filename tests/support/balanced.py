@@ -31,10 +31,6 @@ def solved(mechanism, speed=10.0, acceleration=0.0):
     return ks.solve(mechanism, TURN, crank_speed=speed, crank_acceleration=acceleration)
 
 
-def largest(values):
-    return np.max(np.abs(values))
-
-
 def along_and_across(s):
     """Parts of the shaking force along the guide and to its left."""
     x, y = next((g.guide.direction for g in s.mechanism.groups if isinstance(g, ks.SliderGroup)), (1.0, 0.0))

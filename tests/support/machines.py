@@ -2,9 +2,11 @@
 
 import warnings
 from dataclasses import dataclass, field
+from math import comb
 
 import numpy as np
 import pytest
+from scipy.special import binom
 
 import kinetostatics as ks
 
@@ -171,3 +173,11 @@ def four_bar_of(lengths, frame_angle=0.0, assembly=1):
 def swept(mechanism, angle=TURN):
     """Its solution over the turn, NaN where it does not close."""
     return ks.solve(mechanism, angle, crank_speed=1.0, on_gap="nan")
+
+
+def second_harmonic(ratio):
+    """A2 = lambda + lambda^3 / 4 + 15 lambda^5 / 128 + ... of the acceleration of a piston, lambda = crank / rod.
+
+    From the binomial series of sqrt(1 - lambda^2 sin^2 phi) and the second cosine coefficients of its powers.
+    """
+    return sum(-8 * (-1) ** k * binom(0.5, k) * comb(2 * k, k - 1) / 4**k * ratio ** (2 * k - 1) for k in range(1, 40))

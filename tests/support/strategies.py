@@ -74,10 +74,6 @@ def cases(draw, kind):
     return scene, solution
 
 
-def planar(vector):
-    return vector[0] + 1j * vector[1]
-
-
 def errors(found, expected, scale=None):
     """Error of each quantity by name, relative to the largest of all or to a given scale."""
     scale = max(np.max(np.abs(values)) for values in expected.values()) if scale is None else scale

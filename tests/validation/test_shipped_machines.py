@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.engines import second_harmonic
+from support.machines import second_harmonic
 
 MACHINES = ("compressor", "pumpjack", "shaper", "v_twin", "in_line_twin", "toggle_press", "yoke_pump")
 case = cache(ks.load_case)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.engines import second_harmonic
+from support.machines import second_harmonic
 
 R, ROD, MASS, SPEED = 0.05, 0.16, 1.3, 200.0
 ANGLES = np.linspace(0.0, 2 * np.pi, 64, endpoint=False)
