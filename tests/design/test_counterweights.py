@@ -17,12 +17,12 @@ from support.balanced import (
     ROUNDING,
     SKEW,
     along_and_across,
-    largest,
     mower,
     solved,
     unbalance,
 )
 from support.case_files import shipped
+from support.machines import largest
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""

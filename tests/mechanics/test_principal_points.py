@@ -11,8 +11,8 @@ import kinetostatics as ks
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.numbers.planar import moment
 from support.chains import chain
-from support.machines import largest
-from support.strategies import cases, either_sign, number, planar, reproducible
+from support.machines import largest, planar
+from support.strategies import cases, either_sign, number, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""

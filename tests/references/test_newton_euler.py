@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
-from support.strategies import cases, columns, errors, planar, reproducible
+from support.machines import planar
+from support.strategies import cases, columns, errors, reproducible
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")]
 """Bodies drawn at random have any inertia."""
