@@ -165,6 +165,7 @@ def test_optimum_of_a_centred_mower_has_no_phase(norm):
     assert abs(turned[1]) < 1e-6 * abs(turned[0])
 
 
+@pytest.mark.slow
 def test_study_ratio_minimises_mean_square_force():
     """Ratio 1/2 minimises the root mean square; the largest force is least near 0.465 on the line, 0.450 with phase."""
     assert optimum(mower(), "weighted", False).ratio == pytest.approx(0.5, abs=1e-6)

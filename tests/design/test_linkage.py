@@ -127,6 +127,7 @@ def wrong(found, expected):
 CLOCKWISE = np.linspace(0.0, 2 * np.pi, 361)[:-1] + 0.001
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "lengths", [(0.1, 1.0, 2 / 3, 0.9), (0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)]
 )
@@ -137,6 +138,7 @@ def test_study_agrees_where_its_conditions_hold(lengths):
             assert_allclose(values, expected, rtol=0, atol=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lengths", "closed", "coupler_wrong", "rocker_wrong"),
     [((0.3, 0.6, 1.0, 0.2), 360, 97, 0), ((0.9, 1.0, 2 / 3, np.sqrt(0.19)), 274, 97, 12)],
@@ -175,6 +177,7 @@ def test_both_lose_digits_near_a_toggle(margin):
         assert rates < 0.1 * allowed / margin
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
 def test_long_rocker_costs_the_study_digits(longer):

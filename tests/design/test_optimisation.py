@@ -37,6 +37,7 @@ def test_counterweight_optimum_equals_balancing():
     )
 
 
+@pytest.mark.slow
 def test_limits_hold_at_true_extremes_to_a_billionth():
     solution = bound().scene.solve(90)
     low, high = ks.extremes(solution, "slider_position").range
@@ -61,6 +62,7 @@ def test_any_machine_can_be_improved():
     assert table["largest_absolute balancing_torque [N m]"] <= 12.0 * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_losses_and_pressure_angle_are_outputs_too():
     """No design of a grid that keeps the limit loses less."""
     friction = {"O": ks.PinFriction(0.1, 0.1), "guide": ks.GuideFriction(0.1)}
@@ -78,6 +80,7 @@ def test_losses_and_pressure_angle_are_outputs_too():
                 assert np.mean(other.friction_loss) >= after["mean friction_loss [W]"] * (1 - 1e-6)
 
 
+@pytest.mark.slow
 def test_many_angles_take_linear_memory():
     """Of 60 000 crank angles that would be 29 GB."""
     vary = {"spring.stiffness": (6e5, 9e5)}

@@ -77,6 +77,7 @@ def test_flywheel_under_a_motor_has_the_fluctuation(wanted):
     assert found.fluctuation == pytest.approx(wanted, rel=1e-11)
 
 
+@pytest.mark.slow
 def test_textbook_and_true_flywheel_agree_when_small():
     scene = ks.Scene(SAW, 33.0, loads=ks.Gravity())
     run = ks.drive.flywheel(scene, 1e-4, MOTOR)

@@ -30,6 +30,7 @@ def test_a_wheel_on_a_rubbing_pin_stops_as_by_hand():
     assert motion.friction_energy[-1] == pytest.approx(4.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_pendulum_with_friction_slows_and_sticks():
     motion = ks.drive.coast(PENDULUM, 0.06, -1.0, 0.0, 60.0)
     names = [event.name for event in motion.events]
@@ -75,6 +76,7 @@ def test_coasting_saw_gives_its_energy_to_friction():
     assert np.abs(balance).max() < 1e-12 * np.abs(s.balancing_torque).max()
 
 
+@pytest.mark.slow
 def test_start_with_friction_takes_longer():
     free = ks.Scene(FRICTION_PUMP.mechanism, 20.0, loads=FRICTION_PUMP.loads)
     slow, fast = (ks.drive.start(scene, SMALL, 0.3, 0.4) for scene in (FRICTION_PUMP, free))

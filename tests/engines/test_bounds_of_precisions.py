@@ -38,6 +38,7 @@ ANGLES = np.linspace(0.01, 6.2, 40)
 NUMPY = Backend("numpy", "single")
 
 
+@pytest.mark.slow
 @every("family", FAMILIES)
 def test_single_precision_values_lie_within_bounds(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
@@ -70,6 +71,7 @@ def test_zero_times_an_undefined_value_has_no_bound():
     assert np.isnan(value).tolist() == np.isinf(bound).tolist() == [True, False]
 
 
+@pytest.mark.slow
 @every("case, variant, most", over_worst("single"))
 def test_bounds_stay_near_the_worst_error_of_a_turn(case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
@@ -105,6 +107,7 @@ def test_double_precision_rounds_no_input():
     assert found == pytest.approx(3.0 * np.sin(0.5) * 3 * 2.0**-53, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_total_is_within_its_bound_by_every_engine(numba, jax):
     graph = Graph()
     turn, mass, length = graph.angle().sin(), graph.parameter(0), graph.parameter(1)
@@ -249,5 +252,6 @@ def test_bounds_near_change_points_hold_or_are_inf(flint, jax, engine, precision
         assert errors(s, exact_values(s), [backend])[backend].wrong == []
 
 
+@pytest.mark.slow
 def test_random_graphs_in_single_lie_within_bounds(flint):
     assert [wrong for seed in range(60) for wrong in Case(seed).wrong(SINGLE_PRECISION)] == []

@@ -67,7 +67,7 @@ def test_a_sine_of_the_crank_angle_can_be_an_output():
     np.testing.assert_array_equal(found, [np.sin(angles), 2.0 * np.cos(angles), np.cos(angles), angles])
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_a_total_loses_nothing_in_any_engine():
     pytest.importorskip("numba")
     graph = Graph()
@@ -80,7 +80,7 @@ def test_a_total_loses_nothing_in_any_engine():
         np.testing.assert_array_equal(compute(angles, values, (), angles.shape), wanted)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_a_rest_is_the_same_in_any_engine():
     pytest.importorskip("numba")
     graph = Graph()

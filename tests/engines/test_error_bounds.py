@@ -41,6 +41,7 @@ def bounded(scene, quantity, angles=TURN):
     return s, s.error_bound(quantity)
 
 
+@pytest.mark.slow
 @every("family", FAMILIES)
 def test_values_of_random_machines_lie_within_bounds(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
@@ -49,6 +50,7 @@ def test_values_of_random_machines_lie_within_bounds(flint, family):
     assert found.wrong == []
 
 
+@pytest.mark.slow
 @every("case, variant, most", over_worst("double"))
 def test_bounds_stay_near_the_worst_error_of_a_turn(flint, case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
@@ -508,11 +510,13 @@ def test_a_reciprocal_of_a_tiny_number_is_no_pivot():
     assert bound >= 3.5 * UNIT * 1e-30 / 2.0**270
 
 
+@pytest.mark.slow
 def test_random_extreme_graphs_lie_within_bounds(flint):
     """Every operation, zeros, numbers of every size; many thousands: ``Case(seed).wrong`` of more seeds."""
     assert [wrong for seed in range(60) for wrong in Case(seed).wrong(WAYS)] == []
 
 
+@pytest.mark.slow
 def test_compiled_random_graphs_lie_within_bounds(flint, numba):
     assert [wrong for seed in range(2) for wrong in Case(seed).wrong(COMPILED)] == []
 

@@ -33,7 +33,7 @@ def test_jax_gives_values_within_their_bounds(jax, name):
     assert np.all(np.abs(single - exact) <= SINGLE.bounds(program, s.dynamics, leaves))
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_jax_keeps_to_its_bounds_in_both_precisions(jax):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     scene = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene
@@ -164,7 +164,7 @@ def test_a_loop_gives_numpy_s_bits_in_single(interpreted, name):
     assert np.array_equal(found, same, equal_nan=True)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_compiled_loops_give_numpy_s_bits_in_single(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     s = diverse()["designs"]

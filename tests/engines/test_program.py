@@ -140,7 +140,9 @@ def test_enclosures_equal_50_digit_tables_to_24_digits(flint, variant):
 # dask
 
 
-@pytest.mark.parametrize("name", DIVERSE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if place else []) for place, name in enumerate(DIVERSE)]
+)
 def test_dask_arrays_stay_lazy_and_equal_numpy(name):
     dask = pytest.importorskip("dask", reason="dask is not installed (extra: distributed)")
     array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
@@ -374,6 +376,7 @@ RUBBING = ks.Scene(
 )
 
 
+@pytest.mark.slow
 def test_repeated_calls_with_few_angles_use_the_loop(monkeypatch):
     pytest.importorskip("numba")
     program = ks.compile(RUBBING, "friction_torque", engine="compiled")
@@ -489,6 +492,7 @@ def test_little_is_common_where_lengths_vary():
     assert operations(common) < shared_work.MIN_SHARE * operations(outputs)
 
 
+@pytest.mark.slow
 def test_two_loops_are_made_for_many_designs_only(numba, monkeypatch):
     scene = shipped("sawframe_2r63").variants["plain"].scene
     scene = scene.varied({"slider.mass": np.array([[500.0], [600.0]])})

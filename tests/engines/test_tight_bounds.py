@@ -26,6 +26,7 @@ def found(graph, output, angle, *values):
     return Program(None, both)._by_numbers(np.array([angle]), values, (1,))[:, 0]
 
 
+@pytest.mark.slow
 @every("family", FAMILIES)
 def test_random_machines_lie_within_tight_bounds(flint, family):
     made = next(found for found in (solution(family, seed, 20) for seed in range(9)) if found is not None)
@@ -120,6 +121,7 @@ def test_tight_bounds_are_finite_and_no_larger():
         assert np.all(tight > 0.0)
 
 
+@pytest.mark.slow
 @every("family", FAMILIES)
 def test_tight_exceeds_plain_by_its_remainder_only(family):
     """That makes the plain one larger by terms of second order, stretched; at a place, it is seen."""

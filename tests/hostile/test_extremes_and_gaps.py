@@ -438,6 +438,7 @@ def cases():
 CASES = list(cases())
 
 
+@pytest.mark.slow
 @every(
     ("mechanism", "angle", "distance"), [case[1:] for case in CASES], ids=[f"{case[0]} {case[3]:g}" for case in CASES]
 )

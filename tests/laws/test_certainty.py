@@ -85,6 +85,7 @@ def test_condition_claims_no_unproven_digits(case):
         assert all(np.all(condition > HALF) for condition in without_bound(made))
 
 
+@pytest.mark.slow
 @every("family", ("chain", "plain", "four-bar", "place"))
 @every("seed", range(8))
 def test_warnings_match_large_conditions(family, seed):

@@ -83,6 +83,7 @@ def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
     assert_close(s.slider_acceleration, acceleration, ROUNDING)
 
 
+@pytest.mark.slow
 def test_sawframe_forces_at_the_singular_angle():
     """Against the Newton-Euler reference with 80 digits of motion."""
     amplitude, mean, speed = 0.3, 2.0, 33.5
