@@ -37,7 +37,6 @@ def test_counterweight_optimum_equals_balancing():
     )
 
 
-@pytest.mark.slow
 def test_limits_hold_at_true_extremes_to_a_billionth():
     solution = bound().scene.solve(90)
     low, high = ks.extremes(solution, "slider_position").range
