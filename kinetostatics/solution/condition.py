@@ -350,7 +350,8 @@ class _Recorded:
 
 def _third_derivative(name, solution):
     """Third derivative of a cam that takes plain numbers only, (..., N), m, by central differences."""
-    cam = next(group.cam for group in solution.mechanism.groups if f"cam{group.label}" == name)
+    groups = solution.mechanism.groups
+    cam = next(group.cam for group in groups if f"cam{group.label}" == name and getattr(group, "cam", None) is not None)
     sides = solution.crank_angle + THIRD_STEP, solution.crank_angle - THIRD_STEP
     after, before = (cam.polar(angle, ray(angle))[2] for angle in sides)
     return (after - before) / (2.0 * THIRD_STEP)
