@@ -88,7 +88,7 @@ OWN = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, _ulp(2.0), as_recorded=True)
 DOUBLE = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, _ulp(4.0), 2.0**1022)
 SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, _ulp(8.0), 2.0**126)
 PRECISIONS = {"double": DOUBLE, "single": SINGLE}
-"""Arithmetic of programs that JAX or another precision runs, by the user's word."""
+"""Arithmetic of programs that JAX runs, or that run in another precision, by the name users give."""
 
 
 class Error(NamedTuple):
@@ -154,7 +154,7 @@ class ErrorBounds:
         for node in nodes:
             if node in self._errors:  # an input has asked for it
                 continue
-            error = self._found(node)
+            error = self._error_of(node)
             if self._cuts is not None and self._cuts(node, error):
                 self.cut[node], error = self._total(node, *error), EXACT
             self._errors[node] = error
@@ -171,14 +171,14 @@ class ErrorBounds:
             bound = bound + 0.0 / self._positive_part(self.arithmetic.limit - self._peaks[part][1])
         return bound
 
-    def _found(self, node):
+    def _error_of(self, node):
         if self._given is not None and is_handed_over(node):
-            return self._handed_over(node)
+            return self._rounded_once(node)
         if node in self.inputs:
             return self.inputs[node](self)
         return EXACT if node.operation in INPUTS else RULES[node.operation](self, node, *node.arguments)
 
-    def _handed_over(self, node):
+    def _rounded_once(self, node):
         self._given.look_at([node])
         relative, rest = self._given.error(node)
         if self.arithmetic.as_recorded:
@@ -187,7 +187,7 @@ class ErrorBounds:
         return Error(float(finer < 1.0) + finer * relative, plus(product(finer, rest), self.arithmetic.dust))
 
     def _require_small(self, node):
-        """Check that terms of second order are small; take note of the largest number on the way to a node."""
+        """Check that terms of second order are small; keep the largest number that a node is computed from."""
         parts = [] if is_handed_over(node) else [part for part in node.arguments if isinstance(part, Node)]
         depth = 1 + max((self._peaks[part][0] for part in parts), default=0)
         unit, safe = self.arithmetic.unit, self.arithmetic.safe
@@ -212,7 +212,7 @@ class ErrorBounds:
         return EXACT if exact else Error(1.0, dust)
 
     def total(self, part, more=0.0):
-        """The whole bound of a part of an operation, in units, and so many roundings of it; None where it is exact."""
+        """The whole bound of a part of an operation, in units, and `more` roundings of it; None where it is exact."""
         if not isinstance(part, Node):
             return self._total(part, *self.error(part))
         if (part, more) not in self._totals:
