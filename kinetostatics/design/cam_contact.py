@@ -1,14 +1,8 @@
-"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits.
+"""Contact of a roller with its cam over a turn: side, curvature, Hertz pressure, spin and sliding, life of the pin.
 
-What a contact of a roller with its cam is asked with: the roller, both materials, limits.
-
-The roller itself: spin and sliding, load and life of its pin.
-
-A roller that does not slide turns by v / R as its centre goes along the pitch curve at v, one way on a disk and the
-other in a ring: where it changes sides it must reverse. The contact must drive it, J dv/dt / R^2 along the cam, and
+A roller that does not slide turns by v / R as its centre moves along the pitch curve at v, one way on a disk and the
+other in a ring: where it changes sides it must reverse. The contact drives it with J dv/dt / R^2 along the cam, and
 against the friction of its pin.
-
-What Hertz pressure steel of a hardness bears, and the other way round.
 """
 
 from dataclasses import dataclass, field
