@@ -10,8 +10,6 @@ import textwrap
 
 from ..numbers import checks, files
 from ..numbers.formatting import angle, number, parted
-from ..views.report.making import report as write
-from ..views.report.tables import require_places
 
 STDOUT = "-"
 """Name of a file that stands for standard output."""
@@ -89,6 +87,8 @@ def print_columns(*columns):
 
 def with_published(table, published, path):
     """Cells as text, the published figure behind ours in brackets."""
+    from ..views.report.tables import require_places
+
     require_places(table, published, path)
     cells = table.map(_cell).astype(object)
     for quantity, entries in published.items():
@@ -176,6 +176,8 @@ def of_variants(frames):
 
 
 def report(options):
+    from ..views.report.making import report as write
+
     variant = ["--variant", options.variant] if options.variant else []
     pdf = ["--pdf", options.pdf] if options.pdf else []
     command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf])
