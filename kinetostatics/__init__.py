@@ -38,11 +38,12 @@ Then
 Each name shows an example: ``help(ks.solve)``. From the shell: ``kinetostatics --help``.
 
 Rooms, in the order in which they build on each other
-    numbers     elementary functions, planar vectors, leaves of parameter trees, checks, units, files
+    numbers     arithmetic, planar vectors, parameter trees, checks, units, files
     machine     what it is: links, guide, cams, crank, groups, loads, the mechanism made of them
     mechanics   what it does: motion, forces, assembly, principal points, quantities with their units
     engines     how fast, how sure: kernels recorded once a structure, run by NumPy, numba or JAX; derivatives, bounds
     results     extremes, means, reductions, comparison, tables
+    explain     hand calculations: recorded steps with names, symbols, units
     solution    what users hold: scene, solution, solve, compile, explanations, uncertainty
     drive       motors, periodic running, flywheels, starting and coasting
     design      counterweights, four-bar classes, contact of cams, optimisation under limits, torque-free cams

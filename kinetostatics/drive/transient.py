@@ -2,7 +2,7 @@
 
 The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
 of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), stretch by
-stretch (`stretches`).
+stretch (`stick_slip`).
 """
 
 import math

@@ -82,7 +82,7 @@ class Node:
         return self.graph.node("held", self)
 
     def forgiving_root(self, unit):
-        """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
+        """Called by `arithmetic.root`, as the next two by `divisor` and `apart`."""
         return self.graph.node("root", self, unit)
 
     def kept_off_zero(self, unit):
@@ -96,7 +96,7 @@ class Node:
         return self.graph.node("total", *terms)
 
     def rest_with(self, length, x, y):
-        """Called by `elementary.rest`."""
+        """Called by `arithmetic.rest`."""
         return self.graph.node("rest", length, x, y)
 
     def _unknown(self, other=None):

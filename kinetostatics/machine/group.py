@@ -44,7 +44,7 @@ How to write one
 each link, called as the link but for the label; ``on`` and ``pin``, names of joints; ``label``, put behind the names of
 links and forces so that a mechanism may have two of the kind. ``PATHS`` renames fields in paths such as
 "coupler_length2"; "" leaves a name out. Lengths may be arrays (designs, 1): write kernels with ``+ - * /`` and
-`numbers.elementary`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
+`numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
 derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds such numbers).
 
 *place.* Read ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each

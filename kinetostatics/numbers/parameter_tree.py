@@ -365,7 +365,7 @@ class Numbered(int):
 
 
 class Kind:
-    """A structure, as `structures.taken_apart` gives it, and what is known of all items that have it.
+    """A structure, as `parameter_tree.taken_apart` gives it, and what is known of all items that have it.
 
     Attributes
     ----------

@@ -1,10 +1,7 @@
 """The hand calculation behind a quantity at one crank angle, step by step: formula, numbers, result.
 
-Made by `explaining` from the kernels' own arithmetic.
-
-Makes the hand calculation behind a quantity of a solution.
-
-The steps are the kernels' own arithmetic, recorded with names (engines `told`, `lines`): none is written down twice.
+The steps are the kernels' own arithmetic, recorded with names (`explain.named_recording`, `explain.steps`), so no
+formula is written twice.
 """
 
 import warnings

@@ -1,10 +1,8 @@
 """Design sweeps: a row of numbers for each of many designs, on one core or many machines.
 
-What is asked for is checked (`asked`), and tried on one design (`job`). Then a sweep goes chunk by chunk (`chunks`)
-through any `concurrent.futures.Executor` (`workers`); with a folder the results stream to a Parquet dataset
-(`dataset`), from which a sweep that was stopped goes on.
-
-What a sweep is asked for, checked: all that is wrong at once, and the job made of it.
+A request is checked, all faults at once, and tried on one design. The sweep then runs chunk by chunk (`chunk`) through
+any `concurrent.futures.Executor` (`workers`). With a folder the results stream to a Parquet dataset (`dataset`), from
+which a stopped sweep resumes.
 """
 
 import inspect
