@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.friction import driven_by
-from kinetostatics.drive.stick_slip import followed, sense_from_rest
+from kinetostatics.drive.friction import driven_machine
+from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 PENDULUM = ks.Scene(
@@ -112,13 +112,13 @@ def test_start_from_an_unloaded_dead_centre_goes_on():
 
 def test_steep_machines_start_and_flat_ones_stay():
     """Gravity has an arm of 0.15 m on the crank of 2 kg, friction one of 0.1 times 0.05 m."""
-    hung = driven_by("test", PENDULUM, None, 0.06)
+    hung = driven_machine("test", PENDULUM, None, 0.06)
     assert [sense_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
 
 
 def test_motion_ends_at_its_target_speed():
-    hung = driven_by("test", PENDULUM, None, 0.06)
-    found = followed(hung, -1.0, 0.0, 5.0, target=-0.5)
+    hung = driven_machine("test", PENDULUM, None, 0.06)
+    found = integrate_motion(hung, -1.0, 0.0, 5.0, target=-0.5)
     assert found.end == "ready"
     assert found.rows[1, -1] == pytest.approx(-0.5, rel=1e-12)
     assert found.path(found.time)[:2] == pytest.approx(found.rows[:2], rel=1e-10, abs=1e-12)
@@ -230,10 +230,10 @@ def test_friction_that_jams_is_refused_with_its_angles():
 
 
 def test_the_summary_tells_the_power_lost_by_joint():
-    from kinetostatics.drive.savings import summary
+    from kinetostatics.drive.savings import running_table
 
     run = ks.drive.steady(RUBBING, MOTOR, 1000.0)
-    table = summary({"saw": run}, {"saw": None})["saw"]
+    table = running_table({"saw": run}, {"saw": None})["saw"]
     assert table["lost by friction, mean"] == run.mean_friction_loss
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
 
@@ -244,7 +244,7 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))
     press = ks.crank_slider(0.06, 0.26, slider=ks.Link(22.0))
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
-    driven = driven_by("start", scene, SMALL, 3.0)
+    driven = driven_machine("start", scene, SMALL, 3.0)
     senses = {"sense": 1.0, "friction.O.sense": 1.0}
     one = driven.rubbed(1.0, 12.0, 0.0, senses)
     several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)

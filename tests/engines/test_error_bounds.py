@@ -23,7 +23,15 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.numba_backend import numba_available
 from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart, rest, sign, total
+from kinetostatics.numbers.arithmetic import (
+    NEGLIGIBLE_LENGTH,
+    RELATIVE_OFFSET,
+    UNIT_ROUNDOFF,
+    compensated_sum,
+    length_error,
+    offset_from_zero,
+    sign,
+)
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, over_worst, solution
@@ -76,7 +84,13 @@ def test_operations_on_numbers_are_bounded_as_by_hand():
     one, two = graph.parameter(0), graph.parameter(1)
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
     values = bounds_of(graph, outputs, [3.0, 0.7])
-    wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
+    wanted = [
+        3.7 * UNIT_ROUNDOFF,
+        2.1 * UNIT_ROUNDOFF,
+        3.0 / 0.7 * UNIT_ROUNDOFF,
+        1.5 * 3.0 * UNIT_ROUNDOFF,
+        2 * 3.7 * 3.0 * UNIT_ROUNDOFF,
+    ]
     np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
 
@@ -85,7 +99,7 @@ def test_a_sign_is_no_rounding_of_what_it_multiplies(tight):
     graph = Graph()
     one, two = graph.parameter(0), graph.parameter(1)
     (bound,) = bounds_of(graph, [one.sign() * (one * two)], [-3.0, 0.7], tight)
-    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8)
+    assert bound == pytest.approx(2.1 * UNIT_ROUNDOFF, rel=1e-8)
 
 
 def test_no_bound_at_zero_divisors_and_clamped_roots():
@@ -101,7 +115,7 @@ def test_a_root_of_a_provably_negative_has_no_bound():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     square = one * one - other * other
-    (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT, 2.0])
+    (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT_ROUNDOFF, 2.0])
     assert not np.isfinite(bound)
 
 
@@ -139,7 +153,7 @@ def test_products_with_zero_add_no_error():
     one, other = map(graph.parameter, range(2))
     rounded = one + other
     (bound,) = bounds_of(graph, [one * other + 0.0 * rounded], [3.0, 0.7])
-    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8, abs=0.0)
+    assert bound == pytest.approx(2.1 * UNIT_ROUNDOFF, rel=1e-8, abs=0.0)
 
 
 def test_a_bound_that_is_too_small_is_found(flint, monkeypatch):
@@ -210,30 +224,32 @@ def test_a_sum_of_inputs_is_bounded_by_one_rounding():
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
     whole = math.fsum(values)
-    bound, carried = bounds_of(graph, (total(*parts), total(parts[0] * parts[1], parts[2], parts[3])), values)
+    bound, carried = bounds_of(
+        graph, (compensated_sum(*parts), compensated_sum(parts[0] * parts[1], parts[2], parts[3])), values
+    )
     assert 1e-17 < abs(whole) < 1e-16
-    assert abs(whole) * UNIT <= bound < 1.001 * abs(whole) * UNIT
-    assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)
+    assert abs(whole) * UNIT_ROUNDOFF <= bound < 1.001 * abs(whole) * UNIT_ROUNDOFF
+    assert carried == pytest.approx(0.18 * UNIT_ROUNDOFF + abs(0.18 - 0.9) * UNIT_ROUNDOFF, rel=1e-8)
 
 
 def test_a_length_and_its_rest_are_bounded_together():
     graph = Graph()
     x, y, other = map(graph.parameter, range(3))
     length = (x * x + y * y).sqrt()
-    lost = rest(length, x, y)
+    lost = length_error(length, x, y)
     sums = (
-        total(length, -other, lost),
-        total(other, -length, -lost),
-        total(length, -other),
-        total(length, -other, -lost),
+        compensated_sum(length, -other, lost),
+        compensated_sum(other, -length, -lost),
+        compensated_sum(length, -other),
+        compensated_sum(length, -other, -lost),
     )
     values = [0.3, 0.4, 0.5]
     ahead, back, alone, against = bounds_of(graph, sums, values)
     (off,) = bounds_of(graph, [lost], values)
-    exact = abs(rest(math.hypot(0.3, 0.4), 0.3, 0.4))
-    assert exact < 0.5 * UNIT
-    assert ahead == back < 1.001 * exact * UNIT + 5.0 * UNIT * UNIT
-    assert 0.5 * UNIT < alone < 2.0 * UNIT
+    exact = abs(length_error(math.hypot(0.3, 0.4), 0.3, 0.4))
+    assert exact < 0.5 * UNIT_ROUNDOFF
+    assert ahead == back < 1.001 * exact * UNIT_ROUNDOFF + 5.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF
+    assert 0.5 * UNIT_ROUNDOFF < alone < 2.0 * UNIT_ROUNDOFF
     assert against > alone
     assert off == pytest.approx(exact, rel=1e-8)
 
@@ -243,8 +259,8 @@ def test_rounded_parts_of_a_length_count_in_its_rest():
     x, y, other = map(graph.parameter, range(3))
     rounded = x * y
     length = (rounded * rounded + y * y).sqrt()
-    (bound,) = bounds_of(graph, [total(length, -other, rest(length, rounded, y))], [3.0, 0.1, 0.3])
-    assert bound > 0.3 * UNIT
+    (bound,) = bounds_of(graph, [compensated_sum(length, -other, length_error(length, rounded, y))], [3.0, 0.1, 0.3])
+    assert bound > 0.3 * UNIT_ROUNDOFF
 
 
 @every("digits, finite", [(30, True), (46, True), (52, True), (60, False)])
@@ -263,7 +279,7 @@ def test_a_guard_that_acts_is_an_error(form):
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     share = form(root, root.kept_off_zero(unit))
     (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
-    assert known < 12.0 * UNIT
+    assert known < 12.0 * UNIT_ROUNDOFF
     off = form(2.0**-20, 1e-3) - 1.0
     assert not acting < abs(off)
 
@@ -274,8 +290,8 @@ def test_an_undefined_root_that_cancels_has_no_bound(graph, form):
     recorded = graph()
     one, other, unit = map(recorded.parameter, range(3))
     share = form((recorded.angle().cos() * one - other).forgiving_root(unit))
-    known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT))
-    assert known < 20.0 * UNIT
+    known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT_ROUNDOFF))
+    assert known < 20.0 * UNIT_ROUNDOFF
     assert not np.isfinite(doubtful)
 
 
@@ -297,7 +313,7 @@ def test_an_unguarded_quotient_keeps_its_own_bound():
     sine = graph.angle().sin()
     outputs = other / sine.kept_off_zero(unit), 1.0 / sine.kept_off_zero(unit), (sine + other) / sine
     bounds = bounds_of(graph, outputs, [0.3, 1e8], angle=1e-3)
-    assert bounds[-1] >= UNIT * 0.3e3
+    assert bounds[-1] >= UNIT_ROUNDOFF * 0.3e3
 
 
 def test_an_input_that_underflows_still_counts():
@@ -306,7 +322,7 @@ def test_an_input_that_underflows_still_counts():
     product = (graph.angle().cos() / small) * tiny
     found = *ErrorBounds(graph).of([product]), *tight_bounds(graph, {}, [product])
     bounds = Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
-    assert np.all(bounds >= UNIT * (5e-324 / 4.1e-193) * np.cos(1.0))
+    assert np.all(bounds >= UNIT_ROUNDOFF * (5e-324 / 4.1e-193) * np.cos(1.0))
 
 
 @every("function", [lambda part: part.arctan(), sign])
@@ -339,7 +355,7 @@ def test_a_root_of_a_possible_negative_has_no_bound():
     product = (one * other).forgiving_root(unit)
     difference = (one * one - other * other).forgiving_root(unit)
     assert not np.isfinite(bounds_of(graph, [product], [1e-20, -1.0, 2.0])).any()
-    assert not np.isfinite(bounds_of(graph, [difference], [1.0, 1.0 + 6 * UNIT, 2.0])).any()
+    assert not np.isfinite(bounds_of(graph, [difference], [1.0, 1.0 + 6 * UNIT_ROUNDOFF, 2.0])).any()
     assert np.isfinite(bounds_of(graph, [difference, 1.0 / difference], [1.0, 0.9, 2.0])).all()
 
 
@@ -348,7 +364,7 @@ def test_a_guarded_divisor_is_off_by_its_guard():
     one, other, unit = map(graph.parameter, range(3))
     guarded = 1.0 / (one * one - other * other).sqrt().kept_off_zero(unit)
     clear, acting = (bounds_of(graph, [guarded], [1.0, 0.5, unit])[0] for unit in (1e-8, 0.9))
-    assert clear < 4.0 * UNIT
+    assert clear < 4.0 * UNIT_ROUNDOFF
     assert 1.0 / 0.75**0.5 - 1.0 / 0.9 <= acting < 0.05
 
 
@@ -372,7 +388,7 @@ def test_a_sum_of_inputs_is_bounded_by_few_roundings():
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
-    (bound,) = bounds_of(graph, [total(*parts) * parts[0]], values)
+    (bound,) = bounds_of(graph, [compensated_sum(*parts) * parts[0]], values)
     assert bound < 1e-31
 
 
@@ -380,17 +396,17 @@ def test_designs_near_each_other_lose_few_roundings():
     graph = Graph()
     x, y, other = (graph.parameter(place) for place in range(3))
     length = (x * x + y * y).sqrt()
-    off = total(length, rest(length, x, y), -other)
+    off = compensated_sum(length, length_error(length, x, y), -other)
     (bound,) = bounds_of(graph, [off * graph.angle().sin()], [0.21, 0.81, 0.83], angle=1.0)
-    assert bound < 8 * UNIT * (0.83679 - 0.83)
+    assert bound < 8 * UNIT_ROUNDOFF * (0.83679 - 0.83)
 
 
 def test_a_length_of_the_angle_is_bounded_to_its_bits():
     graph = Graph()
     x, y = graph.parameter(0), graph.angle()
     length = (x * x + y * y).sqrt()
-    (bound,) = bounds_of(graph, [total(length, rest(length, x, y))], [0.21], angle=0.81)
-    assert 0.5 * UNIT * 0.83 < bound < 12 * UNIT * 0.84
+    (bound,) = bounds_of(graph, [compensated_sum(length, length_error(length, x, y))], [0.21], angle=0.81)
+    assert 0.5 * UNIT_ROUNDOFF * 0.83 < bound < 12 * UNIT_ROUNDOFF * 0.84
 
 
 def test_the_sign_of_a_clear_sum_keeps_the_error():
@@ -398,7 +414,7 @@ def test_the_sign_of_a_clear_sum_keeps_the_error():
     one, other = map(graph.parameter, range(2))
     turning = graph.angle().sin() * one - other
     (bound,) = bounds_of(graph, [sign(turning) * one], [3.0, 0.5], angle=1.0)
-    assert bound < 1e-9 * UNIT
+    assert bound < 1e-9 * UNIT_ROUNDOFF
 
 
 def test_one_over_one_plus_magnitude_uses_its_slope():
@@ -406,13 +422,13 @@ def test_one_over_one_plus_magnitude_uses_its_slope():
     one, other = map(graph.parameter, range(2))
     cosine = graph.angle().cos() * one - other
     (bound, alone) = bounds_of(graph, [one / (1.0 + abs(cosine)), cosine], [100.0, 50.0])
-    assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT) + 100.0 / 51.0 * UNIT)
+    assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT_ROUNDOFF) + 100.0 / 51.0 * UNIT_ROUNDOFF)
 
 
 def test_a_product_with_an_offset_from_zero_counts_all():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
-    product = apart(one, UNSEEN) * other
+    product = offset_from_zero(one, NEGLIGIBLE_LENGTH) * other
     for dust in (OWN.dust, None):
         (bound,) = ErrorBounds(graph, arithmetic=OWN._replace(dust=dust)).of([product])
         values = Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
@@ -461,7 +477,7 @@ def test_a_sum_of_a_zero_and_a_rotation_is_known(other):
     one, two = map(graph.parameter, range(2))
     turning = graph.angle().sin()
     (bound,) = bounds_of(graph, [one * turning - other(turning, two)], [0.3, 0.1], angle=1e-9)
-    assert bound < 8.0 * UNIT * 1e-9
+    assert bound < 8.0 * UNIT_ROUNDOFF * 1e-9
 
 
 def test_a_root_whose_square_overflows_has_no_bound():
@@ -507,7 +523,7 @@ def test_a_reciprocal_of_a_tiny_number_is_no_pivot():
     below = part - other
     outputs = 1e-250 / below, 1e-30 / below
     (_, bound) = bounds_of(graph, outputs, [2.0**90, 2.0**90], angle=1.0)
-    assert bound >= 3.5 * UNIT * 1e-30 / 2.0**270
+    assert bound >= 3.5 * UNIT_ROUNDOFF * 1e-30 / 2.0**270
 
 
 @pytest.mark.slow
@@ -559,7 +575,7 @@ def test_functions_of_both_engines_keep_to_their_ulp(flint, function, exact):
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
-    assert max(error) <= OWN.ulp.get(function, OWN.ulp["atan"]) * UNIT
+    assert max(error) <= OWN.ulp.get(function, OWN.ulp["atan"]) * UNIT_ROUNDOFF
 
 
 @every("function", OTHER)
@@ -589,7 +605,7 @@ def test_one_minus_cosine_is_bounded_by_sine_squared(way, function, side):
         other = getattr(np, OTHER[function])(angle)
         for output in (part - side, side - part, part + -side):
             bound = bound_of(way, graph, output, angle, 0.3)
-            assert 0.5 * other * other * (distance < SMALL_TURN) <= bound < 8.0 * min(other * other, UNIT)
+            assert 0.5 * other * other * (distance < SMALL_TURN) <= bound < 8.0 * min(other * other, UNIT_ROUNDOFF)
 
 
 @every("way", BOUNDS)
@@ -599,7 +615,7 @@ def test_a_sign_that_may_be_the_other_is_no_known_one(way):
     angle, values = 1e-9, (0.1 + 0.2, 0.3)
     for unsure in ((given + 1.0) - (other + 1.0), graph.angle() - other):
         folded = sign(unsure) * graph.angle().cos() - 1.0
-        assert not bound_of(way, graph, folded, angle, *values) < UNIT
+        assert not bound_of(way, graph, folded, angle, *values) < UNIT_ROUNDOFF
     for sure in (given + 1e-300, given - other):  # one rounding turns no sign
         assert bound_of(way, graph, sign(sure) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
 
@@ -611,9 +627,9 @@ def test_an_exact_sum_of_inputs_has_no_error(way):
     parts = [graph.parameter(place) for place in range(5)]
     for values, least in (([0.5, 0.2, -0.5, -0.2, 0.0], 1e-290), ([0.1, 0.2, -0.3, 1e-40, 1e-60], 1e-46)):
         exact = sum(map(Fraction, values))
-        off = abs(Fraction(total(*values)) - exact)
-        bound = Fraction(bound_of(way, graph, total(*parts) * graph.angle(), 1.0, *values))
-        assert off <= bound <= 9 * UNIT * abs(exact) + Fraction(least)
+        off = abs(Fraction(compensated_sum(*values)) - exact)
+        bound = Fraction(bound_of(way, graph, compensated_sum(*parts) * graph.angle(), 1.0, *values))
+        assert off <= bound <= 9 * UNIT_ROUNDOFF * abs(exact) + Fraction(least)
 
 
 @pytest.mark.slow
@@ -627,8 +643,8 @@ def test_an_offset_that_gives_a_direction_is_bounded(flint, family, seed, tight)
 @every("way", BOUNDS)
 def test_an_offset_by_a_share_of_lengths_is_bounded(way):
     graph = Graph()
-    moved = apart(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
-    assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= APART * 7.0
+    moved = offset_from_zero(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
+    assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= RELATIVE_OFFSET * 7.0
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
@@ -642,11 +658,11 @@ def test_bounds_near_change_points_hold_or_are_inf(flint, angle):
 
 
 @every("way", BOUNDS)
-@every("given", [-1e-130, -0.9 * APART * UNSEEN])
+@every("given", [-1e-130, -0.9 * RELATIVE_OFFSET * NEGLIGIBLE_LENGTH])
 def test_an_offset_may_turn_an_unknown_sign(way, given):
     """Along an axis a pivot so near to O is taken to lie on its other side."""
     graph = Graph()
-    folded = sign(apart(graph.parameter(0), UNSEEN)) * graph.angle().cos() - 1.0
+    folded = sign(offset_from_zero(graph.parameter(0), NEGLIGIBLE_LENGTH)) * graph.angle().cos() - 1.0
     assert not bound_of(way, graph, folded, 1e-9, given) < 1.0
     assert bound_of(way, graph, folded, 1e-9, 0.3) < 1e-17
 
@@ -674,7 +690,7 @@ def test_a_sign_is_known_if_its_error_cannot_turn_it(way):
         lambda root, one: one * one.graph.angle() - 0.0 * root,
         lambda root, one: (one + 0.0 * (1.0 + root)).sin(),
         lambda root, one: one / (one + 0.0 * root),
-        lambda root, one: total(one, one, 0.0 * root),
+        lambda root, one: compensated_sum(one, one, 0.0 * root),
         lambda root, one: sign(0.0 * root),
         lambda root, one: 0.0 * sign(root - one),
     ],

@@ -21,7 +21,7 @@ from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers import parameter_tree
-from kinetostatics.numbers.parameter_tree import put_together
+from kinetostatics.numbers.parameter_tree import unflatten
 from support import DATA, graphs
 from support.case_files import shipped
 from support.every import every
@@ -224,7 +224,7 @@ def test_derivatives_equal_60_digit_differences(interpreted, flint, name):
 
     def beside(place, way):
         numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
-        mechanism, speed, acceleration, loads, *_ = put_together(structure, lambda: next(numbers), None, None)
+        mechanism, speed, acceleration, loads, *_ = unflatten(structure, lambda: next(numbers), None, None)
         moved = Dynamics(mechanism, angles, speed, acceleration, loads)
         return [part for quantity in names for part in components(moved, quantity)]
 

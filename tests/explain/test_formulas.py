@@ -7,11 +7,11 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines.graph import Graph, Node
-from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, in_digits, written
+from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, format_number, write_formula
 from kinetostatics.explain.formulas import formula, names_in
-from kinetostatics.explain.named_recording import node_of, result, told
-from kinetostatics.explain.steps import LONGEST, lines
-from kinetostatics.explain.symbols import Symbol, keys_of, of_path, symbol_of
+from kinetostatics.explain.named_recording import name_result, node_of, record_with_names
+from kinetostatics.explain.steps import MAX_FORMULA_SIZE, lines
+from kinetostatics.explain.symbols import Symbol, load_keys, path_symbol, quantity_symbol
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.every import every
 from tests.support.scenes import SCENES, solve
@@ -22,7 +22,7 @@ def spelled(make):
     graph = Graph()
     given = [graph.parameter(place) for place in range(3)]
     tree = formula(make(*given), set(given))
-    return written(tree, TEXT, lambda place: Symbol("abc"[place]))
+    return write_formula(tree, TEXT, lambda place: Symbol("abc"[place]))
 
 
 @every(
@@ -79,8 +79,8 @@ def test_one_number_may_stand_for_another():
 
 
 def found(solution, quantity):
-    made, recorder = told(solution.dynamics, {}, {})
-    nodes = [node_of(part) for part in result(made, quantity, of_scene(solution)[quantity])]
+    made, recorder = record_with_names(solution.dynamics, {}, {})
+    nodes = [node_of(part) for part in name_result(made, quantity, of_scene(solution)[quantity])]
     return made.names, lines(made.names, nodes, recorder, solution.dynamics)
 
 
@@ -91,7 +91,7 @@ def test_formulas_are_short_and_name_lines_before_them(name):
     for line in told_lines:
         if line.tree:
             needed = names_in(line.tree)
-            assert len(needed) <= LONGEST
+            assert len(needed) <= MAX_FORMULA_SIZE
             assert before.issuperset(needed)
         before.add(line.node.index)
     titles = [line.named.title for line in told_lines]
@@ -107,13 +107,13 @@ def test_units_follow_from_those_given():
     solution = ks.solve(
         ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 0.7, crank_speed=9.0, loads=ks.Spring(1e3, 0.2, cubic=10.0)
     )
-    made, recorder = told(
+    made, recorder = record_with_names(
         solution.dynamics,
         dict(enumerate(("crank_length", "coupler_length", "slider.mass", "crank_speed", "k", "s0", "c"))),
         {"crank_length": "m", "coupler_length": "m", "slider.mass": "kg", "crank_speed": "rad/s"}
         | {"k": "N/m", "s0": "m", "c": "N/m**3"},
     )
-    nodes = [node_of(part) for part in result(made, "kinetic_energy", of_scene(solution)["kinetic_energy"])]
+    nodes = [node_of(part) for part in name_result(made, "kinetic_energy", of_scene(solution)["kinetic_energy"])]
     units = {line.named.symbol.text: line.unit for line in lines(made.names, nodes, recorder, solution.dynamics)}
     assert units["w"] == "m"
     assert units["E_kinetic"] == "J"
@@ -152,25 +152,25 @@ TREES = {
     ],
 )
 def test_symbols(style, name, text):
-    assert written(TREES[name], style, SYMBOLS.__getitem__) == text
+    assert write_formula(TREES[name], style, SYMBOLS.__getitem__) == text
 
 
 @every("value, text", [(-0.5, "(-0.5)/(-0.5)^2"), (2.0, "2/2^2"), (1e-7, "1e-07/(1e-07)^2")])
 def test_numbers_are_bracketed_where_they_must(value, text):
-    assert written(("quotient", A, ("power", A, 2)), TEXT, lambda place: value) == text
+    assert write_formula(("quotient", A, ("power", A, 2)), TEXT, lambda place: value) == text
 
 
 @every("name", TREES)
 def test_mathml_is_well_formed(name):
     for given in (SYMBOLS.__getitem__, [-1.5e-7, 3.0].__getitem__):
-        ET.fromstring(f"<math>{written(TREES[name], MATHML, given)}</math>")
+        ET.fromstring(f"<math>{write_formula(TREES[name], MATHML, given)}</math>")
 
 
 def test_values_have_six_digits_and_constants_all():
-    assert in_digits(1 / 3) == "0.333333"
-    assert in_digits(0.0) == "0"
-    assert in_digits(1 / 3, True) == "0.3333333333333333"
-    assert in_digits(2.0, True) == "2"
+    assert format_number(1 / 3) == "0.333333"
+    assert format_number(0.0) == "0"
+    assert format_number(1 / 3, True) == "0.3333333333333333"
+    assert format_number(2.0, True) == "2"
     assert LATEX.number(-2.5e-8) == r"-2.5 \cdot 10^{-8}"
     assert "−8" in MATHML.number(-2.5e-8)
 
@@ -203,7 +203,7 @@ def test_greek_letters_are_greek_in_latex_and_mathml():
     ],
 )
 def test_numbers_of_a_scene(path, text):
-    assert of_path(path).text == text
+    assert path_symbol(path).text == text
 
 
 @every(
@@ -219,7 +219,7 @@ def test_numbers_of_a_scene(path, text):
     ],
 )
 def test_quantities(quantity, text):
-    assert symbol_of(quantity).text == text
+    assert quantity_symbol(quantity).text == text
 
 
 def test_a_symbol_as_text():
@@ -231,4 +231,4 @@ def test_a_symbol_as_text():
 
 def test_loads_of_a_kind_are_counted_as_in_paths():
     loads = (ks.Spring(1.0, 0.0), ks.Gravity(), ks.Spring(2.0, 0.0))
-    assert keys_of(loads) == ["spring", "gravity", "spring2"]
+    assert load_keys(loads) == ["spring", "gravity", "spring2"]

@@ -11,7 +11,7 @@ from kinetostatics import machine
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
-from kinetostatics.explain.named_recording import Names, node_of, result, told
+from kinetostatics.explain.named_recording import Names, name_result, node_of, record_with_names
 from kinetostatics.explain.symbols import Symbol
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.scenes import SCENES, everything, solve
@@ -130,8 +130,8 @@ def test_terms_name_variables_of_their_kernels():
 
 
 def named(solution, quantity):
-    made, recorder = told(solution.dynamics, {}, {})
-    return made, recorder, result(made, quantity, of_scene(solution)[quantity])
+    made, recorder = record_with_names(solution.dynamics, {}, {})
+    return made, recorder, name_result(made, quantity, of_scene(solution)[quantity])
 
 
 def test_every_quantity_is_computed_to_the_same_bits():
@@ -170,6 +170,8 @@ def test_headings_follow_the_calculation():
 
 
 def test_numbers_without_a_path_have_a_symbol():
-    made, _ = told(ks.solve(ks.crank_slider(0.05, 0.2), 0.7, crank_speed=1.0).dynamics, {0: "crank_length"}, {})
+    made, _ = record_with_names(
+        ks.solve(ks.crank_slider(0.05, 0.2), 0.7, crank_speed=1.0).dynamics, {0: "crank_length"}, {}
+    )
     symbols = [found.symbol.text for found in made.names.of.values() if found.kind == "given"]
     assert symbols == ["l_crank", "c_2", "c_3", "phi"]

@@ -11,8 +11,8 @@ from kinetostatics import ConditionWarning
 from kinetostatics.machine.groups import lever, near_dead_centre, rocker, slider
 from kinetostatics.machine.guide import Line
 from kinetostatics.machine.kinematic_state import Throw
-from kinetostatics.mechanics.quantities import scale
-from kinetostatics.numbers.parameter_tree import with_fields
+from kinetostatics.mechanics.quantities import largest_term
+from kinetostatics.numbers.parameter_tree import replace_unchecked
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.case_files import shipped
@@ -117,8 +117,8 @@ def test_pivot_at_the_centre_has_finite_motion():
 )
 def test_nearly_equal_lengths_are_recognised(given, close):
     radius, offset, length = given
-    assert near_dead_centre.is_small(Throw((radius, 0.0), True), offset, length) is close
-    assert near_dead_centre.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
+    assert near_dead_centre.has_small_clearance(Throw((radius, 0.0), True), offset, length) is close
+    assert near_dead_centre.has_small_clearance(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
 
 
 @pytest.mark.slow
@@ -155,7 +155,7 @@ def test_torque_keeps_digits_that_reactions_lose(flint, name):
         torque, support = (enclosure(s, quantity) for quantity in ("balancing_torque", "O"))
         assert support.largest * distance > 30.0
         error = np.max(relative_errors(s.balancing_torque[None], torque)) * torque.largest
-        assert error < 1e-14 * scale(s, "balancing_torque")
+        assert error < 1e-14 * largest_term(s, "balancing_torque")
         assert np.max(relative_errors(s.reaction("O"), support)) < 5e-16 / distance
 
 
@@ -251,7 +251,7 @@ def press(away=AWAY, beside=BESIDE, coupler=COUPLER, way=(1, 1), axis=0, off=0.0
 def plainly(mechanism):
     """The same by the formulas of other rockers."""
     rocker, ram = mechanism.groups
-    return with_fields(mechanism, groups=(with_fields(rocker, knuckle=""), ram))
+    return replace_unchecked(mechanism, groups=(replace_unchecked(rocker, knuckle=""), ram))
 
 
 def directions(mechanism):
@@ -299,7 +299,7 @@ def test_coupler_may_point_to_either_side():
     """As in a program, whose lengths may become others after it was recorded."""
     bars = ks.Mechanism("double crank", ks.Crank(0.4), (ks.RockerGroup(0.3, 0.35, (0.1, 0.02)),))
     for knuckle, axis in (("x", 0), ("y", 1)):
-        known = with_fields(bars, groups=(with_fields(bars.groups[0], knuckle=knuckle),))
+        known = replace_unchecked(bars, groups=(replace_unchecked(bars.groups[0], knuckle=knuckle),))
         one, other = (directions(made)[axis] for made in (known, bars))
         assert np.min(other) < -0.9 < 0.9 < np.max(other)
         np.testing.assert_allclose(one, other, rtol=0.0, atol=3e-15)

@@ -13,7 +13,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.engines import KERNELS
-from kinetostatics.numbers.fingerprint import digest, key_of, of_class
+from kinetostatics.numbers.fingerprint import class_key, digest, key_of
 from support.every import every
 
 BASE = """
@@ -340,5 +340,5 @@ def test_what_may_change_unseen_has_no_key():
 
 @pytest.mark.parametrize("kind", [ByGlobal, ByClassConstant, ByTable, Structural])
 def test_ordinary_classes_have_a_key(kind):
-    assert of_class(kind, (kind,)) is not None
-    assert of_class(kind, (kind,)) == of_class(kind, (kind,))
+    assert class_key(kind, (kind,)) is not None
+    assert class_key(kind, (kind,)) == class_key(kind, (kind,))

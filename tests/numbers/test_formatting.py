@@ -10,8 +10,8 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import CaseError
 from kinetostatics.numbers import spreads
-from kinetostatics.numbers.files import headings, read_columns, read_text, written_whole
-from kinetostatics.numbers.formatting import angle, at_most, number, pretty, si_columns
+from kinetostatics.numbers.files import headings, read_columns, read_text, write_atomically
+from kinetostatics.numbers.formatting import angle, number, pretty_unit, round_bound_up, si_columns
 from support.every import every
 
 
@@ -46,7 +46,7 @@ def test_shown_value_is_within_half_a_place(power):
 
 @every("bound, text", [(1.23e-10, "1.3e-10"), (0.25, "0.25"), (0.2500001, "0.26"), (9.91, "10"), (0.0, "0")])
 def test_a_bound_is_never_told_smaller_than_it_is(bound, text):
-    assert at_most(bound) == text
+    assert round_bound_up(bound) == text
 
 
 @every("value, text", [(math.inf, "∞"), (-math.inf, "-∞"), (math.nan, ""), (1.5, "1.5")])
@@ -60,7 +60,7 @@ def test_infinity_may_have_a_sign_of_its_own(value, text):
     ("N/m**3", "N/m³"),
 ])  # fmt: skip
 def test_units_have_raised_exponents_and_dots(unit, text):
-    assert pretty(unit) == text
+    assert pretty_unit(unit) == text
 
 
 @every("degrees, text", [(1.1e-13, "0"), (-1e-9, "0"), (math.nan, ""), (138.58297, "138.583"), ("at", "at")])
@@ -98,7 +98,7 @@ def test_too_large_a_file_is_refused(tmp_path):
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="the system has no names for open files")
 def test_an_open_pipe_takes_what_is_written():
     reading, writing = os.pipe()
-    with written_whole(f"/dev/fd/{writing}") as path:
+    with write_atomically(f"/dev/fd/{writing}") as path:
         Path(path).write_text("whole", encoding="utf-8")
     os.close(writing)
     assert os.read(reading, 99) == b"whole"
@@ -116,17 +116,17 @@ def test_each_form_is_the_distribution_it_names():
     np.testing.assert_allclose(middles, [750.0, 712.0, (690 + 710 + 740) / 3], rtol=1e-12)
 
 
-@every("reader", [spreads.axis, spreads.spread_of])
+@every("reader", [spreads.parse_grid, spreads.parse_spread])
 @every("given", ["70..85:10", "70 .. 85", "uniform 70..85", "triangular 70..80..85", "normal 80 +- 2"])
 def test_numbers_without_a_unit_are_said_to_have_none(reader, given):
     with pytest.raises(ks.ParameterError, match=r'it has no unit \("1" where there is none\); write "600'):
-        spreads.read({"crank_length": given}, reader)
+        spreads.read_spreads({"crank_length": given}, reader)
 
 
 @every("given", [[70, 85], (0.07, 0.085, 10), np.linspace(0.07, 0.085, 3), ["70 mm", "85 mm"]])
 def test_bare_numbers_name_the_allowed_forms(given):
     with pytest.raises(ks.ParameterError, match=r'each with its unit; write "600\.\.900 kN/m:40" for a grid'):
-        spreads.read({"crank_length": given}, spreads.axis)
+        spreads.read_spreads({"crank_length": given}, spreads.parse_grid)
 
 
 @every(
@@ -134,6 +134,6 @@ def test_bare_numbers_name_the_allowed_forms(given):
     ["600..900 kN/m", "normal 712 kN/m +- 5 kN/m", *(f"triangular 69..{mode}..78 kN/m" for mode in (69, 71, 76))],
 )
 def test_median_and_deviation_match_the_distribution(given):
-    spread = spreads.spread_of(given)
+    spread = spreads.parse_spread(given)
     assert spread.median == pytest.approx(spread.distribution.median(), rel=1e-14)
     assert spread.deviation == pytest.approx(spread.distribution.std(), rel=1e-14)

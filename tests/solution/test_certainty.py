@@ -10,8 +10,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError, ParameterError, QuantityError
-from kinetostatics.solution.certainty import Terms, second_order_effects
-from kinetostatics.solution.uncertainty_table import largest_with_uncertainty, with_uncertainty
+from kinetostatics.solution.certainty import SecondOrderTerms, find_second_order
+from kinetostatics.solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
@@ -211,7 +211,7 @@ def terms_of(compute, deviations, numbers=(0.0,) * 9):
     """Terms of a function of the numbers of a scene, one for each path that is given."""
     leaves = SimpleNamespace(numbers=list(numbers), with_numbers=lambda moved: SimpleNamespace(numbers=moved))
     places = {path: place for place, path in enumerate(deviations)}
-    return Terms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
+    return SecondOrderTerms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
 
 
 @pytest.mark.slow
@@ -226,7 +226,7 @@ def test_products_with_common_input_are_all_seen(count, signs):
             return np.array([[given[common] * (signs[0] * given[one] + signs[1] * given[other])]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert paths[common] in told.paths
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
@@ -244,7 +244,7 @@ def test_products_without_common_input_are_all_seen(count):
             return np.array([[first - second]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert set(told.paths) in ({paths[one], paths[other]}, {paths[third], paths[fourth]})
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
@@ -354,7 +354,7 @@ def test_constant_and_repeated_rows_are_left_out():
     (7.0, 20.0, "7 +- 20"), (0.36, 1e-4 + 3e-16, "0.36 +- 0.0001"), (0.36, 1.01e-4, "0.36 +- 0.00011"),
 ])  # fmt: skip
 def test_value_is_printed_to_two_uncertain_digits(value, uncertainty, text):
-    assert with_uncertainty(value, uncertainty) == text
+    assert format_with_uncertainty(value, uncertainty) == text
 
 
 def test_a_doubt_is_told_once_and_names_the_quantities():

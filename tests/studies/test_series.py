@@ -9,8 +9,7 @@ import kinetostatics as ks
 from kinetostatics.engines.engines import Kernels
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
-from kinetostatics.studies.series import harmonic_series
-from kinetostatics.studies.simplifications import two_mass_coupler
+from kinetostatics.studies.simplifications import harmonic_series, two_mass_coupler
 from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 
 

@@ -9,7 +9,14 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import table_pieces
-from kinetostatics.machine.loads.table_pieces import ASIDE, SAMPLES, STRAIGHT, TURN, bending, crossings
+from kinetostatics.machine.loads.table_pieces import (
+    KINK_TOLERANCE,
+    SAMPLE_OFFSET,
+    STOP_SAMPLES,
+    TURN,
+    kink_rows,
+    stops_and_crossings,
+)
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.every import every
 
@@ -45,7 +52,7 @@ SMOOTH = {
 
 @every("name", SMOOTH)
 def test_fine_rows_of_a_smooth_curve_bend_nothing(name):
-    assert not SMOOTH[name].is_bent(STRAIGHT)
+    assert not SMOOTH[name].is_bent(KINK_TOLERANCE)
     assert SMOOTH[name].is_bent(0.0)
 
 
@@ -61,10 +68,10 @@ SHARP = {
 @every("name", SHARP)
 def test_kinks_jumps_and_spikes_among_fine_rows_stay(name):
     y, expected = SHARP[name]
-    found = bending(along(FINE, y))
+    found = kink_rows(along(FINE, y))
     assert found.size <= 5
     assert all(np.abs(found - row).min() <= 1 for row in expected), found
-    assert np.array_equal(found, bending(along(FINE, 0.0 * FINE + 1.0, y)))  # also where the other stroke is smooth
+    assert np.array_equal(found, kink_rows(along(FINE, 0.0 * FINE + 1.0, y)))  # also where the other stroke is smooth
 
 
 @every("width", [1e-9, 1e-6, 1e-3])
@@ -72,12 +79,12 @@ def test_kinks_jumps_and_spikes_among_fine_rows_stay(name):
 def test_no_spike_of_three_rows_passes_as_a_parabola(width, height):
     x = np.sort(np.append(np.linspace(0.1, 0.3, 4), [0.2, 0.2 + width, 0.2 + 2 * width]))
     y = 1.0 + height * (x == 0.2 + width)
-    assert bending(along(x, y)).tolist() == [2, 3, 4]
+    assert kink_rows(along(x, y)).tolist() == [2, 3, 4]
 
 
 def test_a_narrow_smooth_bump_is_split():
     x = np.linspace(0.1, 0.3, 20_001)
-    found = x[bending(along(x, np.exp(-(((x - 0.2) / 3e-3) ** 2))))]
+    found = x[kink_rows(along(x, np.exp(-(((x - 0.2) / 3e-3) ** 2))))]
     assert 4 < found.size < 20
     assert np.abs(found - 0.2).max() < 0.015
 
@@ -87,12 +94,12 @@ def test_between_bends_a_table_is_polynomial(seed):
     rng = np.random.default_rng(seed)
     x = np.sort(np.append(rng.uniform(0.1, 0.3, 400), [0.1, 0.3]))
     y = gas(x) + 10.0 ** rng.uniform(-1, 3) * np.cumsum(rng.standard_normal(x.size) * (rng.random(x.size) < 0.05))
-    kept = [0, *bending(along(x, y)), x.size - 1]
+    kept = [0, *kink_rows(along(x, y)), x.size - 1]
     for low, high in pairwise(kept):
         if x[high] - x[low] < 0.2 / 32:  # longer ones may be several polynomials
             at = np.linspace(x[low], x[high], 300)
             fit = np.polynomial.Chebyshev.fit(at, np.interp(at, x, y), 7)
-            assert np.abs(fit(at) - np.interp(at, x, y)).max() < 2 * STRAIGHT * np.abs(y).max()
+            assert np.abs(fit(at) - np.interp(at, x, y)).max() < 2 * KINK_TOLERANCE * np.abs(y).max()
 
 
 # Where sliders stand still and pass places
@@ -108,7 +115,7 @@ def travel(solved, angle):
 
 def test_levels_are_passed_twice_a_turn():
     solved, levels = motion(), np.linspace(0.15, 0.22, 7)
-    stops, passed = crossings(solved, "slider", levels)
+    stops, passed = stops_and_crossings(solved, "slider", levels)
     assert stops.shape == (1, 2)
     assert passed.shape == (1, 14)
     assert np.abs(travel(solved, stops).first).max() < 1e-15
@@ -117,10 +124,10 @@ def test_levels_are_passed_twice_a_turn():
 
 def test_level_near_a_stop_is_passed_to_and_fro():
     solved = motion()
-    stops, _ = crossings(solved, "slider", np.array([0.2]))
+    stops, _ = stops_and_crossings(solved, "slider", np.array([0.2]))
     farthest = travel(solved, stops).position.max()
     for depth in (1e-5, 1e-9, 1e-13):
-        _, passed = crossings(solved, "slider", np.array([farthest - depth]))
+        _, passed = stops_and_crossings(solved, "slider", np.array([farthest - depth]))
         assert passed.shape == (1, 2)
         np.testing.assert_allclose(travel(solved, passed).position, farthest - depth, rtol=0, atol=1e-16)
 
@@ -128,28 +135,30 @@ def test_level_near_a_stop_is_passed_to_and_fro():
 def test_designs_pass_the_levels_in_their_stroke():
     crank = np.array([[0.01], [0.03], [0.05]])
     levels = np.linspace(0.14, 0.24, 11)
-    stops, passed = crossings(motion(crank), "slider", levels)
+    stops, passed = stops_and_crossings(motion(crank), "slider", levels)
     assert stops.shape == (3, 2)
     for row, length in enumerate(crank[:, 0]):
-        alone = np.sort(crossings(motion(length), "slider", levels)[1][0])
+        alone = np.sort(stops_and_crossings(motion(length), "slider", levels)[1][0])
         np.testing.assert_allclose(np.sort(passed[row])[: alone.size], alone, rtol=0, atol=1e-14)
         assert np.isnan(np.sort(passed[row])[alone.size :]).all()
 
 
 @every("way", [1, -1])
 def test_stop_exactly_at_a_sample_is_found(way):
-    stop = (ASIDE + np.linspace(0.0, TURN, SAMPLES + 1))[100]
+    stop = (SAMPLE_OFFSET + np.linspace(0.0, TURN, STOP_SAMPLES + 1))[100]
 
     def place(angle):
         cosine, sine = (way * part(angle - stop) for part in (np.cos, np.sin))
         return SimpleNamespace(travels={"slider": SimpleNamespace(position=cosine, first=-sine, second=-cosine)})
 
-    stops, _ = crossings(SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1))
+    stops, _ = stops_and_crossings(
+        SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1)
+    )
     np.testing.assert_allclose(np.sort(stops[0]), np.sort(np.mod([stop, stop + np.pi], TURN)), rtol=0, atol=1e-12)
 
 
 def test_what_does_not_close_passes_nothing_there():
-    stops, passed = crossings(motion(0.25, 0.0), "slider", np.array([0.3]))
+    stops, passed = stops_and_crossings(motion(0.25, 0.0), "slider", np.array([0.3]))
     assert np.isfinite(passed).sum() == 2
     assert np.isfinite(stops).sum() <= 2
 
@@ -168,7 +177,7 @@ def test_a_steep_last_piece_is_within_its_rounding():
     error = [
         abs(float(Fraction(float(value)) - 1000 * (1 - part))) for value, part in zip(table(motion), share, strict=True)
     ]
-    assert np.all(error <= table_pieces.rounding(table, motion))
+    assert np.all(error <= table_pieces.rounding_bound(table, motion))
 
 
 def exactly(table, angle):
@@ -190,7 +199,7 @@ def test_values_by_angle_lie_within_their_rounding(first, turns):
         angles = np.concatenate([rng.uniform(first, first + period, 40), rng.uniform(-50, 50, 20), x, x - period])
         force = ks.ProcessForce(table, period=period)
         motion = ks.solve(ks.crank_slider(0.05, 0.2), angles, crank_speed=100.0, loads=force)
-        bound = table_pieces.rounding(table, motion)
+        bound = table_pieces.rounding_bound(table, motion)
         for angle, value, most in zip(angles, table(motion), bound, strict=True):
             assert abs(Fraction(float(value)) - exactly(table, angle)) <= Fraction(most)
 
@@ -216,7 +225,7 @@ def test_pieces_of_a_table_are_exact_in_exact_numbers():
 def test_on_level_pieces_of_a_table_nothing_is_rounded():
     table = ks.Table([0.0, 1.0, 3.0, 4.0], [0.3, 0.3, 0.7, 0.7])
     motion = ks.solve(ks.crank_slider(0.05, 0.2), [0.5, 2.0, 3.5], crank_speed=1.0, loads=ks.ProcessForce(table))
-    level, rising, other = table_pieces.rounding(table, motion)
+    level, rising, other = table_pieces.rounding_bound(table, motion)
     assert 0.0 < max(level, other) < 1e-290
     assert 1e-16 < rising < 6e-16
 
@@ -225,7 +234,7 @@ def test_kinks_and_jumps_stand_at_rows_and_ends_only():
     pump = ks.crank_slider(0.05, 0.2)
     table = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0], slider="slider")
     s = ks.solve(pump, [0.0, 1.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
-    kinks, jumps, near, distance = table_pieces.kinks_within(table, s)
+    kinks, jumps, near, distance = table_pieces.kink_bounds(table, s)
     assert np.flatnonzero(jumps).tolist() == [0, 2]
     assert kinks[1] == 0.0
     assert 0.0 < near < 1e-6
@@ -254,7 +263,7 @@ def test_at_the_end_of_a_stroke_a_table_jumps(beside):
     x = [0.14, 0.16, 0.24, 0.25 + beside, 0.26, 0.3]
     table = ks.Table(x, [0.0, 0.0, 0.0, -700.0, 0.0, -9e5], over="travel", back=np.zeros(6))
     s = ks.solve(pump, [0.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
-    (outer, inner) = table_pieces.kinks_within(table, s)[1]
+    (outer, inner) = table_pieces.kink_bounds(table, s)[1]
     assert 700.0 <= outer <= 701.0
     assert inner < 1e-8
     assert s.error_bound("B")[0, 1] < 1e-6
