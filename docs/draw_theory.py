@@ -10,10 +10,9 @@ from pictures import as_svg, look
 import kinetostatics as ks
 from kinetostatics.machine.friction import Sliding, Turning
 from kinetostatics.mechanics.motion import Motion
-from kinetostatics.views import symbols
+from kinetostatics.views import strokes
 from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
-from kinetostatics.views.shape import Shape
-from kinetostatics.views.symbols import LINES, PLATES
+from kinetostatics.views.strokes import LINES, PLATES, Shape
 
 FOLDER = Path(__file__).parent / "theory"
 TURN = np.radians(np.arange(720) / 2)
@@ -46,10 +45,10 @@ def _along(solution, pair):
     """Unit vector along which the force of a pair counts."""
     if not isinstance(pair, Sliding):  # a roller: inward normal of its path
         velocity = solution.velocity(pair.joint)[:, 0]
-        return symbols.left(velocity / np.hypot(*velocity))
+        return strokes.left(velocity / np.hypot(*velocity))
     if pair.against in solution.mechanism.guides:  # a yoke: left normal of its slot
-        return symbols.left(np.array(solution.placement.links[pair.link].direction, dtype=float).reshape(2))
-    return symbols.left(np.array(solution.placement.links[pair.against].direction, dtype=float).reshape(2))
+        return strokes.left(np.array(solution.placement.links[pair.link].direction, dtype=float).reshape(2))
+    return strokes.left(np.array(solution.placement.links[pair.against].direction, dtype=float).reshape(2))
 
 
 def lines(solution, shape, name):
@@ -58,7 +57,7 @@ def lines(solution, shape, name):
     place, turn = solution.position(made.references[name])[:, 0], np.ravel(solution.placement.links[name].direction)
 
     def put(points):
-        return place[:, None] + np.outer(turn, points[0]) + np.outer(symbols.left(turn), points[1])
+        return place[:, None] + np.outer(turn, points[0]) + np.outer(strokes.left(turn), points[1])
 
     corners = shape.corners[name]
     if corners.shape[1] > 1 and name != "cylinder":
@@ -76,7 +75,7 @@ def lines(solution, shape, name):
 
 
 def _box(turn, size):
-    return size * (np.outer(turn, symbols.RECTANGLE[:, 0]) + np.outer(symbols.left(turn), symbols.RECTANGLE[:, 1]))
+    return size * (np.outer(turn, strokes.RECTANGLE[:, 0]) + np.outer(strokes.left(turn), strokes.RECTANGLE[:, 1]))
 
 
 def arrow(ax, start, tip, text, colour=ACCENT, own=True, tail=False):
@@ -122,7 +121,7 @@ def apart(solution, link, place, degrees, gap=0.36):
         if name == "crank":
             sense = np.sign(solution.balancing_torque[0])
             level = np.array([[1.0], [0.0]])
-            ring = symbols.placed(symbols.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.unit, sense)[..., 0]
+            ring = strokes.place_sign(strokes.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.unit, sense)[..., 0]
             drawn.append(({"color": LOAD, "lw": 1.4}, ring))
         corners = [points for _, points in drawn] + [np.column_stack(item[:2]) for item in arrows]
         low, high = (np.nanmax(np.sign(way) * np.concatenate(corners, axis=1), axis=1) for way in (-1, 1))
@@ -222,20 +221,20 @@ def signs():
     phi = np.radians(62.0)
     s = ks.solve(machine, [phi], crank_speed=1.0)
     u = np.array([np.cos(lean), np.sin(lean)])
-    n = symbols.left(u)
+    n = strokes.left(u)
     a, b = (s.position(name)[:, 0] for name in "AB")
     figure, ax = plt.subplots()
     for way, text in ((np.array([0.4, 0.0]), "x"), (np.array([0.0, 0.16]), "y")):
         ax.annotate("", way, (0, 0), arrowprops={**SHAFT, "color": INK, "lw": 0.8, "mutation_scale": 9})
         ax.text(*(1.03 * way), text, ha="center", va="center")
     foot = offset * n
-    rail = symbols.hatched(foot + 0.1 * u - 0.011 * n, foot + 0.42 * u - 0.011 * n, 0.008)
+    rail = strokes.hatched_line(foot + 0.1 * u - 0.011 * n, foot + 0.42 * u - 0.011 * n, 0.008)
     ax.plot(*rail, color=INK, lw=0.8, alpha=0.6)
     ax.plot(*np.stack([foot - 0.03 * u, foot + 0.46 * u], axis=1), color=INK, lw=0.6, ls="-.")
     for start, end in (((0.0, 0.0), a), (a, b)):
         ax.plot(*np.stack([start, end], axis=1), **LINES["bar"])
     ax.fill(*(b[:, None] + _box(u, 0.016)), **PLATES["block"])
-    ax.plot(0, 0, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
+    ax.plot(0, 0, marker=strokes.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
     for point, name, shift in (((0, 0), "O", (-0.018, 0.006)), (a, "A", (-0.012, 0.014)), (b, "B", (-0.022, 0.022))):
         ax.plot(*point, "o", ms=5, mfc="white", mec=INK, zorder=8)
         ax.text(*(np.asarray(point) + shift), name, ha="center", va="center")
@@ -247,7 +246,7 @@ def signs():
     ax.text(*(0.8 * foot + (0.022, 0.002)), "e < 0", color=ACCENT, ha="center", va="center", fontsize="small")
     q = (b - a) / np.hypot(*(b - a))
     arrow(ax, a, a + 0.07 * q, "along")
-    arrow(ax, a, a + 0.045 * symbols.left(q), "across")
+    arrow(ax, a, a + 0.045 * strokes.left(q), "across")
     ax.text(*(foot + 0.47 * u + 0.012 * n), "guide", rotation=12, fontsize="small", va="center")
     ax.update_datalim([(0.0, 0.17), (-0.1, 0.0)])
     ax.set_aspect("equal", adjustable="datalim")
@@ -296,7 +295,7 @@ def friction():
     pin.plot(0, 0, "+", color=INK)
     pin.set_title("pin: R touches the friction circle", fontsize="medium")
     shoe.fill([-1, 1, 1, -1], [0, 0, 0.7, 0.7], fc=STEEL, ec="none", alpha=0.7)
-    shoe.plot(*symbols.hatched(np.array([-2.2, -0.03]), np.array([2.4, -0.03]), 0.18), color=INK, lw=0.8)
+    shoe.plot(*strokes.hatched_line(np.array([-2.2, -0.03]), np.array([2.4, -0.03]), 0.18), color=INK, lw=0.8)
     arrow(shoe, np.array([1.1, 0.4]), np.array([1.9, 0.4]), "v", INK)
     arrow(shoe, np.array([-0.95, -1.2]), np.array([-0.95, -0.03]), "N/2 - C/2b", tail=True)
     arrow(shoe, np.array([0.95, -1.2]), np.array([0.95, -0.03]), "N/2 + C/2b", tail=True)

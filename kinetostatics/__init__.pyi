@@ -33,9 +33,9 @@ from .machine.cams.roller import Face as Face
 from .machine.cams.roller import Roller as Roller
 from .machine.crank import Crank as Crank
 from .machine.crank import Pin as Pin
-from .machine.followers.flat import FlatFollower as FlatFollower
-from .machine.followers.roller import RollerFollower as RollerFollower
 from .machine.followers.swinging import SwingingFollower as SwingingFollower
+from .machine.followers.translating import FlatFollower as FlatFollower
+from .machine.followers.translating import RollerFollower as RollerFollower
 from .machine.friction import GuideFriction as GuideFriction
 from .machine.friction import PinFriction as PinFriction
 from .machine.friction import RollerFriction as RollerFriction
@@ -87,6 +87,6 @@ from .sweeps.sweeps import sweep as sweep
 from .sweeps.tolerance import Tolerances as Tolerances
 from .sweeps.tolerance import tolerances as tolerances
 from .views import plots as plots
-from .views.report.making import report as report
+from .views.report.report import report as report
 
 __version__: str

@@ -91,7 +91,7 @@ def flint():
 @pytest.fixture(scope="session")
 def tell(request):
     """Prints a line past pytest's capturing; first of all the machine and the versions."""
-    from kinetostatics.studies import timing
+    from kinetostatics.studies.methods import method
 
     capturing = request.config.pluginmanager.getplugin("capturemanager")
 
@@ -99,7 +99,7 @@ def tell(request):
         with capturing.global_and_fixture_disabled():
             print(f"\n{text}", end="")
 
-    for text in timing.circumstances().values():
+    for text in method.circumstances().values():
         line(text)
     return line
 

@@ -27,7 +27,7 @@ from kinetostatics.casefile.reading import shipped_cases  # noqa: E402
 from kinetostatics.machine.friction import Sliding, Turning  # noqa: E402
 from kinetostatics.machine.guide import Guide  # noqa: E402
 from kinetostatics.machine.loads import Table  # noqa: E402
-from kinetostatics.machine.loads.points import Between, Place  # noqa: E402
+from kinetostatics.machine.loads.points import PlacePairRule, PlaceRule  # noqa: E402
 from kinetostatics.machine.loads.table_pieces import WholeTurns  # noqa: E402
 from kinetostatics.numbers import checks  # noqa: E402
 from kinetostatics.studies.methods.high_precision.certified import certified  # noqa: E402
@@ -235,7 +235,7 @@ def describe(item):
 def _unit(rule, value):
     if isinstance(rule, WholeTurns):
         return " [rad]"
-    if isinstance(rule, Place | Between):  # by name, or in m
+    if isinstance(rule, PlaceRule | PlacePairRule):  # by name, or in m
         return "" if isinstance(value, str) else " [m]"
     rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
     return f" [{rule.unit}]" if isinstance(rule, checks.Number | checks.Pair | checks.Series) else ""

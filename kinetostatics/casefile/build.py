@@ -3,10 +3,13 @@
 Chains and loads: groups and loads of any kind, made of their tables.
 
 Pieces of mechanisms, made of their tables: links, guides, cams; and many of them at once, with all that is wrong.
+
+What designs may vary: paths into a variant of a case file, as in scenes: "spring.stiffness", "slider2.mass".
 """
 
+import typing
 from dataclasses import MISSING, fields
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
@@ -14,16 +17,128 @@ from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_
 from ..machine.cams import cams
 from ..machine.cams.roller import Roller
 from ..machine.crank import Crank
-from ..machine.friction import kind_for
+from ..machine.friction import friction_kind
 from ..machine.guide import Guide
 from ..machine.links import Link
 from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..machine.mechanism import Mechanism
+from ..numbers import paths as tree
 from ..numbers.checks import choice
 from ..numbers.files import read_columns
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
-from . import parameters, schema
+from . import schema
+from .schema import MADE_OF, Table
+
+COMPONENTS = {"x": 0, "y": 1, "along": 0, "across": 1}
+"""Names of the components of a pair."""
+GUIDE_KEYS = ("guide_angle", "guide_offset")
+"""What two points of the guide fix, if they are given."""
+
+
+class NumberPlace(NamedTuple):
+    """Where a number stands in a validated table: fields and numbers of items, from the outermost; and its unit."""
+
+    steps: tuple[str | int, ...]
+    unit: str
+
+
+def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
+    """Place by path of all numbers in a validated table that can be varied; a label goes behind the first name."""
+    names = getattr(MADE_OF.get(type(table)), "PATHS", {})
+    found: dict[str, NumberPlace] = {}
+    for name, field in type(table).model_fields.items() if not _is_in_file(table) else ():
+        if name in GUIDE_KEYS and getattr(table, "guide_through", None):
+            continue
+        value = getattr(table, name)
+        if isinstance(value, tuple) and value and isinstance(value[0], Table):
+            inner = _places_in_parts(table, value)
+        elif isinstance(value, dict):
+            inner = {
+                path: place._replace(steps=(key, *place.steps))
+                for key, part in value.items()
+                for path, place in places_by_path(part, f"{prefix}{name}.{key}.").items()
+                if getattr(part, str(place.steps[0])) is not None
+            }
+        else:
+            inner = _places_in_value(table, name, value, field, f"{prefix}{names.get(name, name)}{label}")
+        found |= {path: place._replace(steps=(name, *place.steps)) for path, place in inner.items()}
+    return found
+
+
+def _places_in_parts(table, parts):
+    """Those of groups or loads; the second load of a kind is numbered so, after one that has a table of its own."""
+    found: dict[str, NumberPlace] = {}
+    counts: dict[str, int] = {}
+    for number, part in enumerate(parts):
+        named = getattr(MADE_OF[type(part)], "PATH", "")
+        counts[named] = counts.get(named, int(bool(named and getattr(table, named, None)))) + 1
+        again = str(counts[named]) if counts[named] > 1 else ""
+        label = getattr(part, "label", getattr(part, "name", ""))
+        inner = places_by_path(part, f"{named}{again}.") if named else places_by_path(part, "", label)
+        found |= {path: place._replace(steps=(number, *place.steps)) for path, place in inner.items()}
+    return found
+
+
+def _places_in_value(table, name, value, field, path):
+    if isinstance(value, Table):
+        return places_by_path(value, f"{path}.")
+    meant = _unit_or_rule(field)
+    if hasattr(meant, "numbers"):
+        return {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
+    if meant is None:
+        return {}
+    if isinstance(value, tuple):
+        parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
+        return {f"{path}.{part}": NumberPlace((COMPONENTS[part],), meant) for part in parts}
+    return {path: NumberPlace((), meant)}
+
+
+def _file_of(table):
+    """Name of the file in which the numbers are that a table stands for, or None."""
+    found = (getattr(table, key, None) for key in ("file", "table"))
+    return next((name for name in found if name is not None), None)
+
+
+def _is_in_file(table):
+    """Whether a table stands for numbers in a file."""
+    return _file_of(table) is not None
+
+
+def _unit_or_rule(field):
+    """SI unit of a field, or the rule of its numbers, from its annotation; None if it is no number."""
+    candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
+    found = (item for metadata in candidates for item in metadata if isinstance(item, str) or hasattr(item, "numbers"))
+    return next(found, None)
+
+
+def unit_at(table, keys):
+    """SI unit of the field that keys lead to."""
+    return _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
+
+
+def value_at(table, steps):
+    """Value at a place of a validated table: a number in SI, or the word that stands there."""
+    for step in steps:
+        table = table[step] if isinstance(step, int) or isinstance(table, dict) else getattr(table, step)
+    return table
+
+
+def with_values(table, values: dict):
+    """Copy of a validated table with values by steps, as they are: numbers or arrays of designs."""
+    return tree.with_values(table, values, lambda part, **fields: part.model_copy(update=fields))
+
+
+def named_files(table, keys=()):
+    """Keys that lead to each table that stands for numbers in a file, that table, and the file's name."""
+    if isinstance(table, tuple):
+        for number, part in enumerate(table):
+            yield from named_files(part, (*keys, number))
+    elif isinstance(table, Table):
+        if _is_in_file(table):
+            yield keys, table, _file_of(table)
+        for name in type(table).model_fields:
+            yield from named_files(getattr(table, name), (*keys, name))
 
 
 class PartsError(KinetostaticsError, ValueError):
@@ -34,7 +149,7 @@ class PartsError(KinetostaticsError, ValueError):
         super().__init__("; ".join(text for _, text in self.problems))
 
 
-def all_of(makers):
+def collect(makers):
     """What functions return, by their keys; all problems that they raise in one error."""
     found, problems = {}, []
     for keys, make in makers:
@@ -49,7 +164,7 @@ def all_of(makers):
     return found
 
 
-def link_of(table, length=None):
+def build_link(table, length=None):
     """Link of its table; the length of one between two joints tells where its middle is."""
     centre = table.centre
     if isinstance(centre, str):
@@ -62,7 +177,7 @@ def link_of(table, length=None):
     return Link(table.mass, centre, table.inertia)
 
 
-def guide_of(table):
+def build_guide(table):
     """Guide of a table that has its keys."""
     if table.guide_through is None:
         angle, offset = (0.0 if value is None else value for value in (table.guide_angle, table.guide_offset))
@@ -72,7 +187,7 @@ def guide_of(table):
     return Guide.through(*table.guide_through)
 
 
-def cam_of(table, read, guide_angle):
+def build_cam(table, read, guide_angle):
     """Cam of its table, or as `read` from its file."""
     if isinstance(table, schema.SampledTable):
         return read
@@ -83,22 +198,24 @@ def cam_of(table, read, guide_angle):
     return cams.Circle(table.radius, table.centre)
 
 
-def roller_of(table):
+def build_roller(table):
     """Roller of its table, or None."""
     return None if table is None else Roller(**dict(table))
 
 
-def friction_of(tables, mechanism):
+def build_friction(tables, mechanism):
     """Friction by joint of its tables."""
-    found = all_of((("friction", joint), lambda joint=joint: _rub(tables[joint], joint, mechanism)) for joint in tables)
+    found = collect(
+        (("friction", joint), lambda joint=joint: _friction_pair(tables[joint], joint, mechanism)) for joint in tables
+    )
     return {joint: friction for (_, joint), friction in found.items()}
 
 
-def _rub(table, joint, mechanism):
+def _friction_pair(table, joint, mechanism):
     problem = choice("joint", joint, tuple(mechanism.pairs))
     if problem:
         raise KinetostaticsError(problem)
-    kind = kind_for(mechanism.pairs[joint])
+    kind = friction_kind(mechanism.pairs[joint])
     given = {name: value for name in type(table).model_fields if (value := getattr(table, name)) is not None}
     allowed = [field.name for field in fields(kind)]
     lacking = [field.name for field in fields(kind) if field.default is MISSING and field.name not in given]
@@ -109,11 +226,11 @@ def _rub(table, joint, mechanism):
     return kind(**given)
 
 
-def chain(table, tabulated):
+def _chain(table, tabulated):
     """Mechanism of a variant that lists its groups."""
-    crank = Crank(table.crank_length, link_of(table.crank, table.crank_length))
+    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length))
     angle = _guide_angle(table.groups)
-    groups = all_of(
+    groups = collect(
         (("groups", number), lambda part=part, read=tabulated.get(("groups", number, "cam")): _group(part, read, angle))
         for number, part in enumerate(table.groups)
     )
@@ -122,7 +239,7 @@ def chain(table, tabulated):
 
 def _guide_angle(groups):
     """Angle of the first guide whose slider hangs on A: what a cam with a law of its own is cut for."""
-    guides = (guide_of(part) for part in groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
+    guides = (build_guide(part) for part in groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
     return next(guides, Guide()).guide_angle
 
 
@@ -132,24 +249,24 @@ def _group(table, cam, guide_angle):
     values = {name: getattr(table, name) for name in type(table).model_fields if name in kind.RULES.rules}
     links = {name: part for name, part in values.items() if isinstance(part, schema.LinkTable)}
     if "guide" in kind.RULES.rules:
-        values["guide"] = guide_of(table)
+        values["guide"] = build_guide(table)
     if "cam" in values:
-        values["cam"] = cam_of(table.cam, cam, guide_angle)
+        values["cam"] = build_cam(table.cam, cam, guide_angle)
     if "roller" in values:
-        values["roller"] = roller_of(table.roller)
+        values["roller"] = build_roller(table.roller)
     middles = {name: part.model_copy(update={"centre": (0.0, 0.0)}) for name, part in links.items() if _at_middle(part)}
-    group = kind(**values | {name: link_of(middles.get(name, part)) for name, part in links.items()})
+    group = kind(**values | {name: build_link(middles.get(name, part)) for name, part in links.items()})
     lengths = {group.own_names[bar.link]: bar.length for bar in group.bars}
-    return with_fields(group, **{name: link_of(links[name], lengths.get(name)) for name in middles})
+    return replace_unchecked(group, **{name: build_link(links[name], lengths.get(name)) for name in middles})
 
 
 def _at_middle(table):
     return isinstance(table.centre, str)
 
 
-def chain_loads(table, tabulated, mechanism):
+def _listed_loads(table, tabulated, mechanism):
     """Loads of a variant that it lists, looked at one by one."""
-    found = all_of(
+    found = collect(
         (
             ("loads", number),
             lambda part=part, number=number: _load(part, number, tabulated, mechanism, table.crank_speed),
@@ -174,23 +291,21 @@ def _load(table, number, tabulated, mechanism, crank_speed):
     return kind(**values)
 
 
-def tabulated(table, folder):
+def read_files(table, folder):
     """What a validated variant has in files, by the keys that lead there: cams, and values of loads."""
-    found = list(parameters.files(table))
-    return all_of(
+    found = list(named_files(table))
+    return collect(
         (keys, lambda part=part, keys=keys, name=name: _read(folder / name, part, table, keys))
         for keys, part, name in found
     )
 
 
-def without(table, wrong):
+def without_unreadable(table, wrong):
     """A validated variant without what could not be read at some keys, or None, as without its cam."""
-    values: dict[Any, Any] = {
-        keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
-    }
-    values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
-    values |= {keys[:1]: None for keys in wrong if isinstance(parameters.value(table, keys), schema.TorqueTable)}
-    return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
+    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(value_at(table, keys), schema.ValuesTable)}
+    values |= {keys: None for keys in wrong if isinstance(value_at(table, keys), schema.ProcessForceTable)}
+    values |= {keys[:1]: None for keys in wrong if isinstance(value_at(table, keys), schema.TorqueTable)}
+    return None if len(values) < len(set(wrong)) else with_values(table, values)
 
 
 def _read(path, part, table, keys):
@@ -209,26 +324,26 @@ def _read(path, part, table, keys):
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN
     if isinstance(part, schema.ValuesTable):
-        unit = parameters.unit(table, keys)
+        unit = unit_at(table, keys)
         return Table.from_csv(path, unit, part.area, period, part.slider, over=part.over)
     return Table.from_csv(path, period=period)
 
 
-def built(table, tabulated):
+def build_scene(table, tabulated):
     """Scene of a validated variant with what it has in files, and how it was balanced, or None."""
     mechanism = _mechanism(table, tabulated)
-    balanced = _balanced(mechanism, table.balancing) if table.balancing else None
+    balanced = _balance(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
-    loads = (*_loads(table, tabulated), *chain_loads(table, tabulated, mechanism))
-    friction = friction_of(table.friction, mechanism)
+    loads = (*_own_loads(table, tabulated), *_listed_loads(table, tabulated, mechanism))
+    friction = build_friction(table.friction, mechanism)
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction, sense=table.sense), balanced
 
 
-def require_values(table, solution):
+def require_table_range(table, solution):
     """Raise an error where a table over travel does not reach as far as its slider."""
     own = len(solution.loads) - len(table.loads)
     read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
-    all_of(
+    collect(
         (("loads", number) if number >= 0 else ("process_force",), lambda value=value: value(solution))
         for number, value in read
         if isinstance(value, Table)
@@ -237,11 +352,11 @@ def require_values(table, solution):
 
 def _mechanism(table, tabulated):
     if isinstance(table, schema.ChainVariant):
-        return chain(table, tabulated)
+        return _chain(table, tabulated)
     if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
         lengths = table.crank_length, table.coupler_length, table.rocker_length
         links = {
-            name: link_of(getattr(table, name), length)
+            name: build_link(getattr(table, name), length)
             for name, length in zip(("crank", "coupler", "rocker"), lengths, strict=True)
         }
         if isinstance(table, schema.ChainUnitVariant):
@@ -249,25 +364,25 @@ def _mechanism(table, tabulated):
         return four_bar(*lengths, rocker_pivot=table.rocker_pivot, assembly=table.assembly, **links)
     if isinstance(table, schema.CamVariant):
         return _cam_crank_slider(table, tabulated.get(("cam",)))
-    crank = link_of(table.crank, table.crank_length)
+    crank = build_link(table.crank, table.crank_length)
     if isinstance(table, schema.SlottedLeverVariant):
-        links = {"crank": crank, "lever": link_of(table.lever), "block": link_of(table.block)}
+        links = {"crank": crank, "lever": build_link(table.lever), "block": build_link(table.block)}
         line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
         return slotted_lever(table.crank_length, **line, assembly=table.assembly, **links)
-    shared = {"guide": guide_of(table), "slider": link_of(table.slider), "crank": crank}
+    shared = {"guide": build_guide(table), "slider": build_link(table.slider), "crank": crank}
     if isinstance(table, schema.ScotchYokeVariant):
-        return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=link_of(table.block), **shared)
-    coupler = link_of(table.coupler, table.coupler_length)
+        return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=build_link(table.block), **shared)
+    coupler = build_link(table.coupler, table.coupler_length)
     return crank_slider(table.crank_length, table.coupler_length, assembly=table.assembly, coupler=coupler, **shared)
 
 
 def _cam_crank_slider(table, read):
-    guide = guide_of(table)
-    cam = cam_of(table.cam, read, guide.guide_angle)
+    guide = build_guide(table)
+    cam = build_cam(table.cam, read, guide.guide_angle)
     length = _cam_coupler_length(table, cam)
-    links = {name: link_of(getattr(table, name)) for name in ("crank", "block", "slider")}
-    coupler = link_of(table.coupler, length)
-    others = {"assembly": table.assembly, "roller": roller_of(table.roller)}
+    links = {name: build_link(getattr(table, name)) for name in ("crank", "block", "slider")}
+    coupler = build_link(table.coupler, length)
+    others = {"assembly": table.assembly, "roller": build_roller(table.roller)}
     return cam_crank_slider(cam, length, guide=guide, coupler=coupler, **links, **others)
 
 
@@ -279,7 +394,7 @@ def _cam_coupler_length(table, cam):
     return cam.coupler_length
 
 
-def _balanced(mechanism, table):
+def _balance(mechanism, table):
     weights = {
         name: balancing.Counterweight(**dict(getattr(table, name)))
         for name in ("crank", "coupler", "rocker")
@@ -298,7 +413,7 @@ def _balanced(mechanism, table):
     return balancing.partial(mechanism, table.ratio, **weights)
 
 
-def _loads(table, tabulated):
+def _own_loads(table, tabulated):
     """Loads that have a table of their own."""
     if table.gravity is not None:
         yield Gravity(table.gravity.acceleration, table.gravity.direction)

@@ -20,10 +20,9 @@ from ..solution import slips
 from ..solution.solution import Solution
 from . import build, reading, schema
 from .build import PartsError
-from .designs import Design, designs_of
+from .designs import Design, doubtful_tolerances, read_designs, tolerance_problems
 from .reading import shipped_cases
-from .spreads import far_off, spread_problems
-from .variant import Named, Variant, made
+from .variant import NamedItems, Variant, make_variant
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
@@ -70,7 +69,7 @@ class Case:
         return {**vars(self), "variants": dict(self.variants)}
 
     def __setstate__(self, state):
-        vars(self).update(state, variants=_variants(state["path"], state["variants"]))
+        vars(self).update(state, variants=_name_variants(state["path"], state["variants"]))
 
     @property
     def files(self):
@@ -156,7 +155,7 @@ class Case:
 
     def linkage_table(self):
         """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are crank-rockers."""
-        if not all(linkage.swings(variant.mechanism) for variant in self.variants.values()):
+        if not all(linkage.has_swinging_rocker(variant.mechanism) for variant in self.variants.values()):
             return None
         return linkage.characteristics({name: self.solve(name) for name in self.variants}, self.reference)
 
@@ -196,44 +195,44 @@ def load_case(path) -> Case:
     >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")
     286772 N
     """
-    path, raw = reading.read(reading.place(path))
+    path, raw = reading.read_toml(reading.find_case(path))
     head, problems = schema.validated(schema.CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
     common = raw.get("common", {})
     for name, own in tables.items() if isinstance(tables, dict) else ():
         if isinstance(own, dict) and isinstance(common, dict):
-            variants[name] = _variant(name, own, common, path.parent, problems)
+            variants[name] = _read_variant(name, own, common, path.parent, problems)
     reference = raw.get("reference")
     if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
     if head is not None:
-        problems += spread_problems(head.tolerances, variants)
-        designs = designs_of(head.design, head.reference, variants, problems)
+        problems += tolerance_problems(head.tolerances, variants)
+        designs = read_designs(head.design, head.reference, variants, problems)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
-    for doubt in far_off(head.tolerances, variants):
+    for doubt in doubtful_tolerances(head.tolerances, variants):
         warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
     for name, item in variants.items():
-        for hint in slips.of_scene(item.scene.unsolved(np.zeros(1))):
+        for hint in slips.plausibility_hints(item.scene.unsolved(np.zeros(1))):
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
-    kept, wanted = _variants(path, variants), Named("design", path, designs)
+    kept, wanted = _name_variants(path, variants), NamedItems("design", path, designs)
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
 
 
-def _variants(path, variants):
-    return MappingProxyType(Named("variant", path, variants))
+def _name_variants(path, variants):
+    return MappingProxyType(NamedItems("variant", path, variants))
 
 
-def _variant(name, own, common, folder, problems):
+def _read_variant(name, own, common, folder, problems):
     """The variant, or None with what is wrong added to the problems."""
-    merged = reading.merged(common, own)
+    merged = reading.inherit(common, own)
 
     def place(keys):
-        inherited = reading.holds(common, keys) and not reading.holds(own, keys)
+        inherited = reading.has_keys(common, keys) and not reading.has_keys(own, keys)
         return ("common", *keys) if inherited else ("variants", name, *keys)
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
@@ -249,19 +248,19 @@ def _variant(name, own, common, folder, problems):
         problems.extend(f"{schema.key_path(place(keys))}: {text}" for keys, text in error.problems)
 
     try:
-        read = build.tabulated(table, folder)
+        read = build.read_files(table, folder)
     except PartsError as error:
         tell(error)
-        table = build.without(table, [keys for keys, _ in error.problems])
+        table = build.without_unreadable(table, [keys for keys, _ in error.problems])
         if table is None:
             return None
-        read = build.tabulated(table, folder)
+        read = build.read_files(table, folder)
     try:
-        variant = made(table, folder, read)
+        variant = make_variant(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
             warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them
-            build.require_values(table, variant.solve(angles=720))
+            build.require_table_range(table, variant.solve(angles=720))
         assembly.require_turn(variant.mechanism)
     except PartsError as error:
         tell(error)

@@ -1,21 +1,27 @@
-"""The designs of a case file: what is wrong with them, and the search that each describes."""
+"""The designs of a case file: what is wrong with them, and the search that each describes.
+
+The tolerances of a case file: what is wrong with them, and units that look like slips.
+"""
 
 from dataclasses import dataclass, field, fields
 from typing import Any
 
 from ..design import case_text
-from ..design.cam_start import Options, begun
-from ..design.constraints import demand, wanted
+from ..design.cam_start import Options, starting_machine
+from ..design.constraints import parse_constraint, parse_output
 from ..design.optimise import optimise
 from ..design.pareto import Front, pareto
-from ..design.problem import bounds
+from ..design.problem import parse_bounds
 from ..design.result import Found
 from ..design.torque_free import torque_free_cam
 from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
+from ..numbers.formatting import heading, si_columns
+from ..numbers.spreads import parse_spread, read_spreads
+from ..numbers.units import base_factor
 from . import schema
 
-CAM = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
+CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
 """Keys of a torque-free cam as `torque_free_cam` takes them."""
 
 
@@ -69,7 +75,7 @@ class Design:
         shared |= {"robust": self.spread}
         if isinstance(table, schema.OptimumTable):
             return optimise(source, table.vary, angles=table.angles, **shared)
-        own = {name: getattr(table, name) for name in CAM}
+        own = {name: getattr(table, name) for name in CAM_KEYS}
         return torque_free_cam(source, vary=table.vary, **own, **shared)
 
 
@@ -94,14 +100,16 @@ def write_found(path, case, found):
             scenes[name] = result.scene
     raw = {item.name: item.raw | {"variant": item.source, "reference": item.reference} for item in designs}
     comment = f"Found by: kinetostatics design {case.path.name}"
-    return case_text.write(path, case.title, scenes, case.source, comment=comment, designs=raw)
+    return case_text.write_case(path, case.title, scenes, case.source, comment=comment, designs=raw)
 
 
-def designs_of(tables, reference, variants, problems):
+def read_designs(tables, reference, variants, problems):
     """Designs by name, of tables as they stand in the file; what is wrong with them is added to the problems."""
     found = {}
     for name, raw in tables.items():
-        read, wrong = schema.validated(schema.OneDesign, {"design": raw}, lambda keys, name=name: _place(name, keys))
+        read, wrong = schema.validated(
+            schema.OneDesign, {"design": raw}, lambda keys, name=name: _design_keys(name, keys)
+        )
         problems += wrong
         if read is None:
             continue
@@ -118,7 +126,7 @@ def designs_of(tables, reference, variants, problems):
     return found
 
 
-def _place(name, keys):
+def _design_keys(name, keys):
     return "design", name, *keys[1:]
 
 
@@ -127,19 +135,19 @@ def _problems(table, source, reference):
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, schema.TorqueFreeCamTable):
         try:
-            start = begun(scene, Options.checked(**{name: getattr(table, name) for name in CAM}))
+            start = starting_machine(scene, Options.checked(**{name: getattr(table, name) for name in CAM_KEYS}))
         except DesignError:  # the search says so, with the numbers
             return
         except KinetostaticsError as error:
-            yield f": {_bare(error)}"
+            yield f": {_without_owner(error)}"
             return
         scene, varied, vary = start.scene, start.machine, start.vary | vary
     if vary:
-        yield from _said(".vary", bounds, varied, vary)
+        yield from _problem_of(".vary", parse_bounds, varied, vary)
     for key, text in _outputs(table):
-        yield from _said(key, _output, text, scene, reference.scene)
+        yield from _problem_of(key, _check_output, text, scene, reference.scene)
     for number, text in enumerate(table.limits, 1):
-        yield from _said(f".limits[{number}]", _limit, text, scene, reference.scene)
+        yield from _problem_of(f".limits[{number}]", _check_limit, text, scene, reference.scene)
     if getattr(table, "robust", None) is not None:
         for path in table.robust.spreads:
             problem = checks.choice("parameter", path, tuple(scene.units))
@@ -157,29 +165,67 @@ def _outputs(table):
     return [(key, text) for key, text in pairs if text is not None]
 
 
-def _said(key, take, *given):
+def _problem_of(key, take, *given):
     try:
         take(*given)
     except KinetostaticsError as error:
-        yield f"{key}: {_bare(error)}"
+        yield f"{key}: {_without_owner(error)}"
 
 
-def _limit(text, scene, reference):
-    _of_both(demand(text, scene).output, reference)
+def _check_limit(text, scene, reference):
+    _check_reference(parse_constraint(text, scene).output, reference)
 
 
-def _output(text, scene, reference):
-    _of_both(wanted(text, scene), reference)
+def _check_output(text, scene, reference):
+    _check_reference(parse_output(text, scene), reference)
 
 
-def _of_both(output, reference):
+def _check_reference(output, reference):
     """Refuse a ratio to what the reference has not."""
     if output.ratio:
         output.of(reference)
 
 
-def _bare(error):
+def _without_owner(error):
     """What an error says, without its owner."""
     text = str(error)
     owner, colon, rest = text.partition(": ")
     return rest if colon and owner in ("design", "torque-free cam") else text
+
+
+MAX_SIZE_RATIO = 300.0
+"""How many times a tolerance may be above or below its parameter before its unit is doubted."""
+
+
+def tolerance_problems(spreads, variants):
+    """What is wrong with the tolerances: texts that cannot be read, parameters and units that no variant has."""
+    known = {path: unit for item in variants.values() if item for path, unit in item.units.items()}
+    for name, text in spreads.items():
+        columns = [name]
+        try:
+            columns = [heading(name, read_spreads({name: text}, parse_spread)[name].unit)]
+        except KinetostaticsError as error:
+            yield f"tolerances: {str(error).removeprefix('designs: ')}"
+        if all(variants.values()):
+            yield from (f"tolerances: {problem}" for problem in si_columns(columns, known)[1])
+
+
+def doubtful_tolerances(spreads, variants):
+    """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
+    for name, text in spreads.items():
+        spread = parse_spread(text)
+        size = max(abs(spread.median), spread.deviation) * base_factor(spread.unit)
+        nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
+        if nominal and all(not 1 / MAX_SIZE_RATIO < size / value < MAX_SIZE_RATIO for value in nominal):
+            si = next(paths[name] for item in variants.values() if name in (paths := item.units))
+            yield (
+                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
+                f"{nominal[0]:.6g} {si}; is the unit right?"
+            )
+
+
+def _nominal(variant, path):
+    """Value of a parameter, also where the file has a word for it; None if the variant has none."""
+    value = variant.parameters.get(path)
+    value = variant.scene.parameters.get(path) if isinstance(value, str) else value
+    return value if isinstance(value, float) else None

@@ -9,12 +9,12 @@ from pathlib import Path
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
 from ..numbers.files import read_text
-from ..numbers.texts import normal, on_disk
+from ..numbers.texts import find_on_disk, normalise
 from ..numbers.units import quoted
 
-LARGEST_CASE = 300_000
+MAX_CASE_BYTES = 300_000
 """Bytes that a case file may have."""
-DEEPEST = 20
+MAX_DEPTH = 20
 """Tables within tables that a case file may have; those that are used have three."""
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
 
@@ -37,7 +37,7 @@ def shipped_cases():
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def place(path):
+def find_case(path):
     """Path of the case file that is meant."""
     if not isinstance(path, str | os.PathLike):
         raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {quoted(path)}")
@@ -53,36 +53,36 @@ def place(path):
     return shipped[path]
 
 
-def read(path):
+def read_toml(path):
     """The path and what its file holds."""
     shipped = shipped_cases()
     try:
-        path = on_disk(path)
+        path = find_on_disk(path)
         missing = not path.exists()
     except (OSError, ValueError):  # no path at all: reading it says why
         missing = False
     if missing:
-        names = f"{', '.join(shipped)}{_meant(path) or checks.hint(path.stem, shipped)}"
+        names = f"{', '.join(shipped)}{_file_hint(path) or checks.hint(path.stem, shipped)}"
         raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
-    text = read_text(path, LARGEST_CASE)
+    text = read_text(path, MAX_CASE_BYTES)
     try:
-        raw = None if _LONG_KEY.search(text) else tomllib.loads(normal(text))
+        raw = None if _LONG_KEY.search(text) else tomllib.loads(normalise(text))
     except ValueError as error:
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:
         raw = None
-    if raw is None or _deeper(raw, DEEPEST):
-        raise CaseError(path, [f"holds tables or lists within each other more than {DEEPEST} deep"])
+    if raw is None or _exceeds_depth(raw, MAX_DEPTH):
+        raise CaseError(path, [f"holds tables or lists within each other more than {MAX_DEPTH} deep"])
     return path, raw
 
 
-def _meant(path):
+def _file_hint(path):
     """Question that names the file beside it that may be meant: its ending left out, or a letter wrong."""
     beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
     return f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
 
 
-def _deeper(table, depth):
+def _exceeds_depth(table, depth):
     """Whether tables and lists stand within each other more than so deep."""
     level = [table]
     for _ in range(depth):
@@ -95,16 +95,16 @@ def _deeper(table, depth):
     return bool(level)
 
 
-def merged(common, own):
+def inherit(common, own):
     """A table with what it has in common with others."""
     found = dict(common)
     for key, value in own.items():
         both = isinstance(value, dict) and isinstance(common.get(key), dict)
-        found[key] = merged(common[key], value) if both else value
+        found[key] = inherit(common[key], value) if both else value
     return found
 
 
-def holds(table, keys):
+def has_keys(table, keys):
     """Whether keys, each within the one before, lead to something; a list is looked at as a whole."""
     for key in keys:
         if isinstance(key, int):

@@ -14,10 +14,10 @@ from ..drive.motor import Motor
 from ..errors import CaseError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.texts import normal, on_disk
+from ..numbers.texts import find_on_disk, normalise
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from . import build, parameters, schema
+from . import build, schema
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ class Variant:
 
     @cached_property
     def _places(self):
-        return parameters.paths(self.table)
+        return build.places_by_path(self.table)
 
     @property
     def units(self):
@@ -108,7 +108,7 @@ class Variant:
     @property
     def parameters(self):
         """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
-        return {path: parameters.value(self.table, place.steps) for path, place in self._places.items()}
+        return {path: build.value_at(self.table, place.steps) for path, place in self._places.items()}
 
     @property
     def content(self):
@@ -133,20 +133,20 @@ class Variant:
         known = self._places
         checks.require("parameters", checks.mapping("values", values))
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
-        varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
-        return made(varied, self.folder, self.tabulated)
+        varied = build.with_values(self.table, {known[path].steps: value for path, value in values.items()})
+        return make_variant(varied, self.folder, self.tabulated)
 
     @property
     def files(self):
         """Files that it is made from besides the case file, a list of paths."""
-        return [on_disk(self.folder / name) for _, _, name in parameters.files(self.table)]
+        return [find_on_disk(self.folder / name) for _, _, name in build.named_files(self.table)]
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
 
         The end of the period is left out.
         """
-        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
+        checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
         return self.scene.solve(angles)
 
 
@@ -157,13 +157,13 @@ def _bytes(item):
     return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
 
 
-def made(table, folder, tabulated):
+def make_variant(table, folder, tabulated):
     """Variant of a validated table."""
-    scene, balanced = build.built(table, tabulated)
+    scene, balanced = build.build_scene(table, tabulated)
     return Variant(scene, table, balanced, folder, tabulated)
 
 
-class Named(dict):
+class NamedItems(dict):
     """Items of a case by name, whatever Unicode form that is written in.
 
     Attributes
@@ -182,11 +182,11 @@ class Named(dict):
         return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
 
     def __contains__(self, name):
-        return isinstance(name, str) and super().__contains__(normal(name))
+        return isinstance(name, str) and super().__contains__(normalise(name))
 
     def __missing__(self, name):
-        if isinstance(name, str) and normal(name) != name:
-            return self[normal(name)]
+        if isinstance(name, str) and normalise(name) != name:
+            return self[normalise(name)]
         raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
 
 

@@ -28,7 +28,7 @@ from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
 from . import machine
 from .options import parser
-from .output import tell
+from .output import print_error
 
 
 class _Terminated(BaseException):
@@ -46,7 +46,7 @@ def main(arguments=None):
         with _ending_in_order(), _warning_in_plain_words(), _drawing_to_files():
             _require_output()
             options = parser().parse_args(arguments)
-            machine.require(options)
+            machine.require_one_output(options)
             with _telling_new_folders(options):
                 options.command(options)
             sys.stdout.flush()
@@ -55,7 +55,7 @@ def main(arguments=None):
     except KinetostaticsError as error:
         status, message = 2, str(error)
     except OSError as error:
-        status, message = 2, files.told(error, "standard output")
+        status, message = 2, files.describe_os_error(error, "standard output")
     except MemoryError as error:
         status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
     except KeyboardInterrupt:
@@ -63,7 +63,7 @@ def main(arguments=None):
     except _Terminated:
         status, message = 143, "terminated"
     if status:
-        tell(f"kinetostatics: {message}")
+        print_error(f"kinetostatics: {message}")
     _drop_what_cannot_be_written()
     return status
 
@@ -136,7 +136,7 @@ def _telling_new_folders(options):
     yield
     outermost = {path: place for path, place in missing if place.exists() and not path.is_dir()}
     for place in dict.fromkeys(outermost.values()):
-        tell(f"made folder {place}")
+        print_error(f"made folder {place}")
 
 
 def _require_output():

@@ -4,7 +4,7 @@ from math import isnan, nan
 
 from ..errors import CaseError
 from . import machine
-from .output import print_columns, print_table, require_writable, say, with_published
+from .output import print_columns, print_folded, print_table, require_writable, with_published
 
 RESIDUAL = "power residual"
 
@@ -34,11 +34,11 @@ def compare(options):
     if machine.wants_json(options):
         _print_json(case, found, special)
     elif not machine.quiet(options):
-        _print(case, found, special)
+        _print_comparison(case, found, special)
     if options.csv:
         import pandas as pd
 
-        machine.give_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
+        machine.write_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
 
 
 def _with_roles(case, name, comparison):
@@ -53,26 +53,28 @@ def _with_roles(case, name, comparison):
 def _print_json(case, found, special):
     machine.print_json(
         "compare",
-        case=machine.of_case(case),
+        case=machine.case_header(case),
         ratios="reference / variant; above 1 the variant has less",
         variants={
-            name: machine.rows(_with_roles(case, name, comparison).drop(columns=["reference_name", "variant_name"]))
+            name: machine.rows_by_name(
+                _with_roles(case, name, comparison).drop(columns=["reference_name", "variant_name"])
+            )
             for name, comparison in found.items()
         },
         **{key: {"values": table.to_dict(), "published": published} for key, (_, table, published) in special.items()},
     )
 
 
-def _print(case, found, special):
+def _print_comparison(case, found, special):
     from ..results.comparison import left_out
 
     tables = {name: {row.label: row for row in comparison.rows} for name, comparison in found.items()}
     published = [case.published_of(list(table)) for table in tables.values()]
-    say(case.title)
+    print_folded(case.title)
     if case.published.note:
-        say("\n" + " ".join(case.published.note.split()))
+        print_folded("\n" + " ".join(case.published.note.split()))
     for heading, table, figures in special.values():
-        say(f"\n{heading}{'; published figures in brackets' if figures else ''}\n")
+        print_folded(f"\n{heading}{'; published figures in brackets' if figures else ''}\n")
         print_table(with_published(table, figures, case.path))
     residual = max(max(table[RESIDUAL].pair) for table in tables.values())
     labels = [label for label in _in_order([list(table) for table in tables.values()]) if label != RESIDUAL]
@@ -87,20 +89,22 @@ def _print(case, found, special):
     columns = _columns([case.reference, *tables], shown, values, bounds)
     if len(tables) == 1:
         (name,) = tables
-        say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
+        print_folded(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
         columns += _columns(["ratio"], shown, ratios, bounds_of_ratios)
         texts = [("published", [published[0].get(label, "") for label in shown])] if published[0] else []
         print_columns(*heads, *columns, *texts)
     else:
-        say(f"\nvalues of {case.reference} and of what it is compared with\n")
+        print_folded(f"\nvalues of {case.reference} and of what it is compared with\n")
         print_columns(*heads, *columns, *_published(shown, case.published.value))
-        say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
+        print_folded(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
         shown = [label for label in shown if not all(map(isnan, ratios[label]))]
         columns = _columns(tables, shown, ratios, bounds_of_ratios)
         print_columns(("quantity", shown), *columns, *_published(shown, case.published.ratio))
     if more:
-        say(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
-    say(f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power")
+        print_folded(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
+    print_folded(
+        f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power"
+    )
 
 
 def _of_all(tables, label, name):

@@ -15,11 +15,11 @@ from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
 from . import machine
-from .output import print_table, require_writable, say, tell
+from .output import print_error, print_folded, print_table, require_writable
 
-SAMPLES = 2048
+SPREAD_SAMPLES = 2048
 """Machines of a spread that are looked at in the end."""
-SAME = 1e-4
+SAME_END_TOLERANCE = 1e-4
 """Relative difference of ends of searches that count as one."""
 
 
@@ -33,18 +33,18 @@ def design(options):
     wrong = [checks.choice("design", name, tuple(case.designs)) for name in names]
     if any(wrong):
         raise CaseError(case.path, [problem for problem in wrong if problem])
-    _require_places(case, names, options)
+    _require_writable(case, names, options)
     if not machine.quiet(options):
-        say(case.title)
+        print_folded(case.title)
     found = {}
     for name in names:
-        found[name] = _found(case.designs[name], options)
+        found[name] = _search(case.designs[name], options)
         if not machine.quiet(options):
-            _print(case.designs[name], found[name])
+            _print_design(case.designs[name], found[name])
             sys.stdout.flush()
     written = []
     if options.plot:
-        from ..views.designs import draw_designs
+        from ..views.figures import draw_designs
 
         written += draw_designs(case, found, options.plot, options.format)
         machine.announce(options, "", *written)
@@ -53,9 +53,9 @@ def design(options):
         machine.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
     if machine.wants_json(options):
         results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
-        machine.print_json("design", case=machine.of_case(case), found=results, files=written)
+        machine.print_json("design", case=machine.case_header(case), found=results, files=written)
     if options.csv:
-        machine.give_csv(options, _as_rows(found))
+        machine.write_csv(options, _as_rows(found))
 
 
 def _as_json(item, found):
@@ -66,8 +66,8 @@ def _as_json(item, found):
         "goal": str(found.goal),
         "source": item.source,
         "reference": item.reference,
-        "outputs": machine.rows(found.report()),
-        "numbers": machine.rows(found.numbers()),
+        "outputs": machine.rows_by_name(found.report()),
+        "numbers": machine.rows_by_name(found.numbers()),
         "evaluations": found.evaluations,
         "ends_of_searches": found.starts,
         "bound": found.bound,
@@ -90,60 +90,60 @@ def _as_rows(found):
     return whole[["design", "kind", *(column for column in whole if column not in ("design", "kind"))]]
 
 
-def _require_places(case, names, options):
+def _require_writable(case, names, options):
     """What is found can be written, and where: nobody searches for what is lost then."""
     require_writable(case, "--csv", options.csv, (".csv",))
     if options.plot:
-        checks.require("--plot", files.unwritable_folder(options.plot))
+        checks.require("--plot", files.folder_write_problem(options.plot))
     if options.out:
         there = f"{options.out} is there already; give another name" if os.path.lexists(options.out) else None
-        checks.require("--out", there or files.unwritable(options.out, inputs=case.files, endings=(".toml",)))
+        checks.require("--out", there or files.write_problem(options.out, inputs=case.files, endings=(".toml",)))
         items = [case.designs[name] for name in names]
         scenes = {name: case.variant(name).scene for item in items for name in (item.reference, item.source)}
         case_text.tables(Path(options.out), scenes | {item.name: scenes[item.source] for item in items})
 
 
-def _found(item, options):
-    tell(f"searching for {item.name}")
+def _search(item, options):
+    print_error(f"searching for {item.name}")
     try:
-        return item.find(starts=options.starts, progress=machine.watched(options))
+        return item.find(starts=options.starts, progress=machine.shows_progress(options))
     except DesignError as error:
         raise DesignError(f"{item.name}: {error}", error.values) from None
 
 
-def _print(item, found):
+def _print_design(item, found):
     if isinstance(found, Front):
-        say(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
+        print_folded(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
         table: Any = found.table
         print_table(table.set_axis(range(1, len(table) + 1)).rename_axis("design"))
         return
     ratios = f"ratios: {item.reference} / design, above 1 in favour of the design"
-    say(f"\n{item.name}: {found.goal}, from {item.source}; {ratios}\n")
+    print_folded(f"\n{item.name}: {found.goal}, from {item.source}; {ratios}\n")
     report = found.report()
     gain = "gain per unit"
     binds = report["binds"].map({True: "yes", False: ""})
     print_table(report.assign(binds=binds).rename(columns={"price": gain}))
     print()
     print_table(found.numbers().rename(columns={"price": gain}))
-    say(f"\n{_told(found)}")
+    print_folded(f"\n{_search_summary(found)}")
     if item.spread is not None:
-        say(_of_the_spread(item, found))
+        print_folded(_spread_summary(item, found))
 
 
-def _of_the_spread(item, found):
+def _spread_summary(item, found):
     """The quantile that a robust design keeps, over more machines than it was searched with."""
     output = item.table.minimise or item.table.maximise
-    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SAMPLES)
+    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
     quantile = item.spread.quantile
-    return f"quantile {quantile:g} of {output} over the spread, {SAMPLES} machines: {np.quantile(values, quantile):.6g}"
+    return f"quantile {quantile:g} of {output} over the spread, {SPREAD_SAMPLES} machines: {np.quantile(values, quantile):.6g}"
 
 
-def _told(found):
+def _search_summary(found):
     """How it was found, how far it can be trusted, and what no search can reach."""
     lines = [f"{found.evaluations} evaluations of all derivatives"]
     if len(found.starts) > 1:
         best = min(found.starts)
-        same = sum(np.isfinite(end) and abs(end - best) <= SAME * abs(best) for end in found.starts)
+        same = sum(np.isfinite(end) and abs(end - best) <= SAME_END_TOLERANCE * abs(best) for end in found.starts)
         lines[0] += f"; {same} of {len(found.starts)} searches came to this end"
     if found.prices:
         lines.append("gain: by how much the goal would be better if what binds gave way by one of its unit")

@@ -14,7 +14,7 @@ from ..version import __version__
 from .output import STDOUT, write_table
 
 
-def require(options):
+def require_one_output(options):
     """At most one of both is written to standard output."""
     both = wants_json(options) and wants_csv(options)
     checks.require("--json and --csv", "both would be written to standard output; give --csv a FILE" if both else None)
@@ -40,14 +40,14 @@ def announce(options, *lines):
 
 
 def print_json(command, **parts):
-    print(json.dumps(_plain({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
+    print(json.dumps(_jsonable({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
 
 
 def print_csv(table):
     sys.stdout.write(table.to_csv(index=False))
 
 
-def give_csv(options, table):
+def write_csv(options, table):
     """A table on standard output, or in the file that ``--csv`` names, or nowhere."""
     if wants_csv(options):
         print_csv(table)
@@ -55,24 +55,24 @@ def give_csv(options, table):
         announce(options, "", write_table(table, options.csv))
 
 
-def of_case(case):
+def case_header(case):
     """What tells a case."""
     return {"title": case.title, "path": case.path, "reference": case.reference}
 
 
-def rows(table):
+def rows_by_name(table):
     """Rows of a pandas DataFrame by its index."""
     return {str(name): row for name, row in zip(table.index, table.to_dict("records"), strict=True)}
 
 
-def watched(options):
+def shows_progress(options):
     """Whether somebody looks at standard error, and wants to."""
     return not quiet(options) and sys.stderr is not None and sys.stderr.isatty()
 
 
 def progress(options, names, label):
     """Names one after the other, with a bar on standard error if somebody looks there."""
-    if not watched(options):
+    if not shows_progress(options):
         yield from names
         return
     from tqdm import tqdm
@@ -83,16 +83,16 @@ def progress(options, names, label):
         yield name
 
 
-def _plain(item):
+def _jsonable(item):
     """What JSON can hold."""
     if isinstance(item, Mapping):
-        return {str(key): _plain(value) for key, value in item.items()}
+        return {str(key): _jsonable(value) for key, value in item.items()}
     if hasattr(item, "columns"):  # a pandas DataFrame
-        return [_plain(row) for row in item.to_dict("records")]
+        return [_jsonable(row) for row in item.to_dict("records")]
     if isinstance(item, list | tuple | set):
-        return [_plain(value) for value in item]
+        return [_jsonable(value) for value in item]
     if hasattr(item, "tolist"):
-        return _plain(item.tolist())
+        return _jsonable(item.tolist())
     if isinstance(item, float):
         return item if math.isfinite(item) else None if math.isnan(item) else f"{'-' if item < 0 else ''}Infinity"
     return str(item) if isinstance(item, Path) else item

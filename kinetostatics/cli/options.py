@@ -3,7 +3,7 @@
 import argparse
 
 from ..numbers import checks
-from ..numbers.texts import normal
+from ..numbers.texts import normalise
 from ..numbers.units import to_si
 from ..version import __version__
 from . import commands
@@ -207,7 +207,7 @@ def _text(text):
 
 def _name(text):
     """A name of something in a case file, in the form in which that is read."""
-    return normal(_text(text))
+    return normalise(_text(text))
 
 
 def _count(text, size=None):
@@ -219,7 +219,7 @@ def _count(text, size=None):
 
 
 def _angles(text):
-    return _count(text, checks.ANGLE)
+    return _count(text, checks.BYTES_PER_ANGLE)
 
 
 def _angle(text):

@@ -9,31 +9,31 @@ import sys
 import textwrap
 
 from ..numbers import checks, files
-from ..numbers.formatting import angle, number, parted
-from ..views.report.making import report as write
+from ..numbers.formatting import angle, number, parse_heading
+from ..views.report.report import report as write
 from ..views.report.tables import require_places
 
 STDOUT = "-"
 """Name of a file that stands for standard output."""
-NARROWEST = 40
+MIN_WIDTH = 40
 """Columns that lines have on narrower terminals."""
 GAP = 2
 """Blanks between columns."""
-WORDS = ("unit", "published", "limit")
+WORD_COLUMNS = ("unit", "published", "limit")
 """Headings of columns of words that may look like numbers."""
-SHORTEST = 24
+MIN_FOLDED_WIDTH = 24
 """Letters to which a column of words is folded at most."""
 
 
 def require_writable(case, option, path, endings):
     """The file that an option names, if any, can be written, is of these kinds, and no input of the case."""
     if path not in (None, STDOUT):
-        checks.require(option, files.unwritable(path, inputs=case.files, endings=endings))
+        checks.require(option, files.write_problem(path, inputs=case.files, endings=endings))
 
 
 def write_table(table, path):
     """Write a pandas DataFrame to a file; returns what to say of it."""
-    with files.written_whole(path) as temporary:
+    with files.write_atomically(path) as temporary:
         if path.lower().endswith(".parquet"):
             table.to_parquet(temporary)
         else:
@@ -41,22 +41,22 @@ def write_table(table, path):
     return f"wrote {path}: {len(table)} rows"
 
 
-def tell(text):
+def print_error(text):
     if sys.stderr is not None:
         print(text, file=sys.stderr)
 
 
-def chosen(name, options, why):
+def variant_words(name, options, why):
     """What is said of the variant that a command takes, and why it takes that one unless told."""
     return f"variant {name}" if options.variant else f"variant {name}, {why} (another by --variant)"
 
 
 def width():
     """Letters of a line: of the terminal, or as many as COLUMNS says; 80 in a pipe or a file."""
-    return max(shutil.get_terminal_size((80, 24)).columns, NARROWEST)
+    return max(shutil.get_terminal_size((80, 24)).columns, MIN_WIDTH)
 
 
-def say(text, indent=0):
+def print_folded(text, indent=0):
     """Print words, a paragraph to a line, folded to the width; all lines but the first of each are set in so far."""
     for line in text.split("\n"):
         print(
@@ -84,7 +84,7 @@ def print_columns(*columns):
         errors = bounds[0] if bounds else [0.0] * len(values)
         texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
     for place, part in enumerate(_parts(texts, width())):
-        print(("\n" if place else "") + _drawn(part))
+        print(("\n" if place else "") + _joined_lines(part))
 
 
 def with_published(table, published, path):
@@ -100,7 +100,9 @@ def with_published(table, published, path):
 def _cell(value, bound=0.0, heading=""):
     """A value as text."""
     return (
-        angle(value) if parted(heading)[1] == "deg" else number(value, bound=0.0 if isinstance(bound, str) else bound)
+        angle(value)
+        if parse_heading(heading)[1] == "deg"
+        else number(value, bound=0.0 if isinstance(bound, str) else bound)
     )
 
 
@@ -109,13 +111,13 @@ def _parts(columns, room):
     if _breadth(columns) <= room:
         return [columns]
     for hyphens in (False, True):
-        narrow = [(_folded(heading, _widest(cells), hyphens), cells) for heading, cells in columns]
-        folded = _with_folded_words(narrow, room)
+        narrow = [(_fold(heading, _widest(cells), hyphens), cells) for heading, cells in columns]
+        folded = _fold_words(narrow, room)
         if _breadth(folded) <= room:
             return [folded]
-    columns = [(_folded(heading, _widest(cells)), cells) for heading, cells in columns]
+    columns = [(_fold(heading, _widest(cells)), cells) for heading, cells in columns]
     kept = 2 if len(columns) > 2 and columns[1][0] == "unit" else 1
-    first, rest = _with_folded_words(columns[:kept], int(0.45 * room)), _with_folded_words(columns[kept:], room // 2)
+    first, rest = _fold_words(columns[:kept], int(0.45 * room)), _fold_words(columns[kept:], room // 2)
     for count in range(2, len(rest)):
         size = -(-len(rest) // count)
         parts = [[*first, *rest[start : start + size]] for start in range(0, len(rest), size)]
@@ -124,7 +126,7 @@ def _parts(columns, room):
     return [[*first, column] for column in rest]
 
 
-def _with_folded_words(columns, room):
+def _fold_words(columns, room):
     """Columns with those of words folded until all fit, the widest first."""
     columns = list(columns)
     words = [at for at, column in enumerate(columns) if _of_words(column)]
@@ -132,8 +134,8 @@ def _with_folded_words(columns, room):
         texts = [columns[at][0], *columns[at][1]]
         over = _breadth(columns) - room
         if over > 0:
-            least = SHORTEST if at == 0 else SHORTEST // 2
-            heading, *cells = (_folded(text, max(_widest(texts) - over, least)) for text in texts)
+            least = MIN_FOLDED_WIDTH if at == 0 else MIN_FOLDED_WIDTH // 2
+            heading, *cells = (_fold(text, max(_widest(texts) - over, least)) for text in texts)
             columns[at] = heading, cells
     return columns
 
@@ -146,7 +148,7 @@ def _widest(texts):
     return max((len(line) for text in texts for line in text.split("\n")), default=0)
 
 
-def _folded(text, room, hyphens=False):
+def _fold(text, room, hyphens=False):
     """Text in lines so wide; words longer than that stay whole, but for those with hyphens if wanted."""
     return "\n".join(textwrap.wrap(text, max(room, 1), break_long_words=False, break_on_hyphens=hyphens))
 
@@ -154,10 +156,10 @@ def _folded(text, room, hyphens=False):
 def _of_words(column):
     """Whether cells are words: by the heading, or because none is a number."""
     heading, cells = column
-    return heading in WORDS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
+    return heading in WORD_COLUMNS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
 
 
-def _drawn(columns):
+def _joined_lines(columns):
     from tabulate import tabulate
 
     rules = ["-" * _widest([heading, *cells]) for heading, cells in columns]
@@ -166,7 +168,7 @@ def _drawn(columns):
     return tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
 
 
-def of_variants(frames):
+def stack_variants(frames):
     """Tables by variant as one, the variant in the first column."""
     import pandas as pd
 

@@ -9,15 +9,15 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..numbers import checks, files, spreads
-from ..numbers.formatting import about, at_most, parted
+from ..numbers.formatting import parse_heading, round_bound_up, round_uncertainty_up
 from ..numbers.units import factor, to_si
-from ..solution.uncertainty_table import largest_with_uncertainty, with_uncertainty
+from ..solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
 from . import machine
-from .output import chosen, print_table, require_writable, say, write_table
+from .output import print_folded, print_table, require_writable, variant_words, write_table
 
 OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
-LOST = "mean friction_loss"
+FRICTION_OUTPUT = "mean friction_loss"
 """What it tells besides of a variant with friction."""
 TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
@@ -33,12 +33,12 @@ def sweep_command(options):
     require_writable(case, "--out", None if folder else options.out, TABLE_ENDINGS)
     require_writable(case, "--csv", options.csv, (".csv",))
     require_writable(case, "--plot", options.plot, FIGURE_ENDINGS)
-    checks.require("--out", files.unwritable_folder(folder) if folder else None)
+    checks.require("--out", files.folder_write_problem(folder) if folder else None)
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
     names = sweeps.names_of(case, options.variant, options.reference)
     varied = case.variant(names[0])
-    usual = (*OUTPUTS, LOST) if varied.friction else OUTPUTS
+    usual = (*OUTPUTS, FRICTION_OUTPUT) if varied.friction else OUTPUTS
     wanted = [parsed(text).of(varied) for text in options.output or usual]
     outputs = [item.column for item in wanted]
     found = sweeps.sweep(
@@ -50,7 +50,7 @@ def sweep_command(options):
         angles=options.angles,
         workers=options.workers,
         folder=folder,
-        progress=machine.watched(options),
+        progress=machine.shows_progress(options),
     )
     written: list[str | Path] = []
     lines: list[str] = []
@@ -65,14 +65,16 @@ def sweep_command(options):
     if machine.wants_json(options):
         failed = int((found[sweeps.FAILED] != "").sum())
         sides = dict(zip(("variant", "reference"), names, strict=True))
-        machine.print_json("sweep", case=machine.of_case(case), **sides, failed=failed, designs=found, files=written)
+        machine.print_json(
+            "sweep", case=machine.case_header(case), **sides, failed=failed, designs=found, files=written
+        )
     elif not machine.quiet(options):
-        say(f"{case.title}: {_taken(names, wanted, options)}\n")
-        _print(found, wanted, varied)
+        print_folded(f"{case.title}: {_arguments(names, wanted, options)}\n")
+        _print_sweep(found, wanted, varied)
         for line in lines:
             print(line)
     if options.csv:
-        machine.give_csv(options, found)
+        machine.write_csv(options, found)
     reasons = found[sweeps.FAILED]
     checks.require("sweep", None if (reasons == "").any() else f"all {len(found)} designs failed: {reasons.iloc[0]}")
 
@@ -80,30 +82,32 @@ def sweep_command(options):
 def _labels(wanted, varied):
     """What axes call outputs: with the names that quantities have in other figures."""
     which = {True: ", reference / design", False: ""}
-    return {item.column: f"{item.label(varied)}{which[item.ratio]} [{parted(item.column)[1]}]" for item in wanted}
+    return {
+        item.column: f"{item.label(varied)}{which[item.ratio]} [{parse_heading(item.column)[1]}]" for item in wanted
+    }
 
 
-def _taken(names, wanted, options):
+def _arguments(names, wanted, options):
     """What is said of the variant that designs vary, and of the one that ratios refer to."""
     varied, reference = names
     why = "the reference" if varied == reference else f"the first besides the reference {reference}"
     against = f"; ratios refer to {reference}" if any(item.ratio for item in wanted) else ""
-    return chosen(varied, options, why) + against
+    return variant_words(varied, options, why) + against
 
 
-def _print(found, wanted, varied):
+def _print_sweep(found, wanted, varied):
     """Spread of the outputs, the best designs by the first, and why others failed."""
     from ..sweeps.sweeps import FAILED
 
     failed, outputs, first = found[found[FAILED] != ""], [item.column for item in wanted], wanted[0]
-    say(f"{len(found)} designs, {len(failed)} failed\n")
+    print_folded(f"{len(found)} designs, {len(failed)} failed\n")
     print_table(found[outputs].describe().drop("count").rename_axis("over the designs"))
     words = "largest first: above 1 is in favour of the design" if first.ratio else "smallest first"
-    say(f"\nbest five by {first.label(varied)}, {words}\n")
+    print_folded(f"\nbest five by {first.label(varied)}, {words}\n")
     best = found.dropna(subset=[first.column]).sort_values(first.column, ascending=not first.ratio).head(5)
     print_table(best.drop(columns=FAILED).rename_axis("design"))
     for reason, count in failed[FAILED].value_counts().head(3).items():
-        say(f"\n{count} failed: {reason}")
+        print_folded(f"\n{count} failed: {reason}")
 
 
 def _spreads(texts):
@@ -127,11 +131,11 @@ OF_THE_CASE = "tolerances"
 OPTION = "--uncertain"
 
 
-def inputs(case, names, texts):
+def standard_uncertainties(case, names, texts):
     """Standard uncertainties, SI, of the numbers of each variant of these names, by path."""
     units = {name: case.variant(name).scene.units for name in names}
     of_case = OF_THE_CASE in texts
-    pairs = [_parted(text) for text in texts if text != OF_THE_CASE]
+    pairs = [_split_uncertainty(text) for text in texts if text != OF_THE_CASE]
     told = {path: partial(_size, text) for path, text in pairs}
     paths = [path for path, _ in pairs]
     problems = [
@@ -151,31 +155,34 @@ def inputs(case, names, texts):
     return found
 
 
-def tell(solution, given):
+def print_uncertainty(solution, given):
     """Print the largest values of a solution with their uncertainty."""
     if not given:
-        say("\nnone of the uncertain numbers is one of this variant")
+        print_folded("\nnone of the uncertain numbers is one of this variant")
         return
     table = largest_with_uncertainty(solution, given)
     rounding = table["rounding"].fillna(0.0)
     both = zip(table["largest"], table["tolerance"] + rounding, strict=True)
     columns = {"tolerance": "from tolerances", "rounding": "from rounding"}
-    bounds = {"tolerance": list(map(about, table["tolerance"])), "rounding": list(map(at_most, table["rounding"]))}
-    shown = table.assign(largest=[with_uncertainty(*pair) for pair in both], **bounds)
+    bounds = {
+        "tolerance": list(map(round_uncertainty_up, table["tolerance"])),
+        "rounding": list(map(round_bound_up, table["rounding"])),
+    }
+    shown = table.assign(largest=[format_with_uncertainty(*pair) for pair in both], **bounds)
     print()
-    print_table(shown.rename(columns=columns), _of_two_digits(table))
-    say(
+    print_table(shown.rename(columns=columns), _two_digit_bounds(table))
+    print_folded(
         f"\nlargest values, and how sure they are: standard uncertainty from that of {', '.join(sorted(given))}, "
         "independent and to first order, and the proven bound on rounding added to it, rounded up to two digits"
     )
 
 
-def _of_two_digits(table):
+def _two_digit_bounds(table):
     """Bounds with which shares are told with two digits."""
     return (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
 
 
-def _parted(text):
+def _split_uncertainty(text):
     path, equals, size = text.partition("=")
     if not equals:
         raise ParameterError(
@@ -194,5 +201,5 @@ def _size(text, unit):
 
 def _deviation(text, unit):
     """Standard deviation of a spread, SI."""
-    spread = spreads.spread_of(text)
+    spread = spreads.parse_spread(text)
     return spread.deviation * factor(spread.unit, unit)

@@ -18,4 +18,4 @@ from .robust import over_spread as over_spread
 from .torque_balancing import TorqueBalancing as TorqueBalancing
 from .torque_balancing import torque_balancing_cam as torque_balancing_cam
 from .torque_free import torque_free_cam as torque_free_cam
-from .weights import weight_options as weight_options
+from .torque_free import weight_options as weight_options

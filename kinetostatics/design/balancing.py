@@ -15,12 +15,12 @@ from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from ..solution.scene import mechanism_problem
 from .counterweights import Balanced, Counterweight, counterweight, guide_direction
-from .least_shaking import Search, least
+from .least_shaking import ShakingSearch, least_shaking
 from .linkage import crank_sliders, four_bar_shape
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
 
-RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}
+NAMED_RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}
 
 
 def full(mechanism, *, crank, coupler=None, rocker=None):
@@ -51,7 +51,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     (True, 60.1)
     """
     given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
-    _refuse(mechanism)
+    _require_balanceable(mechanism)
     bars, chains = four_bar_shape(mechanism), crank_sliders(mechanism)
     if bars is None and not chains:
         raise ParameterError(f"full balancing is for crank-sliders and four-bars, not for a {mechanism.name}")
@@ -61,8 +61,8 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
             f"full balancing of a {mechanism.name} takes a counterweight on crank and {outer}, got crank"
             f"{''.join(f' and {name}' for name in given) or ' only'}"
         )
-    first = _set(mechanism, link, (0.0, 0.0), given[outer])
-    second = _set(first.mechanism, _crank(mechanism), (0.0, 0.0), crank)
+    first = _set_static_moment(mechanism, link, (0.0, 0.0), given[outer])
+    second = _set_static_moment(first.mechanism, _crank(mechanism), (0.0, 0.0), crank)
     return Balanced(mechanism, second.mechanism, {**second.counterweights, **first.counterweights})
 
 
@@ -96,8 +96,8 @@ def partial(mechanism, ratio="overall", *, crank):
     >>> abs(s.shaking_force).round(6)  # N: none across the guide
     array([414.187807,   0.      ])
     """
-    value = _ratio(ratio)
-    _refuse(mechanism)
+    value = _parse_ratio(ratio)
+    _require_balanceable(mechanism)
     if not crank_sliders(mechanism):
         raise ParameterError(f"partial balancing by ratio is for crank-sliders, not for a {mechanism.name}")
     first, second, _ = crank_sliders(mechanism)[0]
@@ -108,7 +108,7 @@ def partial(mechanism, ratio="overall", *, crank):
             f"the line {second.start}-{second.end}, so no counterweight on the crank takes the force across the guide "
             f"away; balance the {second.link} too"
         )
-    return _set(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
+    return _set_static_moment(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
 
 
 def _crank(mechanism):
@@ -116,7 +116,7 @@ def _crank(mechanism):
     return name
 
 
-WEIGHTS = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
+WEIGHT_RULES = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
 NORMS = ("largest", "mean", "along", "across", "weighted")
 
 
@@ -163,10 +163,10 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     """
     _require_masses(mechanism)
     paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
-    found = checks.examined(
+    found = checks.check_values(
         "optimal balancing",
-        WEIGHTS,
-        dict(zip(WEIGHTS, weights if paired else (1.0, 0.0), strict=True)),
+        WEIGHT_RULES,
+        dict(zip(WEIGHT_RULES, weights if paired else (1.0, 0.0), strict=True)),
         checks.choice("norm", norm, NORMS),
         None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
         *_search_problems(mechanism, counterweights),
@@ -175,7 +175,9 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         guide_direction(mechanism)
     assembly.require_turn(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
-    return least(Search.of(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn))
+    return least_shaking(
+        ShakingSearch.of(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn)
+    )
 
 
 def _search_problems(mechanism, counterweights):
@@ -196,7 +198,7 @@ def _weight_problem(name, weight):
     return None if isinstance(weight, Counterweight) else f"{name} must be a Counterweight, got {weight!r}"
 
 
-def _set(mechanism, link, moment, weight):
+def _set_static_moment(mechanism, link, moment, weight):
     """Counterweight that gives a link this static moment."""
     checks.require("balancing", _weight_problem(link, weight))
     change = complex(*moment) - _static_moment(mechanism, link)
@@ -220,11 +222,11 @@ def _static_moment(mechanism, link):
     return moments[link]
 
 
-def _ratio(ratio):
+def _parse_ratio(ratio):
     if isinstance(ratio, str):
-        checks.require("partial balancing", checks.choice("ratio", ratio, tuple(RATIOS)))
-        return RATIOS[ratio]
-    value = checks.singles("partial balancing", ratio=(ratio, "1", {}))["ratio"]
+        checks.require("partial balancing", checks.choice("ratio", ratio, tuple(NAMED_RATIOS)))
+        return NAMED_RATIOS[ratio]
+    value = checks.single_numbers("partial balancing", ratio=(ratio, "1", {}))["ratio"]
     checks.require("partial balancing", ratio_problem(value))
     return value
 
@@ -239,7 +241,7 @@ def ratio_problem(ratio):
     )
 
 
-def _refuse(mechanism):
+def _require_balanceable(mechanism):
     """Refuse what full and partial balancing cannot do."""
     _require_masses(mechanism)
     if len(mechanism.groups) > 1 and mechanism.crank.length is not None:

@@ -18,9 +18,9 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.cams import roller
-from ..machine.cams.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surface_curvature
+from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak, curvature, highest, surface_curvature
 from ..machine.cams.profile import profile as working_curve
-from ..machine.cams.roller import MODULUS
+from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -41,7 +41,7 @@ class Reversal(NamedTuple):
 
     def sliding_angle(self, roller, crank_speed, friction_coefficient):
         """Crank angle through which the roller slides until it rolls again, rad, as the force grows in proportion."""
-        given = checks.singles(
+        given = checks.single_numbers(
             "sliding_angle",
             crank_speed=(crank_speed, "rad/s", {}),
             friction_coefficient=(friction_coefficient, "1", {"low": 0.0, "strict": True}),
@@ -170,7 +170,7 @@ def pressure_from_hardness(brinell):
     >>> round(ks.design.pressure_from_hardness(300.0) / 1e6, 3)
     866.0
     """
-    value = checks.singles("pressure_from_hardness", brinell=(brinell, "1", POSITIVE))["brinell"]
+    value = checks.single_numbers("pressure_from_hardness", brinell=(brinell, "1", POSITIVE))["brinell"]
     if not 180.0 <= value <= 400.0:
         raise ParameterError(
             f"pressure_from_hardness: the standard tells of 180 to 400 HB, got {value:.6g}; give the pressure itself, "
@@ -204,21 +204,21 @@ def hardness_from_pressure(pressure):
     >>> round(ks.design.hardness_from_pressure(866e6), 6)
     300.0
     """
-    value = checks.singles("hardness_from_pressure", pressure=(pressure, "Pa", {"low": 0.0}))["pressure"]
+    value = checks.single_numbers("hardness_from_pressure", pressure=(pressure, "Pa", {"low": 0.0}))["pressure"]
     return max(180.0, (value / 1e6 - 200.0) / 2.22)
 
 
-LIMITS = {
+UPPER_LIMITS = {
     "pressure": ("largest_pressure", "Pa", "Hertz pressure"),
     "pin_load": ("largest_pin_load", "N", "load of the roller's pin"),
     "friction_coefficient": ("largest_friction_coefficient", "1", "friction coefficient that keeps the roller rolling"),
     "starting_torque": ("starting_torque", "N m", "torque to start"),
 }
 """Largest values that limits are set to: where each is found, unit, what it is."""
-LEAST = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
+LOWER_LIMITS = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
 """Smallest values that limits are set to: unit, what it is."""
-OF_CURVE = {"pressure_angle": "rad", "curvature_radius": "m"}
-UNITS = {name: of[-2] for name, of in (*LIMITS.items(), *LEAST.items())} | OF_CURVE
+CURVE_LIMIT_UNITS = {"pressure_angle": "rad", "curvature_radius": "m"}
+LIMIT_UNITS = {name: of[-2] for name, of in (*UPPER_LIMITS.items(), *LOWER_LIMITS.items())} | CURVE_LIMIT_UNITS
 """Unit of each limit."""
 
 
@@ -406,7 +406,7 @@ class Contact:
     @cached_property
     def _samples(self):
         period = self.solution.period
-        return self.solution.at(np.linspace(0.0, period, round(SAMPLES * period / (2 * np.pi)), endpoint=False))
+        return self.solution.at(np.linspace(0.0, period, round(PEAK_SAMPLES * period / (2 * np.pi)), endpoint=False))
 
     def _highest(self, function):
         return highest(lambda angle: function(self.solution.at(np.asarray(angle))), 0.0, self.solution.period)
@@ -417,7 +417,7 @@ class Contact:
     def exceeded(self):
         """What exceeds the limits, as sentences with both numbers and the crank angle."""
         found = []
-        for name, (peak, unit, words) in LIMITS.items():
+        for name, (peak, unit, words) in UPPER_LIMITS.items():
             if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
                 found.append(
                     f"{words}: {found_peak.value:.6g} {unit} at {np.degrees(found_peak.angle):.6g} deg, more than "
@@ -425,9 +425,9 @@ class Contact:
                 )
         for side in self.sides:
             made = working_curve(self.cam, self.roller_radius, 8, side)
-            given = {name: self.limits.get(name) for name in OF_CURVE}
+            given = {name: self.limits.get(name) for name in CURVE_LIMIT_UNITS}
             found += [f"{side}: {text}" for text in made.exceeded(**given)]
-        for name, (unit, words) in LEAST.items():
+        for name, (unit, words) in LOWER_LIMITS.items():
             if name in self.limits and (value := getattr(self, name)) < self.limits[name]:
                 found.append(f"{words}: {value:.6g} {unit}, less than {self.limits[name]:.6g}")
         return tuple(found)
@@ -456,10 +456,10 @@ def _side_of(force):
     return np.where(force > 0.0, 1.0, -1.0)
 
 
-SIZE = {"low": 0.0}
+NOT_NEGATIVE = {"low": 0.0}
 PARTS = ("roller", "cam")
-MATERIAL: dict[str, tuple[str, dict[str, Any]]] = {
-    "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS.usual}),
+MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
+    "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS_RULE.usual}),
     "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
 }
 """Unit and bounds of what is told of each part's material."""
@@ -528,14 +528,17 @@ def contact(
     told = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
     told |= {"poissons_ratio": poissons_ratio}
     if groups:
-        told = _with_roller(told, groups[0].roller)
+        told = _fill_from_roller(told, groups[0].roller)
     limits = {} if limits is None else limits
-    own = {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
-    optional = {"roller_inertia": (roller_inertia, "kg*m**2", SIZE), "load_rating": (load_rating, "N", POSITIVE)}
+    own = {"roller_mass": (roller_mass, "kg", NOT_NEGATIVE), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = {
+        "roller_inertia": (roller_inertia, "kg*m**2", NOT_NEGATIVE),
+        "load_rating": (load_rating, "N", POSITIVE),
+    }
     own |= {name: item for name, item in optional.items() if item[0] is not None}
-    values = checks.singles(
+    values = checks.single_numbers(
         "contact",
-        None if groups else _no_roller(solution.mechanism),
+        None if groups else _no_roller_problem(solution.mechanism),
         *_limit_problems(limits, load_rating),
         **_contact_rules(told),
         **own,
@@ -544,9 +547,9 @@ def contact(
     cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     wheel = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    materials = [[values[f"{name} of the {part}"] for name in MATERIAL] for part in PARTS]
-    kept = {name: values[f"limit {name!r}"] for name in UNITS if name in limits}
-    found = Contact(solution, cam, radius, values["width"], roller.modulus(*materials), wheel, kept)
+    materials = [[values[f"{name} of the {part}"] for name in MATERIAL_RULES] for part in PARTS]
+    kept = {name: values[f"limit {name!r}"] for name in LIMIT_UNITS if name in limits}
+    found = Contact(solution, cam, radius, values["width"], roller.contact_modulus(*materials), wheel, kept)
     for side in found.sides:
         working_curve(cam, radius, 8, side)
     return found
@@ -559,36 +562,37 @@ def _contact_rules(told):
     }
     pairs = [
         value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
-        for value in map(told.get, MATERIAL)
+        for value in map(told.get, MATERIAL_RULES)
     ]
     for part, *both in zip(PARTS, *pairs, strict=True):
         rules |= {
-            f"{name} of the {part}": (value, *rule) for (name, rule), value in zip(MATERIAL.items(), both, strict=True)
+            f"{name} of the {part}": (value, *rule)
+            for (name, rule), value in zip(MATERIAL_RULES.items(), both, strict=True)
         }
     return rules
 
 
 def _limit_rules(limits):
     """Values and rules of the limits that there are."""
-    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
-    return {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
+    known = {name: limits[name] for name in LIMIT_UNITS if isinstance(limits, dict) and name in limits}
+    return {f"limit {name!r}": (value, LIMIT_UNITS[name], POSITIVE) for name, value in known.items()}
 
 
-def _with_roller(told, roller):
+def _fill_from_roller(told, roller):
     """What was told, the rest as of the roller of the scene; refused where that has none either."""
     lacking = [name for name, value in told.items() if value is None]
     if lacking and roller is None:
         raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
-    return told | {name: _of_both(roller, name.removeprefix("roller_")) for name in lacking}
+    return told | {name: _roller_and_cam_value(roller, name.removeprefix("roller_")) for name in lacking}
 
 
-def _of_both(roller, name):
+def _roller_and_cam_value(roller, name):
     """A number of the roller, of a material also that of its cam where it is another."""
     own, other = getattr(roller, name), getattr(roller, f"cam_{name}", None)
     return own if other is None else (own, other)
 
 
-def _no_roller(mechanism):
+def _no_roller_problem(mechanism):
     text = f"solution must be of a mechanism with a CamRoller, a {mechanism.name} has none"
     follows = any(group.led for group in mechanism.groups)
     return text + "; give its follower a Roller or Face, then contact_pressure is an output" * follows
@@ -600,4 +604,4 @@ def _limit_problems(limits, load_rating):
         return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
     rating = "a limit of the life takes the load_rating of the roller's bearing"
     unrated = "life" in limits and load_rating is None
-    return [*(checks.choice("limit", name, tuple(UNITS)) for name in limits), rating if unrated else None]
+    return [*(checks.choice("limit", name, tuple(LIMIT_UNITS)) for name in limits), rating if unrated else None]

@@ -12,32 +12,32 @@ from ..machine.cams.cams import CosineLaw
 from ..machine.guide import Guide
 from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
-from ..numbers.arithmetic import ROUNDING
+from ..numbers.arithmetic import SQUARE_TOLERANCE
 from ..numbers.planar import cross
 from ..results.extremes import extrema
 from ..solution.scene import Scene
 
 OWNER = "torque-free cam"
-MOST_HARMONICS = 64
+MAX_HARMONICS = 64
 """With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
-ENDS = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
-OWN: dict[str, tuple[str, dict]] = {
+END_RULES = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
+OPTION_RULES: dict[str, tuple[str, dict]] = {
     "guide_offset": ("m", {}),
     "counterweight": ("kg", {"low": 0.0, "strict": True}),
     "coupler_spring": ("rad", {}),
     "shaft_radius": ("m", {"low": 0.0, "strict": True}),
 }
 """Units and limits of what the machine may have of its own."""
-REACH = 0.5
+LENGTH_REACH = 0.5
 """How far lengths may lie from where the search begins, relative to half the stroke."""
-STIFFEST = 3.0
+MAX_STIFFNESS_RATIO = 3.0
 """How many times stiffer the spring may be than one that balances the slider."""
-TENTH = 0.1
+HARMONIC_REACH = 0.1
 """How far, relative to half the stroke, the harmonics of random starts lie from a circle about O."""
 WEIGHT_REACH = 0.1
 """How far the counterweight may lie from where it balances the coupler's weight, relative to its arm."""
-SPRING, OFFSET = "torsion_spring.stiffness", "guide_offset"
-WEIGHT = ("crank.centre.along", "crank.centre.across")
+SPRING_PATH, OFFSET_PATH = "torsion_spring.stiffness", "guide_offset"
+WEIGHT_PATHS = ("crank.centre.along", "crank.centre.across")
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Start:
         for place, name in enumerate(names):
             if name.startswith(("cam.cosine", "cam.sine")):
                 mean = self.half if name == "cam.cosine.0" else 0.0
-                found[place] = mean + TENTH * self.half * generator.uniform(-1.0, 1.0)
+                found[place] = mean + HARMONIC_REACH * self.half * generator.uniform(-1.0, 1.0)
         return found
 
 
@@ -124,8 +124,8 @@ class Options:
         """Options of what a user gives; all problems in one error, others that are known among them."""
         asked = cls(**given)
         sine, gravity = asked.sine, asked.gravity
-        own = {name: (given[name], *rule) for name, rule in OWN.items() if given.get(name) is not None}
-        found = checks.singles(
+        own = {name: (given[name], *rule) for name, rule in OPTION_RULES.items() if given.get(name) is not None}
+        found = checks.single_numbers(
             OWNER,
             _harmonics_problem("cosine", asked.cosine),
             _harmonics_problem("sine", sine) if sine or sine is False else None,
@@ -133,18 +133,18 @@ class Options:
             *problems,
             **own,
         )
-        return replace(asked, **checks.examined(OWNER, ENDS, {"ends": asked.ends}), **found)
+        return replace(asked, **checks.check_values(OWNER, END_RULES, {"ends": asked.ends}), **found)
 
 
 def _harmonics_problem(name, value):
     """What is wrong with a number of harmonics, as a sentence, or None."""
     wrong = checks.count(name, value)
-    if wrong or value <= MOST_HARMONICS:
+    if wrong or value <= MAX_HARMONICS:
         return wrong
-    return f"{name} must be at most {MOST_HARMONICS}, got {value}"
+    return f"{name} must be at most {MAX_HARMONICS}, got {value}"
 
 
-def begun(given, options) -> Start:
+def starting_machine(given, options) -> Start:
     """The machine that a search begins with, made of the links and loads of a scene.
 
     Raises
@@ -154,38 +154,42 @@ def begun(given, options) -> Start:
     DesignError
         A stroke that no coupler can make.
     """
-    group, links = parts_of(given)
+    group, links = crank_slider_links(given)
     low, high = _ends(given, options.ends)
     half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
     offset = group.guide.guide_offset if options.guide_offset is None else options.guide_offset
     guide = Guide(group.guide.guide_angle, offset)
     share = group.coupler.centre[0] / group.coupler_length
-    links["coupler"] = _of_length(group.coupler, law.coupler_length, share)
+    links["coupler"] = _coupler_of_length(group.coupler, law.coupler_length, share)
     rate = group.slider.mass * given.crank_speed * given.crank_speed
-    loads = (*_kept(given.loads, options.gravity), Spring(rate, mean))
+    loads = (*_remaining_loads(given.loads, options.gravity), Spring(rate, mean))
     carried = group.coupler.mass * (1.0 - share)
-    weight = carried * (_across(loads, guide) if options.gravity else 0.0)
-    vary = _bounds(options, half, mean, law.coupler_length, rate)
+    weight = carried * (_gravity_across(loads, guide) if options.gravity else 0.0)
+    vary = _default_bounds(options, half, mean, law.coupler_length, rate)
     first = frozenset(vary)
     if options.cubic is not None:
         vary["spring.cubic"] = options.cubic
     if options.coupler_spring is not None:
-        found = _carrying(weight * law.coupler_length, options.coupler_spring)
+        found = _weight_spring(weight * law.coupler_length, options.coupler_spring)
         loads += (found,)
-        vary[SPRING] = (0.5 * found.stiffness, 1.5 * found.stiffness)
+        vary[SPRING_PATH] = (0.5 * found.stiffness, 1.5 * found.stiffness)
     if options.counterweight is not None:
         arm = -carried * half / options.counterweight
         links["crank"] = replace(links["crank"], mass=options.counterweight, centre=(arm, 0.0))
-        first |= {OFFSET}
-        near, reach = WEIGHT_REACH * arm, REACH * half
-        vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
-    mechanism = cam_crank_slider(_cam(law, group.guide, options), law.coupler_length, guide=guide, **links)
+        first |= {OFFSET_PATH}
+        near, reach = WEIGHT_REACH * arm, LENGTH_REACH * half
+        vary |= {
+            WEIGHT_PATHS[0]: (arm + near, arm - near),
+            WEIGHT_PATHS[1]: (near, -near),
+            OFFSET_PATH: (-reach, reach),
+        }
+    mechanism = cam_crank_slider(_starting_cam(law, group.guide, options), law.coupler_length, guide=guide, **links)
     scene = Scene(mechanism, given.crank_speed, loads=loads)
-    unit = _mean_torque(half, mean, _of_length(links["coupler"], mean, share), group.slider, given.crank_speed)
+    unit = _mean_torque(half, mean, _coupler_of_length(links["coupler"], mean, share), group.slider, given.crank_speed)
     return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
 
 
-def parts_of(given):
+def crank_slider_links(given):
     """Slider group of a scene that is a crank-slider, and its links by name; all else is refused."""
     mechanism = given.mechanism
     roller, slider = crank_slider_parts(mechanism) or (None, None)
@@ -209,27 +213,27 @@ def _ends(given, ends):
     return low, high
 
 
-def _of_length(coupler, length, share):
+def _coupler_of_length(coupler, length, share):
     """The coupler with its mass centre at a share of a length."""
     return replace(coupler, centre=(share * length, coupler.centre[1]))
 
 
-def _kept(loads, gravity):
+def _remaining_loads(loads, gravity):
     """Loads that stay: springs are found anew, weight acts if it shall."""
     return (item for item in loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity)))
 
 
-def _bounds(options, half, mean, length, rate):
+def _default_bounds(options, half, mean, length, rate):
     """Bounds of the cam, the coupler and the linear spring, by path, about where the search begins."""
-    reach = REACH * half
+    reach = LENGTH_REACH * half
     vary = {"cam.cosine.0": (half - reach, half + reach)}
     vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)}
     vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, options.sine + 1)}
-    vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, STIFFEST * rate)}
+    vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, MAX_STIFFNESS_RATIO * rate)}
     return vary | {"spring.free_position": (mean - reach, mean + reach)}
 
 
-def _cam(law, guide, options):
+def _starting_cam(law, guide, options):
     """First harmonics of the cam for the cosine law."""
     angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
     series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
@@ -245,14 +249,14 @@ def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
     return found
 
 
-def _across(loads, guide):
+def _gravity_across(loads, guide):
     """Acceleration of gravity along the guide's left normal."""
     pulls = [item.vector for item in loads if isinstance(item, Gravity)]
     across = sum(float(cross(guide.direction, pull)) for pull in pulls)
-    return 0.0 if abs(across) <= ROUNDING * sum(np.hypot(*pull) for pull in pulls) else across
+    return 0.0 if abs(across) <= SQUARE_TOLERANCE * sum(np.hypot(*pull) for pull in pulls) else across
 
 
-def _carrying(moment, free_angle):
+def _weight_spring(moment, free_angle):
     """Torsion spring whose couple on the coupler is a moment where the coupler lies along the guide."""
     if not moment:
         raise ParameterError("torque-free cam: coupler_spring carries weight across the guide, but none acts")

@@ -19,15 +19,15 @@ from ..machine.cams.roller import Roller
 from ..machine.guide import Guide
 from ..machine.links import Link
 from ..machine.loads import KINDS, TURN, Gravity, Table
-from ..machine.loads.points import Between, Place
-from ..machine.loads.table import OVER, VALUES
+from ..machine.loads.points import PlacePairRule, PlaceRule
+from ..machine.loads.table import COLUMNS, VALUE_HEADINGS
 from ..numbers import checks
-from ..numbers.files import written_whole
+from ..numbers.files import write_atomically
 
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
 
 
-def write(path, title, scenes, source="", *, comment="", designs=None) -> Path:
+def write_case(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference.
 
     Before them may stand a comment, behind them tables of designs as they stood in another file.
@@ -47,9 +47,9 @@ def write(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     parts += [variant(name, scene, path.stem) for name, scene in scenes.items()]
     parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
     for file, text in tables(path, scenes).items():
-        with written_whole(file) as place:
+        with write_atomically(file) as place:
             Path(place).write_text(text, encoding="utf-8")
-    with written_whole(path) as place:
+    with write_atomically(path) as place:
         Path(place).write_text("\n".join(parts) + "\n", encoding="utf-8")
     return path
 
@@ -72,11 +72,11 @@ def tables(path, scenes) -> dict[Path, str]:
 def table(head, raw) -> str:
     """Text of a table as it was read from a case file, tables within it below."""
     inner = {key: value for key, value in raw.items() if isinstance(value, dict)}
-    own = [f"{_key(key)} = {_plain_text(value)}" for key, value in raw.items() if key not in inner]
+    own = [f"{_key(key)} = {_toml_value(value)}" for key, value in raw.items() if key not in inner]
     return "\n".join(["", f"[{head}]", *own, *(table(f"{head}.{_key(key)}", value) for key, value in inner.items())])
 
 
-def _plain_text(value):
+def _toml_value(value):
     """Text, truth values, numbers and lists of them as TOML and JSON alike have them."""
     return json.dumps(value, ensure_ascii=False)
 
@@ -84,7 +84,7 @@ def _plain_text(value):
 def variant(name, scene, stem="case") -> str:
     """Text of a variant of a case file: a scene under a name; its tables are in files that begin with a stem."""
     head = f"variants.{_key(name)}"
-    keys, tables = _mechanism(scene.mechanism, _file(stem, name, "cam"))
+    keys, tables = _mechanism_keys(scene.mechanism, _table_file(stem, name, "cam"))
     keys["crank_speed"] = _number(scene.crank_speed, "rad/s", "crank_speed")
     if np.any(scene.crank_acceleration):
         keys["crank_acceleration"] = _number(scene.crank_acceleration, "rad/s^2", "crank_acceleration")
@@ -99,8 +99,8 @@ def variant(name, scene, stem="case") -> str:
         tables.append(("gravity", _keys(item)))
     for joint, friction in scene.friction.items():
         tables.append((f"friction.{_key(joint)}", _keys(friction)))
-    named = [(item, _file(stem, name, f"load_{number}")) for number, item in enumerate(others, 1)]
-    tables += [("[loads]", {"kind": _quoted(_word(item)), **_keys(item, file)}) for item, file in named]
+    named = [(item, _table_file(stem, name, f"load_{number}")) for number, item in enumerate(others, 1)]
+    tables += [("[loads]", {"kind": _quoted(_load_word(item)), **_keys(item, file)}) for item, file in named]
     for table, own in tables:
         repeated = table.startswith("[")
         opened = f"[[{head}.{table[1:-1]}]]" if repeated else f"[{head}.{table}]"
@@ -108,7 +108,7 @@ def variant(name, scene, stem="case") -> str:
     return "\n".join(lines)
 
 
-def _file(stem, variant, what):
+def _table_file(stem, variant, what):
     """Name of the file of a table."""
     plain = "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in variant)
     return f"{stem}_{plain}_{what}.csv"
@@ -120,16 +120,16 @@ def _files(variant, scene, path):
     for number, item in enumerate(others, 1):
         found = item.value_now
         if isinstance(found, Table):
-            column, unit = OVER[found.over]
+            column, unit = COLUMNS[found.over]
             of = item.RULES.rules[item.VALUE].rule.unit
-            columns = {f"{column} [{unit}]": found.x, f"{VALUES[of]} [{_spelled(of)}]": found.y}
+            columns = {f"{column} [{unit}]": found.x, f"{VALUE_HEADINGS[of]} [{_unit_text(of)}]": found.y}
             if found.back is not None:
-                columns[f"{VALUES[of]}_back [{_spelled(of)}]"] = found.back
-            yield _file(path.stem, variant, f"load_{number}"), _columns(columns)
+                columns[f"{VALUE_HEADINGS[of]}_back [{_unit_text(of)}]"] = found.back
+            yield _table_file(path.stem, variant, f"load_{number}"), _columns(columns)
     for group in scene.mechanism.groups:
         if type(cam := getattr(group, "cam", None)) is Sampled:
             columns = {"angle [rad]": cam.angle, "radius [m]": cam.samples}
-            yield _file(path.stem, variant, "cam"), _columns(columns)
+            yield _table_file(path.stem, variant, "cam"), _columns(columns)
 
 
 def _columns(columns):
@@ -137,9 +137,9 @@ def _columns(columns):
     return "\n".join([", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]) + "\n"
 
 
-def _mechanism(mechanism, cam_file):
+def _mechanism_keys(mechanism, cam_file):
     """Keys of a mechanism, and its tables; a cam from a table stands in a file."""
-    crank = _link(mechanism.crank.link)
+    crank = _link_keys(mechanism.crank.link)
     keys: dict[str, str] = {}
     tables = [("crank", crank)] if crank else []
     if mechanism.crank.length is not None:
@@ -161,7 +161,7 @@ def _group_word(group):
     return "".join(f" {letter}" if letter.isupper() else letter for letter in name).strip().lower()
 
 
-def _word(load):
+def _load_word(load):
     if type(load) not in KINDS:
         raise ParameterError(f"case file: has no text for the load {checks.shown(load)}")
     return load.PATH.replace("_", " ")
@@ -182,16 +182,16 @@ def _keys(item, file=""):
         ):
             continue
         if isinstance(value, Guide):
-            found |= _guide(value)
+            found |= _guide_keys(value)
         elif isinstance(value, Link):
-            link = _link(value)
-            found |= {name: _inline(link)} if link else {}
+            link = _link_keys(value)
+            found |= {name: _inline_table(link)} if link else {}
         elif isinstance(value, Roller):
-            found[name] = _inline(_keys(value))
+            found[name] = _inline_table(_keys(value))
         elif name == "cam":
-            found["cam"] = _cam(value, file)
+            found["cam"] = _cam_text(value, file)
         elif isinstance(value, Table):
-            found[name] = _in_file(value, file)
+            found[name] = _table_reference(value, file)
         else:
             found[name] = _value(value, rule, name)
     return found
@@ -205,33 +205,33 @@ def _value(value, rule, name):
         return _quoted(value)
     if isinstance(value, int):
         return str(value)
-    if isinstance(rule, Between):
-        return f"[{', '.join(_value(part, Place(), name) for part in value)}]"
+    if isinstance(rule, PlacePairRule):
+        return f"[{', '.join(_value(part, PlaceRule(), name) for part in value)}]"
     if isinstance(value, tuple):
         unit = getattr(getattr(rule, "rule", None), "unit", "m")
-        parts = (_quoted(part) if isinstance(part, str) else _number(part, _spelled(unit), name) for part in value)
+        parts = (_quoted(part) if isinstance(part, str) else _number(part, _unit_text(unit), name) for part in value)
         return f"[{', '.join(parts)}]"
     if isinstance(rule, checks.Number) and rule.unit in ("", "1"):
-        return repr(_plain(value, name))
-    return _number(value, _spelled(getattr(rule, "unit", "")), name)
+        return repr(_single_number(value, name))
+    return _number(value, _unit_text(getattr(rule, "unit", "")), name)
 
 
-def _in_file(values, file):
+def _table_reference(values, file):
     """Text of a table of values that stands in a file."""
     keys = {"file": _quoted(file), "over": _quoted(values.over)}
     if values.period != TURN:
         keys["period"] = _quoted(f"{360 * round(values.period / TURN)} deg")
-    return _inline(keys | ({"slider": _quoted(values.slider)} if values.slider is not None else {}))
+    return _inline_table(keys | ({"slider": _quoted(values.slider)} if values.slider is not None else {}))
 
 
-def _guide(guide):
+def _guide_keys(guide):
     found = {"guide_angle": _number(guide.guide_angle, "rad", "guide_angle")} if np.any(guide.guide_angle) else {}
     return found | (
         {"guide_offset": _number(guide.guide_offset, "m", "guide_offset")} if np.any(guide.guide_offset) else {}
     )
 
 
-def _link(link):
+def _link_keys(link):
     """Keys of a link that are not zero."""
     found = {}
     if np.any(link.mass):
@@ -243,38 +243,38 @@ def _link(link):
     return found
 
 
-def _cam(cam, file):
+def _cam_text(cam, file):
     if type(cam) is Sampled:
         noise = {} if cam.smoothing is None else {"noise": _number(cam.smoothing, "m", "noise")}
-        return _inline({"kind": _quoted("sampled"), "table": _quoted(file), **noise})
+        return _inline_table({"kind": _quoted("sampled"), "table": _quoted(file), **noise})
     if type(cam) not in CAMS:
         raise ParameterError(
             f"case file: has no text for a cam of the class {type(cam).__name__}; write it by cam.export as .csv, and "
             'name that in a case file: cam = { kind = "sampled", table = "cam.csv" }'
         )
-    keys = {PLAIN.get(name, name): value for name, value in _keys(cam).items() if name != "guide_angle"}
-    return _inline({"kind": _quoted(CAMS[type(cam)]), **keys})
+    keys = {KEYS_BY_FIELD.get(name, name): value for name, value in _keys(cam).items() if name != "guide_angle"}
+    return _inline_table({"kind": _quoted(CAMS[type(cam)]), **keys})
 
 
-PLAIN = {"pitch_radius": "radius"}
+KEYS_BY_FIELD = {"pitch_radius": "radius"}
 """Keys of case files by fields that are called otherwise."""
 
 
-def _inline(keys):
+def _inline_table(keys):
     return f"{{ {', '.join(f'{key} = {value}' for key, value in keys.items())} }}"
 
 
 def _number(value, unit, name):
-    return _quoted(f"{_plain(value, name)!r} {unit}")
+    return _quoted(f"{_single_number(value, name)!r} {unit}")
 
 
-def _plain(value, name):
+def _single_number(value, name):
     if isinstance(value, float | int) or (isinstance(value, np.ndarray) and value.size == 1):
         return float(value)
     raise ParameterError(f"case file: {name} must be one number to be written, got {checks.shown(value)}")
 
 
-def _spelled(unit):
+def _unit_text(unit):
     """A unit as case files have it."""
     return unit.replace("**", "^").replace("*", " ") or "1"
 

@@ -15,7 +15,7 @@ _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
 
 
 @dataclass(frozen=True)
-class Demand:
+class Constraint:
     """An output and what it must be.
 
     Attributes
@@ -43,7 +43,7 @@ class Demand:
         return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
 
 
-def demand(text, known) -> Demand:
+def parse_constraint(text, known) -> Constraint:
     """Demand from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
 
     `known` is the scene, or what has a mechanism, that the output is of.
@@ -59,17 +59,17 @@ def demand(text, known) -> Demand:
             f'limit {text!r} must be an output, a relation and a value, such as "largest O <= 0.75 kN" or "largest '
             'slider_position = 2.3 m"'
         )
-    output = wanted(found["output"], known)
+    output = parse_output(found["output"], known)
     plain = output.ratio or output.unit == "1"
     try:
         number = re.fullmatch(NUMBER, found["value"].strip()) if plain else None
         value = float(found["value"]) if number else to_si(found["value"], "1" if plain else output.unit)
     except ValueError as error:
         raise ParameterError(f"limit {text!r}: {error}") from None
-    return Demand(output, _RELATIONS.get(found["relation"], found["relation"]), value)
+    return Constraint(output, _RELATIONS.get(found["relation"], found["relation"]), value)
 
 
-def wanted(text, known) -> Output:
+def parse_output(text, known) -> Output:
     """Output of a design, with its unit; refused if nothing tells how it changes with the numbers.
 
     Raises
@@ -83,7 +83,7 @@ def wanted(text, known) -> Output:
     return output if output.unit else replace(output, unit="1")
 
 
-def demands(texts, known):
+def parse_constraints(texts, known):
     """Limits from their texts; all that is wrong with them in one error."""
     if not isinstance(texts, str | Iterable):
         raise ParameterError(
@@ -92,7 +92,7 @@ def demands(texts, known):
     found, problems = [], []
     for text in (texts,) if isinstance(texts, str) else texts:
         try:
-            found.append(text if isinstance(text, Demand) else demand(text, known))
+            found.append(text if isinstance(text, Constraint) else parse_constraint(text, known))
         except ParameterError as error:
             problems.append(str(error))
     checks.require("design", *problems)
@@ -109,6 +109,6 @@ def table_limits(scene):
                 float(table.x[-1] - table.x[0]),
             )
             for reduction, relation, end in (("smallest", ">=", table.x[0]), ("largest", "<=", table.x[-1])):
-                limit = Demand(wanted(f"{reduction} {position}", scene), relation, float(end), span)
+                limit = Constraint(parse_output(f"{reduction} {position}", scene), relation, float(end), span)
                 found[str(limit)] = limit
     return tuple(found.values())

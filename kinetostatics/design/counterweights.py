@@ -18,20 +18,20 @@ from ..results.rounding import zeroed
 from ..solution.scene import solve
 from .linkage import crank_sliders
 
-PARALLEL = 1e-9
+PARALLEL_TOLERANCE = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
-UNCHANGED = 1e-10
+CHANGE_TOLERANCE = 1e-10
 """Change, per cent, that is rounding."""
 
 MASS, LENGTH = (checks.Optional(checks.Number(unit, low=0.0, strict=True)) for unit in ("kg", "m"))
-LIMITS = {
+COUNTERWEIGHT_RULES = {
     "mass": MASS,
     "arm": checks.Optional(checks.Number("m")),
     "largest_mass": MASS,
     "largest_arm": LENGTH,
     "keep_out": LENGTH,
 }
-UNBALANCE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lone=True)}
+UNBALANCE_RULE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lone=True)}
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,12 @@ class Counterweight:
         given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
         either = None if len(given) == 1 else f"give either mass or arm, not {'both' if given else 'neither'}"
         vars(self).update(
-            checks.examined("counterweight", LIMITS, {name: getattr(self, name) for name in LIMITS}, either)
+            checks.check_values(
+                "counterweight",
+                COUNTERWEIGHT_RULES,
+                {name: getattr(self, name) for name in COUNTERWEIGHT_RULES},
+                either,
+            )
         )
         checks.require("counterweight", "arm must not be 0" if self.arm == 0 else None)
 
@@ -173,12 +178,12 @@ class Balanced:
             rows[name] = {
                 "modulus h [m]": moduli[name],
                 "counterweight mass [kg]": mass,
-                "counterweight arm [m]": _signed(place),
+                "counterweight arm [m]": _signed_distance(place),
                 "counterweight phase [deg]": np.degrees(np.arctan2(place[1], place[0])),
                 "counterweight unbalance [kg m]": mass * np.hypot(*place),
                 "link mass before [kg]": bare.mass,
                 "link mass after [kg]": new.mass,
-                "link centre after [m]": _signed(new.centre),
+                "link centre after [m]": _signed_distance(new.centre),
                 "link unbalance before [kg m]": bare.mass * np.hypot(*bare.centre),
                 "link unbalance after [kg m]": new.mass * np.hypot(*new.centre),
             }
@@ -203,14 +208,14 @@ class Balanced:
         rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
         for name, unit, quantity in [
             ("largest shaking force", "N", "shaking_force"),
-            *_by_guide(self.mechanism),
+            *_guide_force_rows(self.mechanism),
             ("largest shaking moment", "N m", "shaking_moment"),
             *((f"largest {label_of(before, joint)}", "N", joint) for joint in before.reactions),
             ("largest balancing torque", "N m", "balancing_torque"),
         ]:
             rows[f"{name} [{unit}]"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
         table = pd.DataFrame.from_dict(rows, orient="index", columns=["before", "after"])
-        table["change [%]"] = zeroed(100 * (table["after"] / table["before"] - 1), UNCHANGED)
+        table["change [%]"] = zeroed(100 * (table["after"] / table["before"] - 1), CHANGE_TOLERANCE)
         return table
 
 
@@ -245,7 +250,7 @@ def counterweight(mechanism, link, unbalance, weight):
     (4.0, -0.05)
     """
     problem = checks.choice("link", link, tuple(mechanism.links))
-    found = checks.examined("counterweight", UNBALANCE, {"unbalance": unbalance}, problem)["unbalance"]
+    found = checks.check_values("counterweight", UNBALANCE_RULE, {"unbalance": unbalance}, problem)["unbalance"]
     bare = mechanism.links[link]
     wanted = np.array(found, dtype=float)
     own = bare.mass * np.array(bare.centre)
@@ -264,7 +269,7 @@ def counterweight(mechanism, link, unbalance, weight):
     return Balanced(mechanism, mechanism.with_link(link, bare.joined(mass, place)), {link: (mass, place)})
 
 
-def _signed(place):
+def _signed_distance(place):
     """Distance of a point from the joint, negative behind it."""
     return float(np.copysign(np.hypot(*place), place[0]))
 
@@ -293,7 +298,7 @@ def guide_direction(mechanism, slider=None):
         return guides[slider].direction
     directions = [guide.direction for guide in guides.values()] or [(1.0, 0.0)]
     x, y = directions[0]
-    if any(abs(x * v - y * u) > PARALLEL for u, v in directions):
+    if any(abs(x * v - y * u) > PARALLEL_TOLERANCE for u, v in directions):
         raise ParameterError(
             f"along and across the guide mean nothing for a {mechanism.name} with guides of {' and '.join(guides)} "
             'that are not parallel; use "largest" or "mean"'
@@ -301,7 +306,7 @@ def guide_direction(mechanism, slider=None):
     return directions[0]
 
 
-def _by_guide(mechanism):
+def _guide_force_rows(mechanism):
     """Rows of the shaking force along and across each guide."""
     several = len(mechanism.guides) > 1
     for slider in mechanism.guides or (None,):
@@ -353,7 +358,7 @@ def balancing_table(reference, variants, sampling=None):
     return pd.DataFrame(columns).rename_axis("quantity").round(9) + 0.0
 
 
-def _farthest(values):
+def _largest_by_size(values):
     """Value of largest magnitude with its sign; of several alike but for rounding the first."""
     size = np.abs(values)
     return values[np.flatnonzero(size >= (1 - 1e-12) * size.max())[0]]
@@ -364,8 +369,8 @@ def _sampled_forces(reference, solution, sampling):
     before, (x, y) = (item.at(grid).shaking_force for item in (reference, solution))
     largest, largest_before = np.max(np.hypot(x, y)), np.max(np.hypot(*before))
     return {
-        "largest F_x on the study's grid [N]": _farthest(x),
-        "largest F_y on the study's grid [N]": _farthest(y),
+        "largest F_x on the study's grid [N]": _largest_by_size(x),
+        "largest F_y on the study's grid [N]": _largest_by_size(y),
         "largest |F| on the study's grid [N]": largest,
         "reduction of |F| on the study's grid [%]": 100 * (1 - largest / largest_before),
     }

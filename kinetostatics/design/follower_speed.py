@@ -6,17 +6,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.cams.profile import POSITIVE, SAMPLES, highest
+from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, highest
 from ..machine.loads import Spring
 from ..numbers import checks
 from ..results.turn import require_single
 from ..solution.scene import Scene
 
-CREEPING = 1e-6
+REST_SPEED_RATIO = 1e-6
 """Share of the crank speed at which contact forces are those at rest, but for the sign of one that vanishes there."""
-QUADRATIC = 1e-9
+QUADRATIC_TOLERANCE = 1e-9
 """How far forces may be from growing with the square of the speed, relative to the largest."""
-FASTEST = 1e3
+MAX_SPEED_RATIO = 1e3
 """Times its crank speed up to which lift-off is looked for."""
 
 
@@ -90,38 +90,40 @@ def lift_off_speed(solution, force="cam_force"):
     39.528471
     """
     _require(solution, "lift_off_speed", force)
-    fast = _speed(solution)
-    angle = np.linspace(0.0, solution.period, SAMPLES, endpoint=False)
-    rest, moving, faster = (_force(solution, force, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
+    fast = _mean_speed(solution)
+    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
+    rest, moving, faster = (
+        _force(solution, force, speed, angle) for speed in (REST_SPEED_RATIO * fast, fast, 2.0 * fast)
+    )
     side = np.sign(rest[int(np.argmax(np.abs(rest)))])
     if not np.all(side * rest > 0.0):
         return 0.0
-    if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC * np.max(np.abs(faster)):
-        return _by_squares(solution, force, fast)
-    return _by_search(solution, force, fast, side, angle)
+    if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC_TOLERANCE * np.max(np.abs(faster)):
+        return _lift_off_by_squares(solution, force, fast)
+    return _lift_off_by_search(solution, force, fast, side, angle)
 
 
-def _by_squares(solution, force, fast):
+def _lift_off_by_squares(solution, force, fast):
     """Where forces are F0 + F2 speed^2: the least speed for which they vanish at some crank angle."""
 
     def ratio(angle):
-        rest = _force(solution, force, CREEPING * fast, angle)
+        rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
         return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
 
     peak = highest(ratio, 0.0, solution.period).value
     found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
-    return found if found <= FASTEST * abs(fast) else np.inf
+    return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
 
 
-def _by_search(solution, force, fast, side, angle):
+def _lift_off_by_search(solution, force, fast, side, angle):
     """Where loads hang on the speed in another way."""
     from scipy.optimize import brentq
 
     def least(speed):
         return float(np.min(side * _force(solution, force, np.copysign(speed, fast), angle)))
 
-    low = CREEPING * abs(fast)
-    for speed in abs(fast) * np.geomspace(0.01, FASTEST, 61):
+    low = REST_SPEED_RATIO * abs(fast)
+    for speed in abs(fast) * np.geomspace(0.01, MAX_SPEED_RATIO, 61):
         if least(speed) < 0.0:
             return float(brentq(least, low, speed, rtol=1e-12))
         low = speed
@@ -167,7 +169,7 @@ def lifted(solution, force="cam_force"):
     def value(angle):
         return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
 
-    angle = np.linspace(0.0, solution.period, SAMPLES + 1)
+    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES + 1)
     pressing = value(angle) >= 0.0
     if np.all(pressing) or not np.any(pressing):
         return () if pressing[0] else ((0.0, solution.period),)
@@ -209,7 +211,7 @@ def starting_torque(solution):
     11.312
     """
     _require(solution, "starting_torque", "balancing_torque")
-    return highest(lambda angle: np.abs(_at(solution, 0.0, angle).balancing_torque), 0.0, solution.period)
+    return highest(lambda angle: np.abs(_solution_at(solution, 0.0, angle).balancing_torque), 0.0, solution.period)
 
 
 def spring_surge(solution, spring_mass):
@@ -246,13 +248,13 @@ def spring_surge(solution, spring_mass):
     """
     checks.require("spring_surge", checks.solution("solution", solution))
     require_single(solution, "spring_surge", "slider_position")
-    mass = checks.singles("spring_surge", spring_mass=(spring_mass, "kg", POSITIVE))["spring_mass"]
+    mass = checks.single_numbers("spring_surge", spring_mass=(spring_mass, "kg", POSITIVE))["spring_mass"]
     springs = [load for load in solution.loads if isinstance(load, Spring)]
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
     turns = round(solution.period / (2.0 * np.pi))
-    at = solution.at(np.linspace(0.0, solution.period, SAMPLES * turns, endpoint=False))
+    at = solution.at(np.linspace(0.0, solution.period, PEAK_SAMPLES * turns, endpoint=False))
     end = at.placement.travels[spring.on].position
     rate = float(np.mean(spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
     if not rate > 0.0:
@@ -261,7 +263,7 @@ def spring_surge(solution, spring_mass):
     series[1:] *= 2.0
     natural = float(np.pi * np.sqrt(rate / mass))
     speed = abs(float(np.mean(solution.crank_speed)))
-    return Surge(natural, natural / speed if speed else np.inf, series[: SAMPLES // 4])
+    return Surge(natural, natural / speed if speed else np.inf, series[: PEAK_SAMPLES // 4])
 
 
 def _require(solution, owner, name):
@@ -272,16 +274,16 @@ def _require(solution, owner, name):
     checks.require(owner, checks.choice("force", name, tuple(solution.scalars)) if name else None)
 
 
-def _speed(solution):
+def _mean_speed(solution):
     """Mean crank speed over the crank angles given, with its sign; 1 rad/s, its way, of a machine that stands."""
     return float(np.mean(solution.crank_speed)) or float(np.ravel(solution.crank_sense)[0])
 
 
-def _at(solution, speed, angle):
+def _solution_at(solution, speed, angle):
     """The solution at another speed of the same sense of rotation, or at rest, about to turn that way."""
-    drive = {"crank_speed": speed, "crank_acceleration": 0.0, "sense": np.copysign(1.0, _speed(solution))}
+    drive = {"crank_speed": speed, "crank_acceleration": 0.0, "sense": np.copysign(1.0, _mean_speed(solution))}
     return replace(Scene.of(solution), **drive).solve(angle)
 
 
 def _force(solution, name, speed, angle):
-    return _at(solution, speed, angle).scalar(name)
+    return _solution_at(solution, speed, angle).scalar(name)

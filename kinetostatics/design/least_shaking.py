@@ -12,12 +12,12 @@ from ..results.extremes import extremes
 from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
 
-LARGEST = ("largest", "along", "across")
+PEAK_NORMS = ("largest", "along", "across")
 """Norms that are the largest of a size over the turn."""
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
+class ShakingSearch:
     """What is searched: unbalances of counterweights, relative to the largest static moment.
 
     Attributes
@@ -68,7 +68,7 @@ class Search:
         """The mechanism with counterweights of these unbalances."""
         result, unbalances = Balanced(self.mechanism, self.mechanism), (unknowns * self.scale).reshape(-1, self.size)
         for (name, weight), unbalance in zip(self.counterweights.items(), unbalances, strict=True):
-            step = _added(result.mechanism, name, np.append(unbalance, 0.0)[:2], weight)
+            step = _add_within_limits(result.mechanism, name, np.append(unbalance, 0.0)[:2], weight)
             result = Balanced(self.mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
         return result
 
@@ -78,27 +78,27 @@ class Search:
 
     def sizes(self, unknowns):
         """What the norm looks at, at each crank angle, relative to the reference."""
-        return _sizes(self.solved(unknowns), self.norm) / self.reference
+        return _force_sizes(self.solved(unknowns), self.norm) / self.reference
 
     def value(self, unknowns):
         """The norm."""
         if self.norm == "weighted":
-            return _weighted(self.solved(unknowns), self.weights)
-        return (np.mean if self.norm == "mean" else np.max)(_sizes(self.solved(unknowns), self.norm))
+            return _weighted_norm(self.solved(unknowns), self.weights)
+        return (np.mean if self.norm == "mean" else np.max)(_force_sizes(self.solved(unknowns), self.norm))
 
     def objective(self, unknowns):
         """The norm relative to the reference."""
         return self.value(unknowns) / self.reference
 
 
-def least(search) -> Balanced:
+def least_shaking(search) -> Balanced:
     """The mechanism with the best counterweights."""
-    best = min((_searched(search.objective, start) for start in search.starts), key=search.objective)
-    if search.norm not in LARGEST:
+    best = min((_minimise_norm(search.objective, start) for start in search.starts), key=search.objective)
+    if search.norm not in PEAK_NORMS:
         return search.balanced(best)
-    sizes = partial(_sizes, norm=search.norm)
+    sizes = partial(_force_sizes, norm=search.norm)
     for _ in range(8):  # what is largest between the angles joins them
-        best = min(best, _levelled(search.sizes, best), key=search.objective)
+        best = min(best, _minimise_peak(search.sizes, best), key=search.objective)
         peaks = extremes(search.solved(best), sizes)
         if peaks.range[1] <= search.value(best) + 1e-10 * search.reference:
             break
@@ -106,7 +106,7 @@ def least(search) -> Balanced:
     return search.balanced(best)
 
 
-def _searched(objective, start):
+def _minimise_norm(objective, start):
     """Minimum by Nelder and Mead, begun anew where it stops."""
     from scipy.optimize import minimize
 
@@ -121,7 +121,7 @@ def _stop_at_zero(intermediate_result):
         raise StopIteration
 
 
-def _levelled(sizes, start):
+def _minimise_peak(sizes, start):
     """Minimum of the largest of many sizes: of a level that none of them exceeds (SLSQP)."""
     from scipy.optimize import minimize
 
@@ -136,19 +136,19 @@ def _levelled(sizes, start):
     return found.x[:-1]
 
 
-def _sizes(solution, norm):
+def _force_sizes(solution, norm):
     """What the norm looks at, at each crank angle: the shaking force or a component of it."""
     if norm in ("along", "across"):
         return np.abs((along_guide if norm == "along" else across_guide)(solution))
     return magnitude(solution.shaking_force)
 
 
-def _weighted(solution, weights):
+def _weighted_norm(solution, weights):
     force, moment = weights[0] * magnitude(solution.shaking_force), weights[1] * solution.shaking_moment
     return np.sqrt(np.mean(force * force + moment * moment))
 
 
-def _added(mechanism, link, unbalance, weight):
+def _add_within_limits(mechanism, link, unbalance, weight):
     """A counterweight of that unbalance, on whichever side, reduced to its limits."""
     size = float(np.hypot(*unbalance))
     smallest, largest = weight.unbalances()

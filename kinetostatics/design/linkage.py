@@ -63,7 +63,7 @@ def crank_sliders(mechanism) -> tuple[CrankSlider, ...]:
     )
 
 
-CHANGE_POINT = 1e-12
+CHANGE_POINT_TOLERANCE = 1e-12
 """Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
 
 
@@ -93,7 +93,12 @@ class Grashof:
     intervals: tuple[tuple[float, float], ...]
 
 
-KINDS = {"crank": "crank-rocker", "coupler": "double-rocker", "rocker": "rocker-crank", "frame": "double-crank"}
+KIND_BY_SHORTEST = {
+    "crank": "crank-rocker",
+    "coupler": "double-rocker",
+    "rocker": "rocker-crank",
+    "frame": "double-crank",
+}
 """Kind of a Grashof linkage by its shortest link."""
 
 
@@ -142,15 +147,15 @@ def grashof(mechanism):
     outer = lengths[ordered[0]] + lengths[ordered[3]]
     inner = lengths[ordered[1]] + lengths[ordered[2]]
     joints: tuple[str, ...]
-    kind, joints = KINDS[ordered[0]], ends[ordered[0]]
-    change_point = abs(outer - inner) <= CHANGE_POINT * inner
+    kind, joints = KIND_BY_SHORTEST[ordered[0]], ends[ordered[0]]
+    change_point = abs(outer - inner) <= CHANGE_POINT_TOLERANCE * inner
     if change_point:
         kind = "change-point"
-        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT))
+        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT_TOLERANCE))
         joints = tuple(dict.fromkeys(joint for name in shortest for joint in ends[name]))
     elif outer > inner:
         kind, joints = "triple-rocker", ()
-    slack = 8 * CHANGE_POINT if change_point else 0.0
+    slack = 8 * CHANGE_POINT_TOLERANCE if change_point else 0.0
     return Grashof(kind, joints, _closed_intervals(lengths, atan2(pivot[1], pivot[0]), slack))
 
 
@@ -203,14 +208,14 @@ __all__ = [
     "transmission_angle",
 ]
 
-LENGTH = checks.Number("m", low=0.0, strict=True)
-CHAIN_UNIT = {
-    **dict.fromkeys(("crank length", "coupler length", "rocker length"), LENGTH),
+LENGTH_RULE = checks.Number("m", low=0.0, strict=True)
+CHAIN_UNIT_RULES = {
+    **dict.fromkeys(("crank length", "coupler length", "rocker length"), LENGTH_RULE),
     "pivot_x": checks.Optional(checks.Number("m")),
 }
-ANGLE, START = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
-QUARTER, TURN, WHOLE = pi / 2, 2 * pi, ((0.0, 2 * pi),)
-STEPS = 720  # crank angles a turn on which a rocker is followed around
+ANGLE_RULE, START_RULE = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
+QUARTER, TURN, FULL_TURN = pi / 2, 2 * pi, ((0.0, 2 * pi),)
+ROCKER_ANGLES = 720  # crank angles a turn on which a rocker is followed around
 
 
 def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
@@ -243,11 +248,11 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     [0.994987, -0.5]
     """
     given = {"crank length": crank_length, "coupler length": coupler_length, "rocker length": rocker_length}
-    found = checks.examined("chain unit", CHAIN_UNIT, given | {"pivot_x": pivot_x})
+    found = checks.check_values("chain unit", CHAIN_UNIT_RULES, given | {"pivot_x": pivot_x})
     crank_length, coupler_length, rocker_length, pivot_x = found.values()
     if pivot_x is None:
         square = (coupler_length - crank_length) * (coupler_length + crank_length)
-        if checks.known(square) and np.any(square <= 0):
+        if checks.has_known_values(square) and np.any(square <= 0):
             raise ParameterError(
                 f"chain unit: parallel start needs a coupler longer than the crank, got {np.min(coupler_length)} m and "
                 f"{np.max(crank_length)} m; give pivot_x for a free start"
@@ -281,7 +286,7 @@ def chain_unit_angle(angle):
     >>> np.degrees(ks.linkage.chain_unit_angle(np.radians([0.0, 90.0, 120.0]))).round(9)
     array([ 90.,   0., -30.])
     """
-    return QUARTER - np.asarray(checks.examined("chain unit", ANGLE, {"angle": angle})["angle"])
+    return QUARTER - np.asarray(checks.check_values("chain unit", ANGLE_RULE, {"angle": angle})["angle"])
 
 
 def rocker_angle(solution, start=QUARTER):
@@ -312,8 +317,8 @@ def rocker_angle(solution, start=QUARTER):
     0.2115
     """
     link, turns = _bars_of(solution).rocker.link, solution.mechanism.turns
-    start = checks.examined("rocker_angle", START, {"start": start})["start"]
-    grid, beginning = np.linspace(0.0, TURN * turns, STEPS * turns + 1), solution.at(start)
+    start = checks.check_values("rocker_angle", START_RULE, {"start": start})["start"]
+    grid, beginning = np.linspace(0.0, TURN * turns, ROCKER_ANGLES * turns + 1), solution.at(start)
     here, around = (_clockwise(at, link, beginning) for at in (solution, solution.at(start + grid)))
     course = np.unwrap(np.nan_to_num(around))
     periods, rest = np.divmod(solution.crank_angle - start, grid[-1])
@@ -397,14 +402,14 @@ class Swing:
         return abs(self.smallest) / self.largest
 
 
-def swings(mechanism):
+def has_swinging_rocker(mechanism):
     """Whether it is a four-bar whose crank turns fully and whose rocker does not."""
     bars = four_bar_shape(mechanism)
     return bars is not None and _swings(bars, grashof(mechanism))
 
 
 def _swings(bars, found_class):
-    return found_class.intervals == WHOLE and bars.rocker.start not in found_class.turning_joints
+    return found_class.intervals == FULL_TURN and bars.rocker.start not in found_class.turning_joints
 
 
 def swing(solution, start=QUARTER):
@@ -440,7 +445,7 @@ def swing(solution, start=QUARTER):
     if not _swings(bars, found_class):
         raise ParameterError(
             "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
-            f"{found_class.kind}{'' if found_class.intervals == WHOLE else ' that does not close all round'}"
+            f"{found_class.kind}{'' if found_class.intervals == FULL_TURN else ' that does not close all round'}"
         )
     found = extremes(solution, lambda at: rocker_angle(at, start))
     high, low = int(np.argmax(found.value)), int(np.argmin(found.value))

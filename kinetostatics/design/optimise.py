@@ -10,19 +10,19 @@ from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..results.extremes import extrema
-from .constraints import Demand, demands, wanted
-from .problem import SHARED, Problem, chosen, moving_bar, own, scene_of, true_value
-from .result import found_of
-from .robust import Sampled, not_spread
-from .search import KEPT, Goal, Reached, better, missed, searched, side_of
+from .constraints import Constraint, parse_constraints, parse_output
+from .problem import SHARED_NUMBERS, Problem, choose_design, progress_bar, scene_of, true_value, without_ratio
+from .result import search_result
+from .robust import SampledOutput, spread_problem
+from .search import LIMIT_TOLERANCE, Goal, SearchEnd, best_end, excess_over, search_from, worst_excess
 
 ANGLES = 720
 """Crank angles over the period."""
-FEWEST_ANGLES = 12
+MIN_ANGLES = 12
 """Crank angles below which curves say nothing."""
-TRUE = ("largest", "smallest", "largest_absolute", "range")
+EXTREME_REDUCTIONS = ("largest", "smallest", "largest_absolute", "range")
 """Reductions whose true values are true extremes."""
-TIGHTER = 4
+MAX_TIGHTENINGS = 4
 """How often limits are drawn in until true extremes keep them."""
 
 
@@ -96,50 +96,52 @@ def optimise(
     >>> round(found.report().loc["ratio mean_absolute balancing_torque [1]", "after"])
     67
     """
-    source, reference = chosen(source, variant, reference)
-    checks.require("design", checks.count("angles", angles, size=checks.ANGLE), *searches(starts, seed))
-    sign, text = aim(minimise, maximise)
+    source, reference = choose_design(source, variant, reference)
+    checks.require(
+        "design", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE), *search_problems(starts, seed)
+    )
+    sign, text = parse_goal(minimise, maximise)
     scene = scene_of(source)
-    output, limits = wanted(text, scene), demands(limits, scene)
+    output, limits = parse_output(text, scene), parse_constraints(limits, scene)
     require_reference(reference, output, limits)
     asked = (output, *(limit.output for limit in limits))
     require_resolved(angles, asked)
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
-    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
-    begins = starting(problem, starts, seed, begin)
-    with moving_bar(problem, progress):
-        best, kept, ends = best_of(problem, goal, plain, begins, limits)
-    return found_of(
+    goal, plain = without_ratios(problem, goal_of(problem, output, sign, robust), limits)
+    begins = starting_designs(problem, starts, seed, begin)
+    with progress_bar(problem, progress):
+        best, kept, ends = best_within_limits(problem, goal, plain, begins, limits)
+    return search_result(
         problem,
         goal if robust is not None else Goal(output, sign),
         kept,
         best,
         dict.fromkeys([*asked, *(limit.output for limit in problem.table_limits)]),
-        label(sign, text, robust),
+        goal_text(sign, text, robust),
         evaluations=problem.evaluations,
-        starts=as_asked(problem, output, goal, ends),
+        starts=ends_as_ratios(problem, output, goal, ends),
     )
 
 
-def aim(minimise, maximise):
+def parse_goal(minimise, maximise):
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
 
 
-def label(sign, text, robust):
+def goal_text(sign, text, robust):
     """What is asked for, in words."""
     of = "" if robust is None else f"{robust.quantile:g} quantile of "
     return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
 
 
-def aimed(problem, output, sign, robust):
+def goal_of(problem, output, sign, robust):
     """The goal: an output, or a quantile of it over a spread."""
-    checks.require("design", None if robust is None else not_spread("robust", robust))
-    return Goal(output if robust is None else Sampled(problem, output, robust, sign), sign)
+    checks.require("design", None if robust is None else spread_problem("robust", robust))
+    return Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
 
 
-def searches(starts, seed):
+def search_problems(starts, seed):
     """What is wrong with how many searches begin, and where, as sentences."""
     return checks.count("starts", starts), checks.seed("seed", seed)
 
@@ -147,7 +149,7 @@ def searches(starts, seed):
 def require_resolved(angles, outputs):
     """Refuse crank angles too few for what is asked."""
     orders = [int(item.reduction[9:]) for item in outputs if item.reduction.startswith("harmonic_")]
-    needed = max([FEWEST_ANGLES, *(2 * order + 1 for order in orders)])
+    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
     checks.require(
         "design",
         None if angles >= needed else f"angles must be at least {needed} for the outputs asked for, got {angles}",
@@ -164,7 +166,7 @@ def require_reference(reference, output, limits):
 
 def without_ratios(problem, goal, limits):
     """Goal and limits in which a ratio to what does not vary is the number below it."""
-    if problem.reference is None or set(problem.names) & set(SHARED):
+    if problem.reference is None or set(problem.names) & set(SHARED_NUMBERS):
         return goal, limits
     reference = scene_of(problem.reference)
 
@@ -173,7 +175,9 @@ def without_ratios(problem, goal, limits):
 
     turned = {"<=": ">=", ">=": "<=", "=": "="}
     found = tuple(
-        Demand(plain(limit.output), turned[limit.relation], true_value(plain(limit.output), reference) / limit.value)
+        Constraint(
+            plain(limit.output), turned[limit.relation], true_value(plain(limit.output), reference) / limit.value
+        )
         if limit.output.ratio and limit.value > 0
         else limit
         for limit in limits
@@ -183,15 +187,15 @@ def without_ratios(problem, goal, limits):
     return Goal(plain(goal.output), -goal.sign), found
 
 
-def as_asked(problem, output, goal, ends):
+def ends_as_ratios(problem, output, goal, ends):
     """What starts came to, as ratios where these were asked for and the number below them was the goal."""
     if callable(goal.output) or goal.output.ratio == output.ratio:
         return ends
-    above = true_value(own(output), scene_of(problem.reference))
+    above = true_value(without_ratio(output), scene_of(problem.reference))
     return [above / end for end in ends]
 
 
-def starting(problem, count, seed, begin=None):
+def starting_designs(problem, count, seed, begin=None):
     """Starts: the source's own values or others told, then designs spread over the bounds."""
     from scipy.stats import qmc
 
@@ -203,23 +207,23 @@ def starting(problem, count, seed, begin=None):
         wrong = [checks.choice("begin", path, problem.names) for path in begin]
         units = problem.source.units
         given: dict = {f"begin {path}": (value, units.get(path, ""), {}) for path, value in begin.items()}
-        own = checks.singles("design", *wrong, **given)
+        own = checks.single_numbers("design", *wrong, **given)
         first = np.array([own.get(f"begin {name}", value) for name, value in zip(problem.names, first, strict=True)])
     return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 
 
-def best_of(problem, goal, limits, starts, asked):
+def best_within_limits(problem, goal, limits, starts, asked):
     """Best end of several searches, kept to limits by true extremes; all limits as asked for; the goal of each end.
 
     Limits that tables over travel set are among them; of a robust goal they hold for each machine of the spread.
     """
     robust = goal.output.within_tables() if callable(goal.output) else ()
     own = *problem.table_limits, *robust
-    best, ends = multiple(problem, goal, (*limits, *own), starts, (*asked, *own))
-    return held(problem, goal, (*limits, *own), best), (*asked, *own), ends
+    best, ends = best_of_searches(problem, goal, (*limits, *own), starts, (*asked, *own))
+    return tighten_limits(problem, goal, (*limits, *own), best), (*asked, *own), ends
 
 
-def multiple(problem, goal, limits, starts, told=None):
+def best_of_searches(problem, goal, limits, starts, told=None):
     """Best end of several searches, and the goal that each came to; limits may be told of in other words.
 
     Raises
@@ -227,24 +231,24 @@ def multiple(problem, goal, limits, starts, told=None):
     DesignError
         None keeps the limits.
     """
-    ends = [searched(problem, goal, limits, start) for start in starts]
-    best = better(ends)
-    if best.missed > 1e3 * KEPT:
+    ends = [search_from(problem, goal, limits, start) for start in starts]
+    best = best_end(ends)
+    if best.missed > 1e3 * LIMIT_TOLERANCE:
         nearest = dict(zip(problem.names, map(float, best.values), strict=True))
-        raise DesignError(_why(problem, goal, told or limits, best, len(ends)), nearest)
-    return best, [goal.sign * end.goal if end.missed <= 1e3 * KEPT else np.inf for end in ends]
+        raise DesignError(_failure_text(problem, goal, told or limits, best, len(ends)), nearest)
+    return best, [goal.sign * end.goal if end.missed <= 1e3 * LIMIT_TOLERANCE else np.inf for end in ends]
 
 
-def _why(problem, goal, limits, best, count):
+def _failure_text(problem, goal, limits, best, count):
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
         return (
-            f"no design that can be built was found by {tries} ({_obstacle(problem, goal, best.values)}); change the "
+            f"no design that can be built was found by {tries} ({_obstacle_text(problem, goal, best.values)}); change the "
             f"bounds of {', '.join(problem.names)}, or begin with a machine that runs"
         )
     reached = []
     for limit in limits:
-        if missed(problem, [limit], best.values) > 1e3 * KEPT:
+        if worst_excess(problem, [limit], best.values) > 1e3 * LIMIT_TOLERANCE:
             reached.append(f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}")
     held = [
         name
@@ -255,9 +259,9 @@ def _why(problem, goal, limits, best, count):
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
 
 
-def _obstacle(problem, goal, values):
+def _obstacle_text(problem, goal, values):
     """Why a design cannot be built, as a sentence."""
-    own = _listed(problem, values)
+    own = _numbers_text(problem, values)
     try:
         solution = scene_of(problem.scene(values)).solve(problem.angles)
         for name in problem.quantities:
@@ -273,31 +277,33 @@ def _obstacle(problem, goal, values):
     return f"the one with {own} runs, but outputs asked for have no value"
 
 
-def _listed(problem, values):
+def _numbers_text(problem, values):
     """Numbers of a design by their paths, as a text."""
     return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
 
 
-def held(problem, goal, limits, best) -> Reached:
+def tighten_limits(problem, goal, limits, best) -> SearchEnd:
     """The design with its limits kept at true extremes: they are drawn in by what the samples did not tell."""
     drawn = list(limits)
-    for left in reversed(range(TIGHTER + 1)):
+    for left in reversed(range(MAX_TIGHTENINGS + 1)):
         over, failure = _true_excesses(problem, limits, best.values)
-        if failure is None and all(part <= KEPT * limit.scale / 2 for part, limit in zip(over, limits, strict=True)):
+        if failure is None and all(
+            part <= LIMIT_TOLERANCE * limit.scale / 2 for part, limit in zip(over, limits, strict=True)
+        ):
             return best
         if not left or not any(part > 0 for part in over):
             break
         drawn = [
-            limit if part <= 0 else replace(limit, value=limit.value - _outward(limit, problem, best) * 1.01 * part)
+            limit if part <= 0 else replace(limit, value=limit.value - _excess_sign(limit, problem, best) * 1.01 * part)
             for limit, part in zip(drawn, over, strict=True)
         ]
-        best = searched(problem, goal, drawn, best.values, rounds=2)
+        best = search_from(problem, goal, drawn, best.values, rounds=2)
     worst = max((part / limit.scale for part, limit in zip(over, limits, strict=True)), default=0.0)
-    if failure is None and worst <= KEPT:
+    if failure is None and worst <= LIMIT_TOLERANCE:
         return best
     why = f"limits hold there, but are missed by {worst:.2g} of their size between; give more angles"
     raise DesignError(
-        f"the best design so far, {_listed(problem, best.values)}, was found at {problem.angles} crank angles: "
+        f"the best design so far, {_numbers_text(problem, best.values)}, was found at {problem.angles} crank angles: "
         f"{why if failure is None else failure}",
         dict(zip(problem.names, map(float, best.values), strict=True)),
     )
@@ -309,14 +315,14 @@ def _true_excesses(problem, limits, values):
     for limit in limits:
         try:
             is_own = callable(limit.output)
-            over.append(side_of(problem, limit, values)[0][0] if is_own else true_excess(limit, scene))
+            over.append(excess_over(problem, limit, values)[0][0] if is_own else true_excess(limit, scene))
         except KinetostaticsError as error:
             over.append(0.0)
             failure = error
     return over, failure
 
 
-def _outward(limit, problem, best):
+def _excess_sign(limit, problem, best):
     """+1 where a design exceeds a limit upwards, -1 downwards."""
     if limit.relation != "=":
         return 1.0 if limit.relation == "<=" else -1.0
@@ -333,7 +339,7 @@ def true_extreme(output, scene):
     """Value of an output of a scene; extremes are true ones."""
     if (output.reduction, output.quantity, output.ratio) == ("swing", "balancing_torque", False) and scene.crank_speed:
         return flywheel(scene, 1.0).energy
-    if output.ratio or output.reduction not in TRUE:
+    if output.ratio or output.reduction not in EXTREME_REDUCTIONS:
         return true_value(output, scene)
     low, high = extrema(scene.solve(12), output.quantity).range
     if output.reduction == "range":

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..errors import DesignError
 from ..numbers import checks
-from .constraints import Demand, demands, wanted
+from .constraints import Constraint, parse_constraints, parse_output
 from .optimise import ANGLES, optimise
-from .problem import chosen, compared_value, scene_of
+from .problem import choose_design, compared_value, scene_of
 from .result import Found
 
 
@@ -87,10 +87,10 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         *(checks.choice("option", name, ("angles", "engine", "progress")) for name in options),
     )
     pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
-    item, compared = chosen(source, variant, reference)
+    item, compared = choose_design(source, variant, reference)
     shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
-    first, second = (wanted(text, scene_of(item)) for text, _ in pair)
-    kept = demands(limits, scene_of(item))
+    first, second = (parse_output(text, scene_of(item)) for text, _ in pair)
+    kept = parse_constraints(limits, scene_of(item))
 
     def best(number, more=(), begin=None):
         text, greatest = pair[number]
@@ -108,7 +108,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     found, last = [ends[0]], ends[0]
     relation = ">=" if pair[1][1] else "<="
     for level in between[1:-1]:
-        limit = Demand(second, relation, float(level))
+        limit = Constraint(second, relation, float(level))
         try:
             last = best(0, (limit,), last.values)
         except DesignError:
@@ -116,11 +116,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         found.append(last)
     found.append(ends[1])
     return Front(
-        (str(first), str(second)), _table(found, outputs, (first, second)), tuple(found), tuple(outputs(scene_of(item)))
+        (str(first), str(second)),
+        _front_table(found, outputs, (first, second)),
+        tuple(found),
+        tuple(outputs(scene_of(item))),
     )
 
 
-def _table(found, outputs, pair):
+def _front_table(found, outputs, pair):
     import pandas as pd
 
     columns = [output.column for output in pair]

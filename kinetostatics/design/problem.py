@@ -24,14 +24,14 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
 from ..numbers.units import to_si
 from ..results.bends import bent
-from ..solution.parted import PARTED, Parted, solution_of
+from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import table_limits
 from .parted_curves import PartedCurve
 
 
-class Derived:
+class DerivedNumbers:
     """Numbers of a scene as functions of some varied ones.
 
     Attributes
@@ -55,7 +55,7 @@ class Derived:
                 f"what follows from {', '.join(self.names)} cannot be derived ({error}); vary numbers of the variant's "
                 "scene instead, for which all others stay"
             ) from error
-        places = paths.places(scene)
+        places = paths.places_by_path(scene)
         found = {path: place.value(made) for path, place in places.items()}
         found = {path: value for path, value in found.items() if isinstance(value, Node)}
         self.paths = tuple(found)
@@ -78,16 +78,16 @@ def scene_of(item):
     return getattr(item, "scene", item)
 
 
-SHOWN_AFTER = 1.0
+BAR_DELAY = 1.0
 """Seconds of work after which a bar appears."""
 
 
 @contextmanager
-def moving_bar(problem, wanted=True, label=None):
+def progress_bar(problem, wanted=True, label=None):
     """Within the block, steps of searches of a problem move a bar, if one is wanted."""
     from tqdm import tqdm
 
-    with tqdm(desc=label, unit=" steps", delay=SHOWN_AFTER, leave=False, disable=not wanted) as bar:
+    with tqdm(desc=label, unit=" steps", delay=BAR_DELAY, leave=False, disable=not wanted) as bar:
         problem.stepped = lambda *_: bar.update()
         yield
     problem.stepped = no_bar
@@ -97,9 +97,9 @@ def no_bar(*_):
     """What steps move where none is shown."""
 
 
-SHARED = ("crank_speed", "crank_acceleration")
+SHARED_NUMBERS = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
-REMEMBERED = 8
+MAX_CACHED_DESIGNS = 8
 """Designs whose curves are remembered."""
 
 
@@ -126,12 +126,12 @@ class Problem:
 
     def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
         self.source, self.reference, self.angles, self.engine = source, reference, angles, engine
-        self.low, self.high = bounds(source, vary)
+        self.low, self.high = parse_bounds(source, vary)
         self.names = tuple(vary)
         scene = scene_of(source)
         self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
         self.turns = turns_of(scene)
-        self.derived = Derived(source, self.names)
+        self.derived = DerivedNumbers(source, self.names)
         limits = table_limits(scene)
         positions = tuple(dict.fromkeys(limit.output.quantity for limit in limits))
         self._motion: Any = compiled(scene, positions, self._zeros(scene), "numpy") if positions else None
@@ -144,7 +144,7 @@ class Problem:
         self._curves: dict[bytes, dict] = {}
         self._parted: dict[tuple, Any] = {}
         self._bends: set[str] | None = None
-        self._compared: Any = None if reference is None else _Compared(reference, self)
+        self._compared: Any = None if reference is None else _Reference(reference, self)
 
     @property
     def start(self):
@@ -162,7 +162,7 @@ class Problem:
         """Curve by quantity of a design; NaN where it cannot be built."""
         key = values.tobytes()
         if key not in self._curves:
-            while len(self._curves) >= REMEMBERED:
+            while len(self._curves) >= MAX_CACHED_DESIGNS:
                 self._curves.pop(next(iter(self._curves)))
             self._curves[key] = self._computed(values)
         return self._curves[key]
@@ -170,22 +170,24 @@ class Problem:
     def curve(self, output, values):
         """Curve of a quantity that tells an output of a design: on pieces between bends where it has some."""
         if self._bends is None:
-            solution = solution_of(scene_of(self.source), 1)
+            solution = unchecked_turn(scene_of(self.source), 1)
             self._bends = {name for name in self.quantities if bent(solution, name)}
         if output.quantity not in self._bends:
             return self.curves(values)[output.quantity]
-        key = str(own(output)), values.tobytes()
+        key = str(without_ratio(output)), values.tobytes()
         if key not in self._parted:
-            while len(self._parted) >= REMEMBERED * len(self.quantities):
+            while len(self._parted) >= MAX_CACHED_DESIGNS * len(self.quantities):
                 self._parted.pop(next(iter(self._parted)))
-            self._parted[key] = self._on_pieces(own(output), values)
+            self._parted[key] = self._on_pieces(without_ratio(output), values)
         return self._parted[key]
 
     def _on_pieces(self, output, values):
         self.evaluations += 1
         try:
             numbers, changes = self.derived(values)
-            parted = Parted.of(scene_of(self.scene(values)), (output,), min(self.angles, PARTED * self.turns))
+            parted = PiecewiseTurns.of(
+                scene_of(self.scene(values)), (output,), min(self.angles, START_ANGLES * self.turns)
+            )
             ((_, pieces, told),) = parted.refined((output,))
             angle = pieces.angle[0]
             slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]
@@ -229,11 +231,11 @@ class Problem:
         return tuple(path for path in self.derived.paths if isinstance(own[path], float) and own[path] == 0.0)
 
 
-class _Compared:
+class _Reference:
     """Outputs of the reference, which runs as fast as the design and else stays as it is."""
 
     def __init__(self, reference, problem):
-        shared = [name for name in problem.names if name in SHARED]
+        shared = [name for name in problem.names if name in SHARED_NUMBERS]
         self._columns = [problem.names.index(name) for name in shared]
         self._size = len(problem.names)
         self._fixed: dict = {}
@@ -254,11 +256,11 @@ class _Compared:
             if output not in self._fixed:
                 self._fixed[output] = true_value(output, scene_of(self._reference))
             return self._fixed[output], slopes
-        found, slopes[self._columns] = self._problem.output(own(output), values[self._columns])
+        found, slopes[self._columns] = self._problem.output(without_ratio(output), values[self._columns])
         return found, slopes
 
 
-def own(output):
+def without_ratio(output):
     """An output itself, not its ratio to the reference's."""
     return replace(output, ratio=False)
 
@@ -272,7 +274,7 @@ def _curve(values, slopes, changes, angle):
     return measures.size(values, slopes) if values.ndim == 2 else measures.Curve(values, slopes)
 
 
-def chosen(source, variant, reference):
+def choose_design(source, variant, reference):
     """The variant or scene to vary, and what ratios refer to."""
     if hasattr(source, "variants"):
         name = reference or source.reference
@@ -280,14 +282,14 @@ def chosen(source, variant, reference):
         return source.variant(variant or first), source.variant(name)
     checks.require(
         "design",
-        _no_design("source", source, "a Case, as of ks.load_case, or a Scene"),
+        _design_problem("source", source, "a Case, as of ks.load_case, or a Scene"),
         None if variant is None else "variant is for cases; a Scene has none",
-        None if reference is None else _no_design("reference", reference, "a Scene, as the source is"),
+        None if reference is None else _design_problem("reference", reference, "a Scene, as the source is"),
     )
     return source, reference
 
 
-def _no_design(name, item, kinds):
+def _design_problem(name, item, kinds):
     """What is wrong with what must be one design, as a sentence, or None."""
     if not hasattr(item, "varied") or not hasattr(item, "units"):
         return f"{name} must be {kinds}, got {checks.shown(item)}"
@@ -309,9 +311,9 @@ def true_value(output, scene, angles=5760):
     DesignError
         No pieces of the turn tell it.
     """
-    plain, turns = own(output), turns_of(scene)
-    if bent(solution_of(scene, 1), output.quantity):
-        ((found,),), ((rough,),) = Parted.of(scene, (plain,), PARTED * turns).estimated((plain,))
+    plain, turns = without_ratio(output), turns_of(scene)
+    if bent(unchecked_turn(scene, 1), output.quantity):
+        ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
         if rough:
             raise DesignError(
                 f"{plain} of {scene.mechanism.name} is not resolved, however fine the pieces of the turn; if a load "
@@ -328,7 +330,7 @@ def turns_of(scene):
     return round(scene.period / TURN)
 
 
-def bounds(source, vary):
+def parse_bounds(source, vary):
     """Lowest and highest value of each number that varies.
 
     Raises
@@ -351,7 +353,7 @@ def bounds(source, vary):
             try:
                 low, high = given
                 pair = [
-                    to_si(end, known[path]) if isinstance(end, str) else float(checks.plain(end, known[path]))
+                    to_si(end, known[path]) if isinstance(end, str) else float(checks.to_plain(end, known[path]))
                     for end in (low, high)
                 ]
                 problem = None if np.all(np.isfinite(pair)) and pair[0] < pair[1] else "they must be finite and rise"

@@ -10,18 +10,18 @@ import numpy as np
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from .constraints import Demand, wanted
+from .constraints import Constraint, parse_output
 from .problem import compared_value, scene_of
 from .robust import quantile
-from .search import is_raised, side_of
+from .search import excess_over, minimises_peak
 
-NEARLY = 1e-9
+DISTANCE_TOLERANCE = 1e-9
 """How much nearer to the shaft, relative to the distance, counts as rounding."""
 CAM_RADIUS = "cam_radius"
 """Quantity of a mechanism with a cam that leads A: distance of the roller centre from O."""
-TAKEN = ("reference", "before")
+RESERVED_NAMES = ("reference", "before")
 """Variants of the case file beside the design's own."""
-BINDS = 1e-6
+ACTIVE_TOLERANCE = 1e-6
 """How near, relative to its size or range, a design is to a limit or bound that holds it."""
 
 
@@ -74,7 +74,7 @@ class Found:
     values: dict[str, float]
     before: Any
     reference: Any
-    limits: tuple[Demand, ...]
+    limits: tuple[Constraint, ...]
     goal: str
     outputs: tuple = field(repr=False)
     active: tuple[str, ...] = ()
@@ -103,7 +103,7 @@ class Found:
         hint = self._shaft_hint()
         if hint:
             warnings.warn(HintWarning(self.scene.mechanism.name, hint), stacklevel=2)
-        limits: dict[str, list[Demand]] = {}
+        limits: dict[str, list[Constraint]] = {}
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
         rows = {}
@@ -131,7 +131,7 @@ class Found:
         roller = self.scene.mechanism.rollers.get("A")
         if self.shaft_radius is None or CAM_RADIUS not in known(self.scene):
             return None
-        nearest = compared_value(wanted(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
+        nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
         return shaft_hint(nearest, roller, self.shaft_radius)
 
     def numbers(self):
@@ -166,18 +166,18 @@ class Found:
         -------
         pathlib.Path
         """
-        from .case_text import write
+        from .case_text import write_case
 
-        known = isinstance(name, str) and name not in TAKEN
+        known = isinstance(name, str) and name not in RESERVED_NAMES
         checks.require(
             "case file",
             None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
-            None if known else f"name must be a text, not one of {TAKEN}, got {name!r}",
+            None if known else f"name must be a text, not one of {RESERVED_NAMES}, got {name!r}",
             None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
         )
         scenes = {} if self.reference is None else {"reference": self.reference}
         scenes |= {"before": self.before, name: self.scene}
-        return write(path, title or f"Design for the {self.goal}", scenes)
+        return write_case(path, title or f"Design for the {self.goal}", scenes)
 
     def _of(self, output, scene):
         if output.quantity not in known(scene):
@@ -188,7 +188,7 @@ class Found:
 def shaft_hint(nearest, roller_radius, shaft_radius):
     """What is wrong with a cam whose roller centre comes so near to O, as a sentence, or None; all in m."""
     reach = shaft_radius + (roller_radius or 0.0)
-    if nearest >= reach * (1.0 - NEARLY):
+    if nearest >= reach * (1.0 - DISTANCE_TOLERANCE):
         return None
     roller = f" with a roller of {roller_radius * 1e3:.4g} mm" if roller_radius else ""
     return (
@@ -202,7 +202,7 @@ def known(scene):
     return of_scene(scene)
 
 
-def prices(problem, goal, limits, values):
+def active_prices(problem, goal, limits, values):
     """What holds a design, and by how much the goal would gain if it gave way by one of its unit.
 
     The derivatives of the goal are the sum of those of what binds, each times its price (Kuhn and Tucker).
@@ -213,14 +213,14 @@ def prices(problem, goal, limits, values):
     reach = problem.high - problem.low
     names, columns, free = [], [], []
     for limit in limits:
-        excess, changes = side_of(problem, limit, values)
-        for place in np.flatnonzero(np.abs(excess) <= BINDS * limit.scale):
+        excess, changes = excess_over(problem, limit, values)
+        for place in np.flatnonzero(np.abs(excess) <= ACTIVE_TOLERANCE * limit.scale):
             names.append(str(limit))
             columns.append(changes[:, place])
             free.append(limit.relation == "=")
     for number, name in enumerate(problem.names):
         for end, side in ((problem.low, -1.0), (problem.high, 1.0)):
-            if abs(values[number] - end[number]) <= BINDS * reach[number]:
+            if abs(values[number] - end[number]) <= ACTIVE_TOLERANCE * reach[number]:
                 names.append(name)
                 columns.append(side * np.eye(values.size)[number])
                 free.append(False)
@@ -244,17 +244,17 @@ def _slopes(problem, goal, values):
     output, sign = goal
     if callable(output):
         return sign * output(values)[1][:, None]
-    if not is_raised(goal):
+    if not minimises_peak(goal):
         return sign * problem.output(output, values)[1][:, None]
     heights, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
     order = np.argsort(-heights)
-    near = order[heights[order] >= heights.max() - BINDS * abs(heights.max())]
+    near = order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]
     return slopes[:, near]
 
 
-def found_of(problem, goal, limits, reached, outputs, label, **more):
+def search_result(problem, goal, limits, reached, outputs, label, **more):
     """The result of a search."""
-    active, cost = prices(problem, goal, limits, reached.values)
+    active, cost = active_prices(problem, goal, limits, reached.values)
     reference = None if problem.reference is None else scene_of(problem.reference)
     return Found(
         scene_of(problem.scene(reached.values)),

@@ -24,14 +24,14 @@ from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
 from ..results.bends import bent
 from ..results.means import NODES
-from ..solution.parted import PARTED, Parted, solution_of
+from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
-from .constraints import table_limits, wanted
+from .constraints import parse_output, table_limits
 from .parted_curves import PartedCurve
-from .problem import Derived, chosen, own, scene_of, turns_of
+from .problem import DerivedNumbers, choose_design, scene_of, turns_of, without_ratio
 
-MOST_SAMPLES = 2**20
+MAX_SAMPLES = 2**20
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,10 @@ class Spread:
     seed: int = field(default=0)
 
     def __post_init__(self):
-        quantile, wrong = checks.single("quantile", self.quantile, "1")
+        quantile, wrong = checks.single_number("quantile", self.quantile, "1")
         if not wrong and not 0.0 < quantile < 1.0:
             wrong = f"quantile must lie between 0 and 1, got {quantile!r}"
-        found = checks.singles(
+        found = checks.single_numbers(
             "spread",
             wrong,
             None
@@ -95,13 +95,13 @@ class Spread:
 
 def samples_problem(samples):
     """What is wrong with a number of samples, as a sentence, or None."""
-    whole = isinstance(samples, int) and 1 < samples <= MOST_SAMPLES
+    whole = isinstance(samples, int) and 1 < samples <= MAX_SAMPLES
     if whole and not samples & (samples - 1):
         return None
-    return f"samples must be a power of two, up to {MOST_SAMPLES}, got {checks.shown(samples)}"
+    return f"samples must be a power of two, up to {MAX_SAMPLES}, got {checks.shown(samples)}"
 
 
-def not_spread(name, value):
+def spread_problem(name, value):
     """What is wrong with what must be a `Spread`, or None."""
     if isinstance(value, Spread):
         return None
@@ -128,7 +128,7 @@ def deviations(spread, known, count):
     return shares, deviations
 
 
-def harrell_davis(quantile, count):
+def harrell_davis_weights(quantile, count):
     """Weights of the ordered samples in a quantile."""
     from scipy.special import betainc
 
@@ -136,15 +136,15 @@ def harrell_davis(quantile, count):
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES, TOGETHER = 180, 16
+ANGLES, BLOCK_SIZE = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
-NARROWED = 30
+GOLDEN_STEPS = 30
 """Steps of the golden section that trims a speed: to a millionth of the range."""
-GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-class Sampled:
+class SampledOutput:
     """An output of a design over its spread; deviations are of the scene's own numbers, from which nothing follows."""
 
     def __init__(self, problem, output, spread, sign, samples=None, angles=ANGLES):
@@ -154,15 +154,15 @@ class Sampled:
         self.count = spread.samples if samples is None else samples
         self._shares, self._deviations = deviations(spread, scene.units, self.count)
         self.angle, self.turns = np.linspace(0.0, scene.period, angles, endpoint=False), turns_of(scene)
-        self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
+        self._derived: Any = DerivedNumbers(problem.source, problem.names) if problem.names else None
         designed = self._derived.paths if self._derived else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
         self._own = scene.parameters
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._bent = not spread.trim and bent(solution_of(scene, 1), output.quantity)
-        self.weights = harrell_davis(spread.quantile, self.count)
+        self._bent = not spread.trim and bent(unchecked_turn(scene, 1), output.quantity)
+        self.weights = harrell_davis_weights(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
 
@@ -185,7 +185,7 @@ class Sampled:
 
     def _nearest(self, limit):
         """The output of a limit, of the sample that comes nearest to it or exceeds it most."""
-        found = Sampled(self.problem, limit.output, self.spread, self.sign)
+        found = SampledOutput(self.problem, limit.output, self.spread, self.sign)
         found.weights = np.zeros(self.count)
         found.weights[-1 if limit.relation == "<=" else 0] = 1.0
         return found
@@ -206,9 +206,9 @@ class Sampled:
     def _sampled(self, values, sloped):
         design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
         parts = []
-        for start in range(0, self.count, TOGETHER):
-            numbers, rises = self._numbers(design, slice(start, start + TOGETHER))
-            parts.append(self._part(numbers, rises[:, :, None] * _row_by_row(changes, len(self.paths)), sloped))
+        for start in range(0, self.count, BLOCK_SIZE):
+            numbers, rises = self._numbers(design, slice(start, start + BLOCK_SIZE))
+            parts.append(self._part(numbers, rises[:, :, None] * _pad_rows(changes, len(self.paths)), sloped))
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
     def _numbers(self, design, part):
@@ -243,9 +243,9 @@ class Sampled:
 
     def _on_pieces(self, numbers, changes, sloped):
         """Curves of some samples, each on pieces between its own bends."""
-        output = own(self.output)
+        output = without_ratio(self.output)
         found: list[Any] = [None] * len(next(iter(numbers.values())))
-        parted = Parted.of(scene_of(self.problem.source).varied(numbers), (output,), PARTED * self.turns)
+        parted = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
         for samples, pieces, told in parted.refined((output,)):
             some = {path: values[samples] for path, values in numbers.items()}
             values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
@@ -276,15 +276,15 @@ class Sampled:
         """The reference's output for each sample."""
         if not self.output.ratio:
             return None
-        reference, plain = self._reference(numbers), own(self.output)
-        if not bent(solution_of(reference, 1), plain.quantity):
+        reference, plain = self._reference(numbers), without_ratio(self.output)
+        if not bent(unchecked_turn(reference, 1), plain.quantity):
             return self._reduced(self._of_reference(numbers))
-        found = Parted.of(reference, (plain,), PARTED * self.turns).estimated((plain,))[0, 0]
+        found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
         return np.broadcast_to(found, len(next(iter(numbers.values()))))
 
     def _reduced(self, curves):
         """The output, not its ratio, of curves (samples, N)."""
-        return own(self.output).estimated(curves, self.turns)[0]
+        return without_ratio(self.output).estimated(curves, self.turns)[0]
 
     def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
@@ -305,15 +305,15 @@ class Sampled:
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
 
         def outputs(share):
-            found = self._reduced(_between(low, high, share[:, None]))
+            found = self._reduced(_interpolate(low, high, share[:, None]))
             if self.output.ratio:
-                found = self._reduced(_between(below, above, share[:, None])) / found
+                found = self._reduced(_interpolate(below, above, share[:, None])) / found
             return self.sign * found
 
-        share = _least(outputs, len(low))[:, None]
-        slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
-        compared = self._reduced(_between(below, above, share)) if self.output.ratio else None
-        return _between(low, high, share), slopes, compared
+        share = _golden_section(outputs, len(low))[:, None]
+        slopes = _interpolate(low_slopes, high_slopes, share[..., None]) if sloped else None
+        compared = self._reduced(_interpolate(below, above, share)) if self.output.ratio else None
+        return _interpolate(low, high, share), slopes, compared
 
     def _at_speed(self, numbers, share):
         """Numbers of samples at a share of the design's speed."""
@@ -331,7 +331,7 @@ class Sampled:
                 self._curves(self._at_speed(numbers, share), None, False)[0] for share in np.sqrt(squares)
             )
             share = (1.0 - squares[0]) / (squares[2] - squares[0])
-            if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
+            if not np.allclose(middle, _interpolate(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
                 problem = (
                     "trim takes outputs of constant parts and others that grow as the speed squared; "
                     f"{self.output} does not, as with friction or dampers"
@@ -339,7 +339,7 @@ class Sampled:
         checks.require("spread", problem)
 
 
-def _row_by_row(changes, count):
+def _pad_rows(changes, count):
     """Derivatives of a scene's numbers by those of a design (paths, 1, n), with zeros for paths that it has not."""
     found = np.zeros((count, 1, changes.shape[1]))
     found[: len(changes), 0] = changes
@@ -383,11 +383,11 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     >>> round(float(np.quantile(found, 0.05)), 1)
     5.2
     """
-    checks.require("over_spread", not_spread("spread", spread), samples_problem(samples))
-    item, compared = chosen(source, variant, reference)
-    text = wanted(output, scene_of(item))
+    checks.require("over_spread", spread_problem("spread", spread), samples_problem(samples))
+    item, compared = choose_design(source, variant, reference)
+    text = parse_output(output, scene_of(item))
     assembly.require_turn(scene_of(item).mechanism)
-    found = _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    found = _sampled_scene(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
     without = np.count_nonzero(np.isnan(found))
     checks.require(
         "over_spread",
@@ -402,32 +402,32 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
 def quantile(scene, reference, output, spread, sign):
     """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
     try:
-        sampled = _fixed(scene, reference, output, spread, sign)
+        sampled = _sampled_scene(scene, reference, output, spread, sign)
         return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
     except KinetostaticsError:
         return np.nan
 
 
-def _fixed(scene, reference, output, spread, sign, samples=None):
+def _sampled_scene(scene, reference, output, spread, sign, samples=None):
     """An output over a spread of a scene of which no design varies anything."""
     bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
-    return Sampled(bare, output, spread, sign, samples)
+    return SampledOutput(bare, output, spread, sign, samples)
 
 
-def _between(one, other, share):
+def _interpolate(one, other, share):
     """Values between those at two speeds: inertia grows with the square of the speed, all else stays."""
     return one * (1.0 - share) + other * share
 
 
-def _least(function, count):
+def _golden_section(function, count):
     """Where, from 0 to 1, each of several functions is least, by the golden section."""
     low, high = np.zeros(count), np.ones(count)
-    inner, outer = high - GOLDEN, low + GOLDEN
+    inner, outer = high - GOLDEN_RATIO, low + GOLDEN_RATIO
     at_inner, at_outer = function(inner), function(outer)
-    for _ in range(NARROWED):
+    for _ in range(GOLDEN_STEPS):
         left = at_inner < at_outer
         high, low = np.where(left, outer, high), np.where(left, low, inner)
-        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
+        new = np.where(left, high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low))
         value = function(new)
         inner, outer = np.where(left, new, outer), np.where(left, inner, new)
         at_inner, at_outer = np.where(left, value, at_outer), np.where(left, at_inner, value)

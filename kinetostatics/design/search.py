@@ -10,23 +10,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import measures
-from .constraints import Demand
+from .constraints import Constraint
 
-ROUNDS = 8
+MAX_ROUNDS = 8
 """How often the variables are turned anew before a search ends."""
-STEPS = 200
+MAX_STEPS = 200
 """Steps of one round."""
-FIRST, AGAIN = 1e-10, 1e-9
+FIRST_TOLERANCE, LATER_TOLERANCE = 1e-10, 1e-9
 """Relative change of the goal, and miss of a limit, at which the first round ends, and others."""
-SETTLED = 1e-7
+GOAL_TOLERANCE = 1e-7
 """Relative change of what is made least that ends a search."""
-KEPT = 1e-9
+LIMIT_TOLERANCE = 1e-9
 """By how much, relative to its size, a limit may be missed."""
-STEPS_BACK, NEAR = 5, 1e-4
+MAX_RESTORING_STEPS, MAX_RESTORED_EXCESS = 5, 1e-4
 """Newton's steps back to limits that are missed, and by how much less than that, relative to their sizes."""
-LEAST_SHARE = 1e-9
+MIN_SHARE = 1e-9
 """Share of the way from a start to a design that cannot be built down to which one that can be built is looked for."""
-FAR = 1e6
+INFEASIBLE_GOAL = 1e6
 """What a design that cannot be built counts as, in units of the first one's."""
 
 
@@ -37,7 +37,7 @@ class Goal(NamedTuple):
     sign: float = 1.0
 
 
-class Reached(NamedTuple):
+class SearchEnd(NamedTuple):
     """End of a search.
 
     Attributes
@@ -58,29 +58,29 @@ class Reached(NamedTuple):
     message: str
 
 
-def searched(problem, goal, limits, start, rounds=ROUNDS) -> Reached:
+def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
     """Local optimum from a start."""
     start = np.clip(start, problem.low, problem.high)
     start = within_tables(problem, [limit for limit in limits if limit.span is not None], start)
     best = _round(problem, goal, limits, start)
     for _ in range(rounds - 1):
-        found = _round(problem, goal, limits, best.values, AGAIN)
+        found = _round(problem, goal, limits, best.values, LATER_TOLERANCE)
         before, best = best, _better(best, found)
-        if best is before or best.missed > max(KEPT, 0.9 * before.missed):
+        if best is before or best.missed > max(LIMIT_TOLERANCE, 0.9 * before.missed):
             break
-        if before.missed <= KEPT and before.goal - best.goal <= SETTLED * max(abs(best.goal), 1e-300):
+        if before.missed <= LIMIT_TOLERANCE and before.goal - best.goal <= GOAL_TOLERANCE * max(abs(best.goal), 1e-300):
             break
     return best
 
 
 def _better(one, other):
     """The one of two designs that keeps its limits, or misses them by less; of two that do the better one."""
-    if max(one.missed, other.missed) <= KEPT:
+    if max(one.missed, other.missed) <= LIMIT_TOLERANCE:
         return min(one, other, key=lambda found: found.goal)
     return min(one, other, key=lambda found: found.missed)
 
 
-def better(several):
+def best_end(several):
     """The best of several ends."""
     best = several[0]
     for found in several[1:]:
@@ -88,12 +88,12 @@ def better(several):
     return best
 
 
-def _round(problem, goal, limits, start, change=FIRST):
+def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
     from scipy.optimize import minimize
 
-    turned = _Turned(problem, goal, limits, start)
+    turned = _ScaledProblem(problem, goal, limits, start)
     if not np.isfinite(turned.unit):
-        return Reached(start, np.inf, np.inf, "the start cannot be built")
+        return SearchEnd(start, np.inf, np.inf, "the start cannot be built")
     constraints: Any = [{"type": "ineq", "fun": turned.inside, "jac": lambda _: turned.walls}]
     for kind, fun, jac in (("ineq", turned.under, turned.under_slopes), ("eq", turned.level, turned.level_slopes)):
         if fun(turned.zero).size:
@@ -105,16 +105,16 @@ def _round(problem, goal, limits, start, change=FIRST):
         constraints=constraints,
         method="SLSQP",
         callback=problem.stepped,
-        options={"maxiter": STEPS, "ftol": change},
+        options={"maxiter": MAX_STEPS, "ftol": change},
     )
-    values = restored(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
+    values = restore_limits(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
     reached, share = turned.reached(values), 1.0
-    while not np.isfinite(reached) and share > LEAST_SHARE:  # back towards the start, which can be built
+    while not np.isfinite(reached) and share > MIN_SHARE:  # back towards the start, which can be built
         share *= 0.5
         reached = turned.reached(start + share * (values - start))
     values = start + share * (values - start) if share < 1.0 else values
-    off = missed(problem, limits, values) if np.isfinite(reached) else np.inf
-    return Reached(values, reached, off, found.message)
+    off = worst_excess(problem, limits, values) if np.isfinite(reached) else np.inf
+    return SearchEnd(values, reached, off, found.message)
 
 
 def within_tables(problem, limits, start):
@@ -129,10 +129,10 @@ def within_tables(problem, limits, start):
         signs = [1.0 if limit.relation == ">=" else -1.0 for limit in limits]
         room = [sign * (value - limit.value) for sign, (value, _), limit in zip(signs, found, limits, strict=True)]
         slopes = [sign * slope * reach for sign, (_, slope) in zip(signs, found, strict=True)]
-        return np.nan_to_num(room / scales, nan=-FAR), np.nan_to_num(slopes / scales[:, None])
+        return np.nan_to_num(room / scales, nan=-INFEASIBLE_GOAL), np.nan_to_num(slopes / scales[:, None])
 
     still = np.zeros(start.size)
-    if not limits or sides(still)[0].min() >= -KEPT:
+    if not limits or sides(still)[0].min() >= -LIMIT_TOLERANCE:
         return start
     found = minimize(
         lambda steps: (steps @ steps, 2.0 * steps),
@@ -143,32 +143,32 @@ def within_tables(problem, limits, start):
         constraints={"type": "ineq", "fun": lambda steps: sides(steps)[0], "jac": lambda steps: sides(steps)[1]},
     )
     moved = np.clip(start + found.x * reach, problem.low, problem.high)
-    return moved if sides((moved - start) / reach)[0].min() >= -KEPT else start
+    return moved if sides((moved - start) / reach)[0].min() >= -LIMIT_TOLERANCE else start
 
 
-def restored(problem, limits, values):
+def restore_limits(problem, limits, values):
     """The design nearest to one that misses limits by little that keeps them, by Newton's method; or that one.
 
     SLSQP may stop a little beside limits where rounding hides from it which way is down.
     """
-    off = missed(problem, limits, values)
+    off = worst_excess(problem, limits, values)
     reach = problem.high - problem.low
-    for _ in range(STEPS_BACK):
-        if not KEPT < off < NEAR:
+    for _ in range(MAX_RESTORING_STEPS):
+        if not LIMIT_TOLERANCE < off < MAX_RESTORED_EXCESS:
             break
-        excess, slopes = _held(problem, limits, values)
+        excess, slopes = _active_excesses(problem, limits, values)
         if not np.isfinite(slopes).all():
             break
-        step = _step(excess, slopes, reach, problem.low - values, problem.high - values)
+        step = _restoring_step(excess, slopes, reach, problem.low - values, problem.high - values)
         moved = np.clip(values + step, problem.low, problem.high)
-        left = missed(problem, limits, moved)
+        left = worst_excess(problem, limits, moved)
         if not left < off:
             break
         values, off = moved, left
     return values
 
 
-def _step(excess, slopes, reach, low, high):
+def _restoring_step(excess, slopes, reach, low, high):
     """Change, least in units of the reach, that takes off what limits are missed by; what would leave bounds stays."""
     free = np.ones(reach.size, dtype=bool)
     while True:
@@ -179,26 +179,26 @@ def _step(excess, slopes, reach, low, high):
         free &= inside
 
 
-def _held(problem, limits, values):
+def _active_excesses(problem, limits, values):
     """By how much limits are missed, or just kept, in units of their sizes (parts,), and derivatives (parts, n)."""
-    excess, slopes = zip(*(side_of(problem, limit, values) for limit in limits), strict=True)
+    excess, slopes = zip(*(excess_over(problem, limit, values) for limit in limits), strict=True)
     sizes = [np.full(part.size, limit.scale) for part, limit in zip(excess, limits, strict=True)]
     equal = [np.full(part.size, limit.relation == "=") for part, limit in zip(excess, limits, strict=True)]
     found = np.concatenate(excess) / np.concatenate(sizes)
-    held = (found > -KEPT) | np.concatenate(equal)
+    held = (found > -LIMIT_TOLERANCE) | np.concatenate(equal)
     return found[held], (np.hstack(slopes) / np.concatenate(sizes)).T[held]
 
 
-def missed(problem, limits, values):
+def worst_excess(problem, limits, values):
     """By how much the worst limit is missed, relative to its size; infinite where a design cannot be built."""
     worst = 0.0
     for limit in limits:
-        excess, _ = side_of(problem, limit, values)
+        excess, _ = excess_over(problem, limit, values)
         worst = max(worst, np.max(np.abs(excess) if limit.relation == "=" else excess) / limit.scale)
     return worst if np.isfinite(worst) else np.inf
 
 
-def side_of(problem, limit, values):
+def excess_over(problem, limit, values):
     """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
     output, relation = limit.output, limit.relation
     sign = -1.0 if relation == ">=" else 1.0
@@ -210,12 +210,12 @@ def side_of(problem, limit, values):
     return np.array([sign * (found - limit.value)]), sign * slopes[:, None]
 
 
-class _Turned:
+class _ScaledProblem:
     """The problem in variables that count alike, around a start."""
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised = is_raised(goal)
+        self.raised = minimises_peak(goal)
         self._last: tuple[Any, Any] = (None, None)
         first = self.reached(start)
         self.unit = abs(first) or 1.0
@@ -273,7 +273,7 @@ class _Turned:
         if self.raised:
             return unknowns[-1]
         found = self._goal(self.values(unknowns))[0] / self.unit
-        return found if np.isfinite(found) else FAR
+        return found if np.isfinite(found) else INFEASIBLE_GOAL
 
     def goal_slopes(self, unknowns):
         if self.raised:
@@ -310,10 +310,10 @@ class _Turned:
         parts, slopes = [np.empty(0)], [np.empty((self.start.size, 0))]
         for limit in self.limits:
             if (limit.relation == "=") == equal:
-                excess, changes = side_of(self.problem, limit, values)
+                excess, changes = excess_over(self.problem, limit, values)
                 parts.append(-excess / limit.scale)
                 slopes.append(-changes / limit.scale)
-        found, changes = np.nan_to_num(np.concatenate(parts), nan=-FAR), np.hstack(slopes)
+        found, changes = np.nan_to_num(np.concatenate(parts), nan=-INFEASIBLE_GOAL), np.hstack(slopes)
         rows = np.nan_to_num(self.matrix.T @ changes).T
         if not self.raised:
             return found, rows
@@ -321,13 +321,15 @@ class _Turned:
         if equal:
             return found, rows
         output, sign = self.goal_of
-        level = Demand(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit)
-        excess, changes = side_of(self.problem, level, values)
+        level = Constraint(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit)
+        excess, changes = excess_over(self.problem, level, values)
         raised = np.hstack([-(self.matrix.T @ changes).T / self.unit, np.ones((excess.size, 1))])
-        return np.append(found, np.nan_to_num(-excess / self.unit, nan=-FAR)), np.vstack([rows, np.nan_to_num(raised)])
+        return np.append(found, np.nan_to_num(-excess / self.unit, nan=-INFEASIBLE_GOAL)), np.vstack(
+            [rows, np.nan_to_num(raised)]
+        )
 
 
-def is_raised(goal):
+def minimises_peak(goal):
     """Whether the goal is a largest value, which an unknown of its own bounds."""
     if callable(goal.output) or goal.output.ratio:
         return False

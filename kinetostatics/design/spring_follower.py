@@ -17,36 +17,36 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..errors import ParameterError
-from ..numbers.panels import DEGREE, Panels
+from ..numbers.panels import PANEL_DEGREE, Panels
 
-NEWTON = 40
+MAX_NEWTON_STEPS = 40
 """Iterations at most."""
-SETTLED = 3e-15
+NEWTON_TOLERANCE = 3e-15
 """Change, relative to the stretch, at which iteration ends."""
-RESOLVED = 1e-13
+SERIES_TOLERANCE = 1e-13
 """Last coefficients, relative to the largest stretch, from which on a panel is narrow enough."""
-ROUNDED = 1e-9
+CONTACT_TOLERANCE = 1e-9
 """Share of the fastest stretch that counts as standing still."""
-NARROWEST = 1e-7
+MIN_PANEL = 1e-7
 """rad."""
-_T = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
-_FIT = np.linalg.inv(chebyshev.chebvander(_T, DEGREE))
-_RATE = np.array([chebyshev.chebval(_T, chebyshev.chebder(row)) for row in _FIT.T]).T
+_NODES = -np.cos(np.pi * np.arange(PANEL_DEGREE + 1) / PANEL_DEGREE)
+_FIT = np.linalg.inv(chebyshev.chebvander(_NODES, PANEL_DEGREE))
+_DERIVATIVE = np.array([chebyshev.chebval(_NODES, chebyshev.chebder(row)) for row in _FIT.T]).T
 """Derivative at the points _T by values there."""
 
 
 def reserve(energy, low, level, mass, stiffness):
     """Force of the spring at a least energy over what contact needs there, 2 sqrt(mu E''); `mass` is m omega^2."""
     force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
-    return float(force / (2.0 * np.sqrt(mass * _bend(energy, low))))
+    return float(force / (2.0 * np.sqrt(mass * _second_derivative(energy, low))))
 
 
-def _bend(energy, angle, beside=1e-9):
+def _second_derivative(energy, angle, beside=1e-9):
     """E'' at a place, the larger of both sides of a kink."""
     return max(float(energy.at(angle + side, 2)[2]) for side in (-beside, beside))
 
 
-def stretched(energy, level, mass, stiffness):
+def spring_stretch(energy, level, mass, stiffness):
     """Stretch x of the spring by crank angle, as `Panels`, for an energy in panels; `mass` is m omega^2.
 
     Raises
@@ -54,7 +54,7 @@ def stretched(energy, level, mass, stiffness):
     ParameterError
         The follower lifts off: no smooth solution stays in contact, with the crank angle.
     """
-    slope = Panels(energy.edges, _derived(energy))
+    slope = Panels(energy.edges, _derivative(energy))
     turns = slope.roots
     values = energy(turns)
     found = []
@@ -64,9 +64,9 @@ def stretched(energy, level, mass, stiffness):
             after = after + energy.period * (after <= angle)
             before = before - energy.period * (before >= angle)
             if reserve(energy, after, level, mass, stiffness) <= 1.0:
-                raise ParameterError(_lifting(after))
+                raise ParameterError(_lift_off_text(after))
             for stop in (before, after):
-                found += _marched(energy, slope, angle, stop, level, mass, stiffness)
+                found += _march_panels(energy, slope, angle, stop, level, mass, stiffness)
     first = turns[int(np.argmax(values))]
     moved = sorted(
         (first + np.mod(low - first + 1e-9, energy.period) - 1e-9, high - low, row) for low, high, row in found
@@ -76,43 +76,43 @@ def stretched(energy, level, mass, stiffness):
     return Panels(np.array([*edges, first + energy.period]), np.array([row for *_, row in moved]))
 
 
-def _derived(panels):
+def _derivative(panels):
     widths = np.diff(panels.edges)[:, None]
     rows = chebyshev.chebder(panels.coefficients, axis=1) * (2.0 / widths)
     return np.pad(rows, ((0, 0), (0, 1)))
 
 
-def _marched(energy, slope, start, stop, level, mass, stiffness):
+def _march_panels(energy, slope, start, stop, level, mass, stiffness):
     """Panels (low, high, coefficients) from a greatest energy to the least beside it."""
     forth = stop > start
     edges = np.concatenate([energy.edges[:-1] + turn * energy.period for turn in (-1, 0, 1, 2)])
     low, high = min(start, stop), max(start, stop)
-    inner = edges[(edges > low + NARROWEST) & (edges < high - NARROWEST)]
+    inner = edges[(edges > low + MIN_PANEL) & (edges < high - MIN_PANEL)]
     marks = list(inner if forth else inner[::-1]) + [stop]
     found, at, value = [], start, None
     while marks:
-        nodes = at + (_T + 1.0) / 2.0 * (marks[0] - at)
+        nodes = at + (_NODES + 1.0) / 2.0 * (marks[0] - at)
         inside = np.clip(nodes, *sorted((at + 1e-13 * (marks[0] - at), marks[0] - 1e-13 * (marks[0] - at))))
         rest = 2.0 * (level - energy(inside)) / stiffness
-        x = _collocated(rest, marks[0] - at, mass / stiffness, value)
+        x = _collocate(rest, marks[0] - at, mass / stiffness, value)
         if x is None:
-            if abs(marks[0] - at) < NARROWEST:
-                raise ParameterError(_lifting(at))
+            if abs(marks[0] - at) < MIN_PANEL:
+                raise ParameterError(_lift_off_text(at))
             marks.insert(0, (at + marks[0]) / 2)
             continue
         rows = _FIT @ x
         _require_contact(nodes, x, marks[0] - at, slope(inside), forth)
-        mirrored = rows if forth else rows * (-1.0) ** np.arange(DEGREE + 1)
+        mirrored = rows if forth else rows * (-1.0) ** np.arange(PANEL_DEGREE + 1)
         found.append((*sorted((at, marks[0])), mirrored))
         at, value = marks.pop(0), x[-1]
     return found
 
 
-def _collocated(rest, width, share, value):
+def _collocate(rest, width, share, value):
     """Stretch at the points of a panel, by x^2 + share x'^2 = rest and its `value` at the start; None: not resolved."""
-    rate = 2.0 / width * _RATE
-    x = _stepped(rest, width, share, value)
-    for _ in range(NEWTON):
+    rate = 2.0 / width * _DERIVATIVE
+    x = _euler_steps(rest, width, share, value)
+    for _ in range(MAX_NEWTON_STEPS):
         fast = rate @ x
         off = (x * x + share * fast * fast - rest) / 2.0
         matrix = np.diag(x) + share * fast[:, None] * rate
@@ -126,16 +126,16 @@ def _collocated(rest, width, share, value):
         size = np.max(np.abs(x))
         if not np.isfinite(size):
             return None
-        if np.max(np.abs(step)) <= SETTLED * size * 30:
+        if np.max(np.abs(step)) <= NEWTON_TOLERANCE * size * 30:
             tail = np.max(np.abs((_FIT @ x)[-3:]))
-            return x if tail <= RESOLVED * size and np.all(x > 0.0) else None
+            return x if tail <= SERIES_TOLERANCE * size and np.all(x > 0.0) else None
     return None
 
 
-def _stepped(rest, width, share, value):
+def _euler_steps(rest, width, share, value):
     """The same by implicit Euler steps from point to point: roughly, but from anywhere."""
     x = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
-    for step, there in zip(np.diff(_T) * width / 2.0, rest[1:], strict=True):
+    for step, there in zip(np.diff(_NODES) * width / 2.0, rest[1:], strict=True):
         q = share / (step * step)
         square = (1.0 + q) * there - q * x[-1] * x[-1]
         x.append((q * x[-1] + np.sqrt(max(square, 0.0))) / (1.0 + q))
@@ -144,14 +144,14 @@ def _stepped(rest, width, share, value):
 
 def _require_contact(nodes, x, width, slope, forth):
     """Raise if the spring is let out where the energy rises."""
-    rate = 2.0 / width * (_RATE @ x)
+    rate = 2.0 / width * (_DERIVATIVE @ x)
     wrong = rate * slope
     worst = int(np.argmax(wrong))
-    if wrong[worst] > ROUNDED * np.max(np.abs(rate)) * np.max(np.abs(slope)):
-        raise ParameterError(_lifting(nodes[worst]))
+    if wrong[worst] > CONTACT_TOLERANCE * np.max(np.abs(rate)) * np.max(np.abs(slope)):
+        raise ParameterError(_lift_off_text(nodes[worst]))
 
 
-def _lifting(angle):
+def _lift_off_text(angle):
     return (
         f"the roller would lift off near crank angle {np.degrees(angle) % 360:.6g} deg: no motion of the follower "
         "balances and stays in contact; preload the spring more, or make the follower lighter or its travel shorter"

@@ -29,10 +29,10 @@ from . import spring_follower
 from .follower_speed import lifted
 from .result import shaft_hint
 
-COUNT = 4096
-ANGLES = (np.arange(COUNT) + 0.382) * 2 * np.pi / COUNT
+ANGLE_COUNT = 4096
+ANGLES = (np.arange(ANGLE_COUNT) + 0.382) * 2 * np.pi / ANGLE_COUNT
 """Crank angles at which torques are compared; at none of them anything is likely to jump."""
-ZERO = 1e-10
+MEAN_TOLERANCE = 1e-10
 """Mean of a torque, relative to its unevenness, that counts as none."""
 
 
@@ -162,7 +162,7 @@ class TorqueBalancing:
         hint = None if shaft is None else shaft_hint(nearest.value, self.roller_radius or roller, shaft)
         low, high = self.stretch
         before, after = self.uneven
-        mean = self.mean_torque if abs(self.mean_torque) > ZERO * before else 0.0
+        mean = self.mean_torque if abs(self.mean_torque) > MEAN_TOLERANCE * before else 0.0
         forces = self.least_contact_force, self.largest_contact_force
         lost = ", ".join(f"{np.degrees(a):.4g} to {np.degrees(b):.4g} deg" for a, b in self.lifts_off)
         return "\n".join(
@@ -190,14 +190,14 @@ class TorqueBalancing:
 
 
 OWNER, TURN = "torque_balancing_cam", 2 * np.pi
-EVEN = 1e-10
+UNEVENNESS_TOLERANCE = 1e-10
 """Unevenness of the torque, relative to the largest part of it, that counts as none."""
-CORNER = 1e-6
+JUMP_TOLERANCE = 1e-6
 """Jump of the torque across its mean, relative to the largest, that counts as one."""
-BESIDE = 1e-9
-SWITCHES = {"switches": checks.Number("rad", table=True)}
+ANGLE_BESIDE = 1e-9
+SWITCH_RULES = {"switches": checks.Number("rad", table=True)}
 OPTIONAL = ("stiffness", "base_radius", "roller_radius", "shaft_radius")
-STEEP, STEEPEST = np.radians(30.0), np.radians(85.0)
+DEFAULT_PRESSURE_ANGLE, MAX_PRESSURE_ANGLE = np.radians(30.0), np.radians(85.0)
 
 
 def torque_balancing_cam(
@@ -209,7 +209,7 @@ def torque_balancing_cam(
     guide_angle=0.0,
     guide_offset=0.0,
     base_radius=None,
-    pressure_angle=STEEP,
+    pressure_angle=DEFAULT_PRESSURE_ANGLE,
     roller_radius=None,
     shaft_radius=None,
     pin="R",
@@ -265,17 +265,17 @@ def torque_balancing_cam(
     """
     given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius, "mass": mass}
     given |= {"shaft_radius": shaft_radius, "travel": travel, "pressure_angle": pressure_angle}
-    values = _checked(scene, given | {"guide_angle": guide_angle, "guide_offset": guide_offset})
+    values = _parse_values(scene, given | {"guide_angle": guide_angle, "guide_offset": guide_offset})
     if np.size(switches):
-        switches = np.atleast_1d(checks.examined(OWNER, SWITCHES, {"switches": switches})["switches"])
+        switches = np.atleast_1d(checks.check_values(OWNER, SWITCH_RULES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
     moving = values["mass"] * float(scene.crank_speed) ** 2
-    swing, peak, lows = _swing(torque, energy)
-    stiffness, least = _spring(values, swing)
+    swing, peak, lows = _energy_swing(torque, energy)
+    stiffness, least = _spring_rate(values, swing)
     level = peak + 0.5 * stiffness * least * least
     reserve = _reserve(values, energy, lows, level, moving, stiffness)
-    stretch = spring_follower.stretched(energy, level, moving, stiffness)
-    shift = _base(stretch, least, values) - least
+    stretch = spring_follower.spring_stretch(energy, level, moving, stiffness)
+    shift = _base_radius(stretch, least, values) - least
     guide = Guide.at(values["guide_angle"], values["guide_offset"])
     law, link = PanelLaw(stretch.plus(shift)), Link(values["mass"])
     name = f"{scene.mechanism.name} with torque-balancing cam"
@@ -291,14 +291,16 @@ def torque_balancing_cam(
     return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, *radii)
 
 
-def _checked(scene, given):
+def _parse_values(scene, given):
     """Values of what is given, by name."""
     rules = dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE))
     rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
-    rules |= {"pressure_angle": ("rad", POSITIVE | {"high": STEEPEST}), "guide_angle": ("rad", {})}
+    rules |= {"pressure_angle": ("rad", POSITIVE | {"high": MAX_PRESSURE_ANGLE}), "guide_angle": ("rad", {})}
     rules |= {"guide_offset": ("m", {})}
     told = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
-    return checks.singles(OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in told.items()})
+    return checks.single_numbers(
+        OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in told.items()}
+    )
 
 
 def _reserve(values, energy, lows, level, moving, stiffness):
@@ -306,7 +308,7 @@ def _reserve(values, energy, lows, level, moving, stiffness):
     reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
     reserve = min(reserves.values())
     if reserve <= 1.0:
-        raise ParameterError(_no_contact(values, min(reserves, key=reserves.__getitem__), reserve))
+        raise ParameterError(_no_contact_text(values, min(reserves, key=reserves.__getitem__), reserve))
     return reserve
 
 
@@ -340,19 +342,19 @@ def _energy(scene, switches):
 
 def _require_uneven(torque, size):
     """Raise if the torque is its mean but for rounding of the torques that it is a sum of."""
-    if not np.ptp(torque) > EVEN * size:
+    if not np.ptp(torque) > UNEVENNESS_TOLERANCE * size:
         raise ParameterError(f"{OWNER}: the torque is even as it is, {np.mean(torque):.6g} N m all the way")
 
 
-def _swing(torque, energy):
+def _energy_swing(torque, energy):
     """Range of the machine's energy, its peak, and the crank angles where it is least."""
     mean = torque.mean
-    size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, COUNT)))))
+    size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, ANGLE_COUNT)))))
     turns = torque.plus(-mean).roots
     values = energy(turns)
     for angle in turns:
-        beside = np.abs(torque(angle + np.array([-BESIDE, BESIDE])) - mean)
-        if np.max(beside) > CORNER * size:
+        beside = np.abs(torque(angle + np.array([-ANGLE_BESIDE, ANGLE_BESIDE])) - mean)
+        if np.max(beside) > JUMP_TOLERANCE * size:
             raise ParameterError(
                 f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
                 "the follower would have to turn back at once; let the load that switches there take some degrees"
@@ -364,7 +366,7 @@ def _swing(torque, energy):
     )
 
 
-def _spring(values, swing):
+def _spring_rate(values, swing):
     """Stiffness, and least stretch, by the energy between both ends of the travel."""
     travel = values["travel"]
     stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
@@ -378,7 +380,7 @@ def _spring(values, swing):
     return stiffness, least
 
 
-def _no_contact(values, low, reserve):
+def _no_contact_text(values, low, reserve):
     """Why the follower does not stay on the cam: (k x)^2 must exceed 4 m omega^2 E'' where E is least."""
     mass = values["mass"]
     return (
@@ -388,9 +390,9 @@ def _no_contact(values, low, reserve):
     )
 
 
-def _base(stretch, least, values):
+def _base_radius(stretch, least, values):
     """Least coordinate of the roller centre; unless given that which keeps to the pressure angle and off the shaft."""
-    angle = np.linspace(0.0, TURN, COUNT)
+    angle = np.linspace(0.0, TURN, ANGLE_COUNT)
     x, rate = stretch.at(angle, 1)
     steep = np.tan(values["pressure_angle"])
     needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))

@@ -12,6 +12,8 @@ counterweight on the crank with an offset guide can, each at a price.
 Least squares of the torque by harmonics of a cam, with the ends of the stroke among them.
 
 Steps of Gauss and Newton, from the exact derivatives of torque and position.
+
+What carries the coupler's weight where a symmetric cam cannot, and what each way costs.
 """
 
 import warnings
@@ -25,28 +27,28 @@ from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..results.reductions import Output
-from .cam_start import Options, begun
-from .constraints import demands, wanted
+from .cam_start import Options, crank_slider_links, starting_machine
+from .constraints import parse_constraints, parse_output
 from .optimise import (
-    aim,
-    aimed,
-    as_asked,
-    best_of,
-    label,
+    best_within_limits,
+    ends_as_ratios,
+    goal_of,
+    goal_text,
+    parse_goal,
     require_reference,
     require_resolved,
-    searches,
+    search_problems,
     without_ratios,
 )
-from .problem import Problem, chosen, moving_bar, scene_of, true_value
-from .result import Found, found_of, known
+from .problem import Problem, choose_design, progress_bar, scene_of, true_value
+from .result import Found, known, search_result
 from .search import Goal
 
 TORQUE, POSITION = "balancing_torque", "slider_position"
-PASSES = ((2.0, 1.0), (2e3, 0.0))
+LEAST_SQUARES_PASSES = ((2.0, 1.0), (2e3, 0.0))
 """Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
 torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
-STEPS = 100
+MAX_LEAST_SQUARES_STEPS = 100
 
 
 def least_squares(problem, start, values):
@@ -55,16 +57,16 @@ def least_squares(problem, start, values):
     Numbers besides those of the cam, the coupler and the linear spring stay as they are.
     """
     columns = [place for place, name in enumerate(problem.names) if name in start.first]
-    for weight, smooth in PASSES:
-        values = _squared(problem, start, values, columns, weight, smooth)
+    for weight, smooth in LEAST_SQUARES_PASSES:
+        values = _least_squares_pass(problem, start, values, columns, weight, smooth)
     return np.clip(values, problem.low, problem.high)
 
 
-def _squared(problem, start, values, columns, weight, smooth):
+def _least_squares_pass(problem, start, values, columns, weight, smooth):
     """Least squares by some of the numbers, with weights of the ends of the stroke and of the waves of the cam."""
     from scipy import optimize
 
-    waves = smooth * np.array([wave(problem.names[place]) for place in columns]) / start.half
+    waves = smooth * np.array([waviness(problem.names[place]) for place in columns]) / start.half
     ends = np.array(start.ends)
     reach = (problem.high - problem.low)[columns]
     count = problem.angles
@@ -89,22 +91,29 @@ def _squared(problem, start, values, columns, weight, smooth):
         return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
 
     found = optimize.least_squares(
-        residuals, np.zeros(len(columns)), slopes, method="lm", x_scale=1.0, xtol=1e-12, ftol=1e-12, max_nfev=STEPS
+        residuals,
+        np.zeros(len(columns)),
+        slopes,
+        method="lm",
+        x_scale=1.0,
+        xtol=1e-12,
+        ftol=1e-12,
+        max_nfev=MAX_LEAST_SQUARES_STEPS,
     )
     return placed(found.x)
 
 
-def wave(name):
+def waviness(name):
     """How much a harmonic of the cam bends it: the square of its order, from the second on."""
     kind, _, order = name.rpartition(".")
     return float(order) ** 2 if kind in ("cam.cosine", "cam.sine") and int(order) > 1 else 0.0
 
 
-FEWEST, ENOUGH = 360, 32
+MIN_ANGLES, ANGLES_PER_HARMONIC = 360, 32
 """Crank angles at least, and for each harmonic of the cam."""
-NEARLY = 1.05
+BOUND_MARGIN = 1.05
 """How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
-SHOWN = (
+REPORTED_OUTPUTS = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
     "largest_absolute balancing_torque",
@@ -198,9 +207,9 @@ def torque_free_cam(
     >>> print(f"{found.report().loc['ratio mean_absolute balancing_torque [1]', 'after']:.3g}")
     5.25e+04
     """
-    source, reference = chosen(source, variant, reference)
+    source, reference = choose_design(source, variant, reference)
     options = Options.checked(
-        *searches(starts, seed),
+        *search_problems(starts, seed),
         None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
         cosine=cosine,
         sine=sine,
@@ -212,31 +221,31 @@ def torque_free_cam(
         cubic=cubic,
         shaft_radius=shaft_radius,
     )
-    given = _ideal(scene_of(source), gravity)
-    compared = None if reference is None else _ideal(scene_of(reference), gravity)
-    start = begun(given, options)
+    given = _without_friction(scene_of(source), gravity)
+    compared = None if reference is None else _without_friction(scene_of(reference), gravity)
+    start = starting_machine(given, options)
     aims = _aims(start, compared, minimise, maximise, limits)
     problem = _problem(start, compared, aims, max(cosine, sine), dict(vary or {}), engine)
     generator = np.random.default_rng(seed)
     begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
     begins = [least_squares(problem, start, values) for values in begins]
     _require_within_bound(start, problem, aims.limits, compared, begins[0])
-    goal, plain = without_ratios(problem, aimed(problem, aims.output, aims.sign, robust), aims.limits)
-    with _advised(start, problem, compared, aims.limits, begins[0]), moving_bar(problem, progress):
-        best, kept, came_to = best_of(problem, goal, plain, begins, aims.limits)
-    found = found_of(
+    goal, plain = without_ratios(problem, goal_of(problem, aims.output, aims.sign, robust), aims.limits)
+    with _advise_on_failure(start, problem, compared, aims.limits, begins[0]), progress_bar(problem, progress):
+        best, kept, came_to = best_within_limits(problem, goal, plain, begins, aims.limits)
+    found = search_result(
         problem,
         goal if robust is not None else Goal(aims.output, aims.sign),
         kept,
         best,
-        _shown(start.scene, compared, aims.outputs),
-        label(aims.sign, aims.text, robust),
+        _reported_outputs(start.scene, compared, aims.outputs),
+        goal_text(aims.sign, aims.text, robust),
         evaluations=problem.evaluations,
-        starts=as_asked(problem, aims.output, goal, came_to),
+        starts=ends_as_ratios(problem, aims.output, goal, came_to),
     )
     rubbing = scene_of(source).friction.get("O")
     shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
-    return replace(found, before=given, bound=bound(start, found.scene, compared), shaft_radius=shaft)
+    return replace(found, before=given, bound=ratio_bound(start, found.scene, compared), shaft_radius=shaft)
 
 
 class _Aims(NamedTuple):
@@ -253,17 +262,17 @@ class _Aims(NamedTuple):
 
 
 def _aims(start, compared, minimise, maximise, limits):
-    sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else aim(minimise, maximise)
+    sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else parse_goal(minimise, maximise)
     low, high = start.ends
-    kept = demands([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
-    aims = _Aims(sign, text, wanted(text, start.scene), (*kept, *demands(limits, start.scene)))
+    kept = parse_constraints([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
+    aims = _Aims(sign, text, parse_output(text, start.scene), (*kept, *parse_constraints(limits, start.scene)))
     require_reference(compared, aims.output, aims.limits)
     return aims
 
 
 def _problem(start, compared, aims, order, vary, engine):
     """The problem at enough crank angles for the highest order of the cam; refused where no coupler can solve it."""
-    angles = max(FEWEST, ENOUGH * order)
+    angles = max(MIN_ANGLES, ANGLES_PER_HARMONIC * order)
     require_resolved(angles, aims.outputs)
     quantities = (TORQUE, POSITION, *(item.quantity for item in aims.outputs))
     problem = Problem(start.machine, start.vary | vary, quantities, compared, angles, engine)
@@ -272,7 +281,7 @@ def _problem(start, compared, aims, order, vary, engine):
 
 
 @contextmanager
-def _advised(start, problem, compared, limits, first):
+def _advise_on_failure(start, problem, compared, limits, first):
     """Where the search fails and the torque is limited, say what else may balance weight."""
     try:
         yield
@@ -283,7 +292,7 @@ def _advised(start, problem, compared, limits, first):
         raise DesignError(f"{error}{advice}", error.values) from None
 
 
-def bound(start, scene, reference):
+def ratio_bound(start, scene, reference):
     """Greatest ratio of mean torques that a symmetric cam reaches: the coupler's weight stays.
 
     It rises and falls twice a turn to the greatest height of A, whatever else balances.
@@ -294,11 +303,11 @@ def bound(start, scene, reference):
     guide = scene.mechanism.guides[scene.mechanism.slider]
     x, y = solution.position("A")
     height = np.abs(np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x).max()
-    plain = true_value(wanted(f"mean_absolute {TORQUE}", reference), reference)
+    plain = true_value(parse_output(f"mean_absolute {TORQUE}", reference), reference)
     return float(plain * 2 * np.pi / (4 * abs(start.weight) * height))
 
 
-def _ideal(scene, gravity):
+def _without_friction(scene, gravity):
     """The scene at constant speed without friction, nor gravity if that shall not act; says what it leaves out."""
     left = [f"friction at {', '.join(scene.friction.acting)}"] if scene.friction.acting else []
     if np.any(scene.crank_acceleration):
@@ -330,11 +339,11 @@ def _require_within_bound(start, problem, limits, reference, values):
     advice = _advice(start, problem, reference, values)
     if not advice:
         return
-    greatest = bound(start, scene_of(problem.scene(values)), reference)
+    greatest = ratio_bound(start, scene_of(problem.scene(values)), reference)
     for limit in limits:
         output = limit.output
         mean = output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
-        if mean and limit.relation != "<=" and limit.value > NEARLY * greatest:
+        if mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
             nearest = dict(zip(problem.names, map(float, values), strict=True))
             raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", nearest)
 
@@ -342,7 +351,7 @@ def _require_within_bound(start, problem, limits, reference, values):
 def _advice(start, problem, reference, values):
     """What else may balance weight, where a symmetric cam cannot."""
     helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
-    limit = bound(start, scene_of(problem.scene(values)), reference)
+    limit = ratio_bound(start, scene_of(problem.scene(values)), reference)
     if helped or not np.isfinite(limit):
         return ""
     return (
@@ -352,8 +361,78 @@ def _advice(start, problem, reference, values):
     )
 
 
-def _shown(scene, reference, outputs):
+def _reported_outputs(scene, reference, outputs):
     """Outputs that a report shows: those asked for, and the usual ones."""
-    texts = SHOWN if reference is not None else SHOWN[1:]
-    usual = (wanted(text, scene) for text in texts if text.split()[-1] in known(scene))
+    texts = REPORTED_OUTPUTS if reference is not None else REPORTED_OUTPUTS[1:]
+    usual = (parse_output(text, scene) for text in texts if text.split()[-1] in known(scene))
     return tuple(dict.fromkeys([*outputs, *usual]))
+
+
+LEAST_SQUARES_GOAL = f"rms {TORQUE}"
+QUARTER_TURN = np.pi / 2
+
+
+def weight_options(source, cosine=8, *, variant=None, reference=None, counterweight=None, **options):
+    """Torque-free cams under weight, each carrying it in another way, and its price: a row for each.
+
+    Parameters
+    ----------
+    source, variant, reference, options
+        As for `torque_free_cam`.
+    cosine : int
+        Harmonics; as many sine terms where these are taken.
+    counterweight : float, optional
+        Mass on the crank, kg; that of the coupler unless told.
+
+    Returns
+    -------
+    pandas.DataFrame
+        "symmetric", "sine terms", "coupler spring" (its couple goes through the slider to the guide) and
+        "counterweight" (with sine terms; its centrifugal force goes to O), with the outputs of their reports; "bound"
+        is of the symmetric cam.
+
+    Raises
+    ------
+    ParameterError
+        The source is neither a case nor a scene, or no crank-slider.
+    DesignError
+        The machine has no masses.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> table = ks.design.weight_options(ks.load_case("sawframe_2r63"), cosine=2)
+    >>> print(table["ratio mean_absolute balancing_torque [1]"].round().to_string())
+    symmetric         160.0
+    sine terms        235.0
+    coupler spring    463.0
+    counterweight     462.0
+    """
+    import pandas as pd
+
+    taken = [name for name in ("sine", "coupler_spring") if name in options]
+    mass = checks.Optional(checks.Number("kg", low=0.0, strict=True))
+    wrong = (f"{name} is one of the ways compared, so it cannot be given" for name in taken)
+    counterweight = checks.check_values(
+        "weight_options", {"counterweight": mass}, {"counterweight": counterweight}, *wrong
+    )["counterweight"]
+    given, compared = choose_design(source, variant, reference)
+    scene = scene_of(given)
+    group, _ = crank_slider_links(scene)
+    pulls = [
+        item.acceleration * np.sin(item.direction - group.guide.guide_angle)
+        for item in scene.loads
+        if isinstance(item, Gravity)
+    ]
+    mass = group.coupler.mass if counterweight is None else counterweight
+    ways = {
+        "symmetric": {},
+        "sine terms": {"sine": cosine},
+        "coupler spring": {"coupler_spring": float(np.copysign(QUARTER_TURN, sum(pulls)))},
+        "counterweight": {"counterweight": mass, "sine": cosine},
+    }
+    rows = {}
+    for name, way in ways.items():
+        found = torque_free_cam(given, cosine, reference=compared, **({"minimise": LEAST_SQUARES_GOAL} | options | way))
+        rows[name] = found.report()["after"].to_dict() | {"bound": found.bound if name == "symmetric" else np.inf}
+    return pd.DataFrame.from_dict(rows, orient="index")

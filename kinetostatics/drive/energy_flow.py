@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from ..errors import QuantityError
-from ..machine.friction import NONE
+from ..machine.friction import NO_FRICTION
 from ..mechanics.load_values import title_of
 from ..numbers import checks
 from ..numbers.formatting import number
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
 SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"
-NOISE = 1e-13
+ENERGY_TOLERANCE = 1e-13
 """Energy, relative to what flows to and fro, that is rounding and taken as 0."""
 
 
@@ -79,7 +79,7 @@ class EnergyFlow:
 
     def __repr__(self):
         wide = max((len(part.name) for part in self.parts), default=0)
-        noise = NOISE * np.nanmax([0.0, *(max(abs(part.energy), part.swing) for part in self.parts)])
+        noise = ENERGY_TOLERANCE * np.nanmax([0.0, *(max(abs(part.energy), part.swing) for part in self.parts)])
         lines = [f"<EnergyFlow: energy in a turn of {self.turn_time:.6g} s"]
         for part in self.parts:
             held = f", {number(part.swing, bound=noise)} J held and returned" if part.swing == part.swing else ""
@@ -125,20 +125,20 @@ def energy_flow(run) -> EnergyFlow:
     moving = {"crank_speed": speed.ravel(), "crank_acceleration": acceleration.ravel()}
 
     def solved(**changes):
-        return with_fields(run.scene, **moving, **changes).solve(angle)
+        return replace_unchecked(run.scene, **moving, **changes).solve(angle)
 
     def work(name, kind, torque):
         torque = np.broadcast_to(torque, angle.shape).reshape(shape)
-        energy = without_noise(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
+        energy = zero_if_rounding(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
         held = energy == 0.0 and kind == LOAD and np.any(torque)
         return Part(name, kind, energy / run.turns, swing(pieces.integrated(torque)) if held else np.nan)
 
     def swing(energy):
         return pieces.largest(energy)[0] + pieces.largest(-energy)[0]
 
-    parts = [*_of_motor(run)]
-    for name, item in _named(run.scene.loads).items():
-        parts.append(work(name, LOAD, solved(loads=(item,), friction=NONE).load_torque))
+    parts = [*_motor_parts(run)]
+    for name, item in _loads_by_title(run.scene.loads).items():
+        parts.append(work(name, LOAD, solved(loads=(item,), friction=NO_FRICTION).load_torque))
     for joint in run.scene.friction.acting:
         parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))
     kinetic = {FLYWHEEL: 0.5 * run.flywheel * speed**2, LINKS: 0.5 * inertia * speed**2}
@@ -146,12 +146,12 @@ def energy_flow(run) -> EnergyFlow:
     return EnergyFlow(tuple(parts), run.duration / run.turns)
 
 
-def without_noise(energy, flowing):
+def zero_if_rounding(energy, flowing):
     """An energy, or 0 where it is rounding of what flows to and fro."""
-    return 0.0 if abs(energy) <= NOISE * flowing else energy
+    return 0.0 if abs(energy) <= ENERGY_TOLERANCE * flowing else energy
 
 
-def _of_motor(run):
+def _motor_parts(run):
     if run.has_air_gap:
         yield Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)
         yield Part(ROTOR, LOSS, run.rotor_loss_per_turn)
@@ -159,7 +159,7 @@ def _of_motor(run):
         yield Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)
 
 
-def _named(loads: tuple[Any, ...]):
+def _loads_by_title(loads: tuple[Any, ...]):
     """Loads by their titles, those of one title numbered."""
     titles = [title_of(item) for item in loads]
     counts: dict[str, int] = {}

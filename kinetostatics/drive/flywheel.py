@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from ..numbers import checks
-from .friction import driven_by
+from .friction import driven_machine
 from .resolution import resolved
-from .running import Running, fluctuation_wanted, flywheel_for
+from .running import Running, find_flywheel, parse_fluctuation
 from .steady import steady
 
 
@@ -81,14 +81,16 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     >>> print(f"{ks.drive.flywheel(pump, 0.01).inertia:.6f} kg m2")
     0.259863 kg m2
     """
-    wanted = fluctuation_wanted("flywheel", fluctuation)
-    return _textbook(scene, wanted, engine) if motor is None else _true(scene, wanted, motor, engine)
+    wanted = parse_fluctuation("flywheel", fluctuation)
+    return _textbook_flywheel(scene, wanted, engine) if motor is None else _exact_flywheel(scene, wanted, motor, engine)
 
 
-def _textbook(scene, wanted, engine):
-    speed, wrong = checks.single("crank_speed of the scene", getattr(scene, "crank_speed", 1.0), "rad/s", unequal=0.0)
+def _textbook_flywheel(scene, wanted, engine):
+    speed, wrong = checks.single_number(
+        "crank_speed of the scene", getattr(scene, "crank_speed", 1.0), "rad/s", unequal=0.0
+    )
     checks.require("flywheel", wrong)
-    driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
+    driven = driven_machine("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
     pieces = resolved(driven, speed)
     angle = pieces.angle
     state = driven.at_constant_speed(angle, 0.0 * angle + speed if driven.by_speed else None)
@@ -98,10 +100,10 @@ def _textbook(scene, wanted, engine):
     return Flywheel(energy / (wanted * speed * speed), energy, wanted)
 
 
-def _true(scene, wanted, motor, engine):
-    driven = driven_by("flywheel", scene, motor, 0.0, engine)
+def _exact_flywheel(scene, wanted, motor, engine):
+    driven = driven_machine("flywheel", scene, motor, 0.0, engine)
     unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
-    return _found(*flywheel_for(wanted, partial(steady, scene, motor, engine=engine), unit))
+    return _found(*find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit))
 
 
 def _found(inertia, running):

@@ -20,46 +20,46 @@ from ..machine.loads import is_given
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.brackets import find_roots
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..solution.program import compile as compiled
-from .one_dof import STEP, Driven, State, apart
+from .one_dof import RELATIVE_SPEED_STEP, DrivenMachine, State, distinct_angles
 from .senses import Senses
 
-FRICTION, *CHECKS = OWN = ("friction_torque", "friction_margin", "friction_residual")
-SOLVES = 30
+FRICTION, *CHECKS = FRICTION_OUTPUTS = ("friction_torque", "friction_margin", "friction_residual")
+MAX_SECANT_STEPS = 30
 """Solves for the acceleration, at most; three or four are enough unless friction nearly jams."""
-SETTLED = 2e-16
+FRICTION_TOLERANCE = 2e-16
 """Change of the friction torque, relative to all torques, that is rounding."""
-DOUBLINGS = 50
+MAX_DOUBLINGS = 50
 """Times that the interval in which an acceleration is looked for doubles before friction counts as jamming."""
-SHARE = 1e-16
+BRACKET_TOLERANCE = 1e-16
 """Error of an acceleration between two, relative to their distance."""
-NOISE = 1e-9
+MIN_FRICTION_CHANGE = 1e-9
 """Change of the friction torque, relative, that tells how it hangs on the acceleration."""
-ROUNDING = 1e-14
+TORQUE_TOLERANCE = 1e-14
 """Torque left over, relative to all torques, that is rounding where the friction torque changes by less than that."""
-ROUND = 180
+PREPARED_ANGLES = 180
 """Crank angles around the period at which friction is looked at beforehand."""
-AT_ONCE = 4096
+BLOCK_SIZE = 4096
 """Crank angles whose friction is computed together."""
 
 
-def driven_by(owner, scene, motor, flywheel, engine=None, direction=None) -> Driven:
+def driven_machine(owner, scene, motor, flywheel, engine=None, direction=None) -> DrivenMachine:
     """What a scene is to its drive, with friction or without."""
     friction = getattr(scene, "friction", None)
-    kind = RubbingDriven if friction and friction.acting else Driven
+    kind = DrivenMachineWithFriction if friction and friction.acting else DrivenMachine
     return kind(owner, scene, motor, flywheel, engine, direction)
 
 
-class RubbingDriven(Driven):
+class DrivenMachineWithFriction(DrivenMachine):
     """What a scene with friction is to its drive, the crank turning in `direction` unless told otherwise."""
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
         self._engine = engine
-        rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
-        self._solved = with_fields(self.scene, friction=with_fields(self.scene.friction, rubs=rubs))
+        rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
+        self._solved = replace_unchecked(self.scene, friction=replace_unchecked(self.scene.friction, rubs=rubs))
         self._asks_for_speed = not all(map(is_given, self.scene.loads))
         self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
         self._guess: tuple[Any, ...] = (None,)
@@ -76,7 +76,7 @@ class RubbingDriven(Driven):
     @cached_property
     def kinks(self):
         """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
-        return apart(np.concatenate([super().kinks, self.senses.all_edges]), self.period)
+        return distinct_angles(np.concatenate([super().kinks, self.senses.all_edges]), self.period)
 
     @property
     def jumps(self):
@@ -85,7 +85,9 @@ class RubbingDriven(Driven):
     @cached_property
     def _program(self):
         kept = "crank_speed", "crank_acceleration"
-        return compiled(self._solved, (*OWN, *self._bending), parameters=kept, engine=self._engine or "numpy")
+        return compiled(
+            self._solved, (*FRICTION_OUTPUTS, *self._bending), parameters=kept, engine=self._engine or "numpy"
+        )
 
     @cached_property
     def _pressed(self):
@@ -128,8 +130,8 @@ class RubbingDriven(Driven):
     def at_acceleration(self, angle, speed, acceleration) -> State:
         state = self.unrubbed(angle, speed)
         parts = [part.ravel() for part in np.broadcast_arrays(angle, speed, acceleration)]
-        starts = range(0, parts[0].size, AT_ONCE)
-        blocks = [self._looked_at(*(part[start : start + AT_ONCE] for part in parts)) for start in starts]
+        starts = range(0, parts[0].size, BLOCK_SIZE)
+        blocks = [self._looked_at(*(part[start : start + BLOCK_SIZE] for part in parts)) for start in starts]
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
@@ -163,9 +165,9 @@ class RubbingDriven(Driven):
 
     def prepare(self, speed):
         """Take as many passes over friction as it takes around the period, from standstill to a speed."""
-        angle = np.linspace(0.0, self.period, ROUND, endpoint=False) + 0.5 * self.period / ROUND
+        angle = np.linspace(0.0, self.period, PREPARED_ANGLES, endpoint=False) + 0.5 * self.period / PREPARED_ANGLES
         for part in (0.0, 0.5, 1.0):
-            self._looked_at(angle, np.full(ROUND, self.direction * part * speed), 0.0)
+            self._looked_at(angle, np.full(PREPARED_ANGLES, self.direction * part * speed), 0.0)
 
     def acceleration_along(self, angle, speed, sense):
         state, senses = self.unrubbed(angle, speed, sense), self.senses.at(angle, sense)
@@ -194,7 +196,7 @@ class RubbingDriven(Driven):
     def torque_by_speed(self, angle, speed, torque):
         """Derivative of load and friction torque by the crank speed, with the acceleration that follows from it."""
         _, acceleration, by_acceleration = self._guess
-        state, step = self.unrubbed(angle, speed), STEP * np.abs(speed).max()
+        state, step = self.unrubbed(angle, speed), RELATIVE_SPEED_STEP * np.abs(speed).max()
         changed = self._looked_at(angle, speed + step, acceleration)[FRICTION]
         own = super().torque_by_speed(angle, speed, state.torque) + (changed - torque + state.torque) / step
         drive = 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
@@ -222,23 +224,25 @@ class RubbingDriven(Driven):
         """Friction torque, acceleration, and derivative of the one by the other: their sum with inertia is `rest`."""
 
         def friction_at(acceleration, place=...):
-            own = None if senses is None else {name: _at(sense, place) for name, sense in senses.items()}
-            return self._looked_at(_at(angle, place), _at(speed, place), acceleration, own)[FRICTION]
+            own = None if senses is None else {name: _at_places(sense, place) for name, sense in senses.items()}
+            return self._looked_at(_at_places(angle, place), _at_places(speed, place), acceleration, own)[FRICTION]
 
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = friction_at(acceleration)
-        for _ in range(SOLVES):
+        for _ in range(MAX_SECANT_STEPS):
             step = (rest - friction - inertia * acceleration) / (inertia + slope)
             size = np.max(np.abs(rest)) + np.max(np.abs(friction))
             new = acceleration + step
             found = friction_at(new)
             change = found - friction
-            known = np.abs(change) > NOISE * size
+            known = np.abs(change) > MIN_FRICTION_CHANGE * size
             with np.errstate(divide="ignore", invalid="ignore"):
                 slope = np.where(known, change / step, slope)
             acceleration, friction = new, found
             left = (rest - friction - inertia * acceleration) / (inertia + slope)
-            doubt = np.where(known, np.abs(slope * left) / SETTLED, np.abs(inertia * left) / ROUNDING)
+            doubt = np.where(
+                known, np.abs(slope * left) / FRICTION_TOLERANCE, np.abs(inertia * left) / TORQUE_TOLERANCE
+            )
             converged = (doubt <= size) & (inertia + slope > 0.0)
             if converged.all():
                 return friction + slope * left, acceleration + left, slope
@@ -246,7 +250,7 @@ class RubbingDriven(Driven):
         friction, acceleration, slope = friction + slope * left, acceleration + left, slope + 0.0 * left
         friction[place], acceleration[place], slope[place] = self._bracketed(
             lambda acceleration, some: friction_at(acceleration, tuple(row[some] for row in place)),
-            *(_at(part, place) for part in (angle, speed, inertia, rest)),
+            *(_at_places(part, place) for part in (angle, speed, inertia, rest)),
         )
         return friction, acceleration, slope
 
@@ -255,16 +259,16 @@ class RubbingDriven(Driven):
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = values_at(acceleration)[FRICTION]
         size = abs(rest) + abs(friction)
-        for _ in range(SOLVES):
+        for _ in range(MAX_SECANT_STEPS):
             step = (rest - friction - inertia * acceleration) / (inertia + slope)
             acceleration += step
             found = values_at(acceleration)
             change, friction = found[FRICTION] - friction, found[FRICTION]
-            known = abs(change) > NOISE * size
+            known = abs(change) > MIN_FRICTION_CHANGE * size
             if known:
                 slope = change / step
             left = (rest - friction - inertia * acceleration) / (inertia + slope)
-            doubt = abs(slope * left) / SETTLED if known else abs(inertia * left) / ROUNDING
+            doubt = abs(slope * left) / FRICTION_TOLERANCE if known else abs(inertia * left) / TORQUE_TOLERANCE
             if not (doubt > size or inertia + slope <= 0.0):  # also where friction is NaN
                 self.pressed = self._pressing(found)
                 return friction + slope * left, acceleration + left, slope
@@ -288,7 +292,7 @@ class RubbingDriven(Driven):
         start = rest / inertia
         first = friction_at(start, every)
         reach, jams = -0.5 * first / inertia, first != 0.0
-        for _ in range(DOUBLINGS):
+        for _ in range(MAX_DOUBLINGS):
             reach = np.where(jams, 2.0 * reach, reach)
             friction = friction_at(start + reach, every)
             jams = np.sign(friction + inertia * reach) * np.sign(first) > 0.0
@@ -300,7 +304,7 @@ class RubbingDriven(Driven):
         def left(share, place):
             return friction_at(start[place] + share * reach[place], place) + inertia[place] * share * reach[place]
 
-        share = find_roots(left, 0.0 * rest, 0.0 * rest + 1.0, SHARE)
+        share = find_roots(left, 0.0 * rest, 0.0 * rest + 1.0, BRACKET_TOLERANCE)
         acceleration = start + share * reach
         friction = friction_at(acceleration, every)
         with np.errstate(invalid="ignore"):
@@ -325,14 +329,14 @@ class RubbingDriven(Driven):
         return [
             row
             for force, couple, half in self._pressed
-            for row in kink_functions("size" if half is None else "larger", _parts(found, force, couple, half))
+            for row in kink_functions("size" if half is None else "larger", _kink_arguments(found, force, couple, half))
         ]
 
 
-def _at(values, place):
+def _at_places(values, place):
     """Values at some of the places, of arrays; a number is the same at all of them."""
     return values[place] if np.ndim(values) else values
 
 
-def _parts(found, force, couple, half):
+def _kink_arguments(found, force, couple, half):
     return (found[force],) if half is None else (found[force], found[couple] / half)

@@ -10,7 +10,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 
-REACH = 2.0
+MAX_SPEED_RATIO = 2.0
 """Speeds up to so many times a motor's own are looked at for steady running."""
 
 
@@ -72,15 +72,15 @@ class Motor:
         >>> round(float(motor.torque(153.9) * 153.9), 6)
         55000.0
         """
-        found = checks.singles(
+        found = checks.single_numbers(
             "Motor.kloss",
             power=(power, "W", POSITIVE),
             speed=(speed, "rad/s", POSITIVE),
-            synchronous_speed=(synchronous_speed, "rad/s", FIELD),
+            synchronous_speed=(synchronous_speed, "rad/s", SYNCHRONOUS_SPEED),
             overload=(overload, "1", {"low": 1.0, "strict": True}),
-            **_shared(transmission, inertia),
+            **_transmission_rules(transmission, inertia),
         )
-        checks.require("Motor.kloss", _below(found["speed"], found["synchronous_speed"]))
+        checks.require("Motor.kloss", _rated_speed_problem(found["speed"], found["synchronous_speed"]))
         return Kloss(**found)
 
     @staticmethod
@@ -102,11 +102,11 @@ class Motor:
         >>> float(ks.drive.Motor.linear(10.0, 100.0).torque(50.0))
         5.0
         """
-        found = checks.singles(
+        found = checks.single_numbers(
             "Motor.linear",
             standstill_torque=(torque, "N*m", {**POSITIVE, "name": "torque"}),
             idle_speed=(speed, "rad/s", {**POSITIVE, "name": "speed"}),
-            **_shared(transmission, inertia),
+            **_transmission_rules(transmission, inertia),
         )
         return Linear(**found)
 
@@ -120,10 +120,10 @@ class Motor:
         >>> float(ks.drive.Motor.constant(10.0).torque(50.0))
         10.0
         """
-        found = checks.singles(
+        found = checks.single_numbers(
             "Motor.constant",
             own_torque=(torque, "N*m", {"name": "torque", "unequal": 0.0}),
-            **_shared(transmission, inertia),
+            **_transmission_rules(transmission, inertia),
         )
         return Constant(**found)
 
@@ -148,10 +148,10 @@ class Motor:
         >>> float(motor.torque(150.0))
         200.0
         """
-        found = checks.singles("Motor.table", **_shared(transmission, inertia))
-        rows = checks.examined("Motor.table", ROWS, {"speed": speed, "torque": torque})
+        found = checks.single_numbers("Motor.table", **_transmission_rules(transmission, inertia))
+        rows = checks.check_values("Motor.table", TABLE_COLUMNS, {"speed": speed, "torque": torque})
         checks.require("Motor.table", *_row_problems(*rows.values()))
-        return Tabled(*(read_only(np.array(row)) for row in rows.values()), **found)
+        return TableMotor(*(read_only(np.array(row)) for row in rows.values()), **found)
 
     def torque(self, speed) -> Any:
         """Torque at speeds of the motor's shaft, N m."""
@@ -229,7 +229,7 @@ class Kloss(Motor):
 
     @property
     def top(self):
-        return REACH * self.synchronous_speed
+        return MAX_SPEED_RATIO * self.synchronous_speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +247,7 @@ class Linear(Motor):
 
     @property
     def top(self):
-        return REACH * self.idle_speed
+        return MAX_SPEED_RATIO * self.idle_speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,7 +268,7 @@ class Constant(Motor):
 
 
 @dataclass(frozen=True, eq=False)
-class Tabled(Motor):
+class TableMotor(Motor):
     """Motor by a table; see `Motor.table`. Beyond its ends the curve goes on straight, for iterations to find back."""
 
     speeds: np.ndarray
@@ -299,15 +299,15 @@ class Tabled(Motor):
 # What a motor must be given
 
 POSITIVE = {"low": 0.0, "strict": True}
-FIELD = {**POSITIVE, "usual": checks.Usual(700.0, "is it in rpm?", math.pi / 30.0)}
-ROWS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
+SYNCHRONOUS_SPEED = {**POSITIVE, "usual": checks.PlausibleRange(700.0, "is it in rpm?", math.pi / 30.0)}
+TABLE_COLUMNS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
 
 
-def _shared(transmission, inertia):
+def _transmission_rules(transmission, inertia):
     return {"transmission": (transmission, "1", {"unequal": 0.0}), "inertia": (inertia, "kg*m**2", {"low": 0.0})}
 
 
-def _below(speed, synchronous_speed):
+def _rated_speed_problem(speed, synchronous_speed):
     """What is wrong with a rated speed, or None."""
     if speed < synchronous_speed:
         return None

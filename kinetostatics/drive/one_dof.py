@@ -11,22 +11,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import AssemblyError, DriveError, NotGivenError
-from ..machine.friction import NONE
+from ..machine.friction import NO_FRICTION
 from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
-from ..mechanics.load_values import drive_asked_for, title_of
+from ..mechanics.load_values import drive_dependence, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..solution.program import compile as compiled
 from ..solution.scene import scene_problem
 from .motor import Motor
 
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
-SAME = 1e-12
+ANGLE_TOLERANCE = 1e-12
 """Crank angles this near, rad, are the same."""
-LOOKED_AT = 720
+LOAD_PROBE_ANGLES = 720
 """Crank angles over the period at which it is looked at what functions read."""
-STEP = 1e-6
+RELATIVE_SPEED_STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
 
 
@@ -39,7 +39,7 @@ class State(NamedTuple):
     closure: np.ndarray
 
 
-class Driven:
+class DrivenMachine:
     """What a scene is to its drive; `flywheel` holds all inertia on the crank besides the links.
 
     The crank speed of the scene does not matter, but for its sign without a motor. `direction` is that sense of
@@ -47,7 +47,7 @@ class Driven:
     """
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
-        flywheel, wrong = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
+        flywheel, wrong = checks.single_number("flywheel", flywheel, "kg*m**2", low=0.0)
         checks.require(
             owner,
             scene_problem(scene),
@@ -59,9 +59,9 @@ class Driven:
         self.motor = motor
         self.direction = motor.direction if motor is not None else direction or 1.0
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
-        self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
+        self.scene = replace_unchecked(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
         checks.require(owner, _batch_problem(self.scene))
-        free = with_fields(self.scene, friction=NONE)
+        free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         self._compiled = engine == "compiled"
         self.torque_given = 0.0
@@ -103,19 +103,19 @@ class Driven:
     @cached_property
     def _asked(self):
         """Loads that are functions, each with what of the crank's drive it reads somewhere in the period."""
-        motion = self.scene.unsolved(np.linspace(0.0, self.period, LOOKED_AT, endpoint=False))
+        motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
         functions = [item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table)]
         with np.errstate(all="ignore"):
-            return [(item, drive_asked_for(item, motion)) for item in functions]
+            return [(item, drive_dependence(item, motion)) for item in functions]
 
     @cached_property
     def kinks(self):
         """Crank angles in (0, period) at which tables of loads have kinks, rad."""
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
         for part in kinked(self.scene.loads):
-            repeats = np.arange(0.0, self.period - SAME, period_on(part, self.scene.mechanism))[:, None]
+            repeats = np.arange(0.0, self.period - ANGLE_TOLERANCE, period_on(part, self.scene.mechanism))[:, None]
             found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
-        return apart(np.concatenate(found), self.period)
+        return distinct_angles(np.concatenate(found), self.period)
 
     def at(self, angle, speed=None) -> State:
         """State at crank angles, at crank speeds if it depends on them."""
@@ -162,7 +162,7 @@ class Driven:
 
     def moving(self, angle, speed, senses):
         """What `here` gives, and the friction torque, with the senses of `senses_ahead`."""
-        return *Driven.here(self, angle, speed, senses["sense"]), 0.0
+        return *DrivenMachine.here(self, angle, speed, senses["sense"]), 0.0
 
     @property
     def forces_here(self):
@@ -171,7 +171,7 @@ class Driven:
 
     def inertia_here(self, angle):
         """All inertia that the crank feels at one crank angle, kg m2, as a float."""
-        return Driven.here(self, angle, self.direction)[0]
+        return DrivenMachine.here(self, angle, self.direction)[0]
 
     def forces_on(self, angle, speed):
         """What is zero where the torque has kinks that hang on the motion, each over the crank angles."""
@@ -190,7 +190,7 @@ class Driven:
             found = self.program.derivatives(angle.reshape(-1, 1), "crank_speed", {"crank_speed": speed.reshape(-1, 1)})
             return found[TORQUE]["crank_speed"].reshape(shape)
         except NotGivenError:
-            step = STEP * np.abs(speed).max()
+            step = RELATIVE_SPEED_STEP * np.abs(speed).max()
             return (self._values(angle, speed + step)[2] - torque) / step
 
     def inertia(self, angle):
@@ -212,7 +212,7 @@ class Driven:
 
     def at_rest(self, angle, sense):
         """Torque left over at the crank at rest, about to move one way, and friction in it, N m."""
-        return Driven.here(self, angle, 0.0, sense)[2], 0.0
+        return DrivenMachine.here(self, angle, 0.0, sense)[2], 0.0
 
     def _any_speed(self, angle):
         return np.full(np.shape(angle), self.direction) if self.loads_by_speed else None
@@ -258,7 +258,7 @@ class Driven:
             return
         angle = np.linspace(0.1, self.period, 7)
         calm, hasty = (
-            with_fields(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
+            replace_unchecked(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
             for alpha in (0.0, 1e3)
         )
         if any("crank_acceleration" in asked for _, asked in self._asked) or not np.array_equal(
@@ -271,10 +271,10 @@ class Driven:
             )
 
 
-def apart(angles, period):
+def distinct_angles(angles, period):
     """Crank angles in (0, period), rising, those that are the same once."""
     angles = np.unique(np.mod(angles, period))
-    return angles[(np.diff(angles, prepend=0.0) > SAME) & (angles < period - SAME)]
+    return angles[(np.diff(angles, prepend=0.0) > ANGLE_TOLERANCE) & (angles < period - ANGLE_TOLERANCE)]
 
 
 def _load_problems(scene):

@@ -18,13 +18,13 @@ from ..errors import DriveError
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
-from ..numbers.parameter_tree import with_fields
-from ..solution.angles import crank_angles, hint_at
+from ..numbers.parameter_tree import replace_unchecked
+from ..solution.angles import crank_angles, hint_at_angles
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from .energy_flow import energy_flow, without_noise
+from .energy_flow import energy_flow, zero_if_rounding
 from .motor import Motor
-from .one_dof import Driven
+from .one_dof import DrivenMachine
 from .pieces import Pieces
 from .savings import DrivenComparison
 
@@ -52,7 +52,7 @@ class Powers:
         torque = self._transmission * self._motor_torque(self._speed)
         energy = self._pieces.total(self._driven.direction * torque)
         flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
-        return without_noise(energy, flowing) / self.turns
+        return zero_if_rounding(energy, flowing) / self.turns
 
     @cached_property
     def energy_flow(self):
@@ -144,7 +144,7 @@ class RunningSolution(Solution):
     @classmethod
     def of(cls, running):
         """Solution of a `Running` at its crank angles."""
-        scene = with_fields(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
+        scene = replace_unchecked(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
         plain = scene.solve(running.crank_angle)
         return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
 
@@ -156,7 +156,7 @@ class RunningSolution(Solution):
     def at(self, crank_angle):
         """The same machine in the same running at other crank angles."""
         angle = crank_angles(crank_angle)
-        hint_at(self.mechanism.name, crank_angle)
+        hint_at_angles(self.mechanism.name, crank_angle)
         motion = self.running.motion(angle)
         speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
         return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)
@@ -167,23 +167,23 @@ class RunningSolution(Solution):
         return self.running.period
 
 
-LARGEST = 60
+MAX_DOUBLINGS = 60
 """How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
-PRECISION = 1e-13
-LIGHTEST = 1e-3
+INERTIA_TOLERANCE = 1e-13
+MIN_FLYWHEEL_RATIO = 1e-3
 """Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
 
 
-def fluctuation_wanted(owner, fluctuation):
+def parse_fluctuation(owner, fluctuation):
     """A coefficient of fluctuation as a float, between 0 and 2."""
-    wanted, wrong = checks.single("fluctuation", fluctuation, "1", low=0.0, strict=True)
+    wanted, wrong = checks.single_number("fluctuation", fluctuation, "1", low=0.0, strict=True)
     if not wrong and not wanted < 2.0:
         wrong = f"fluctuation must be less than 2, got {wanted:g}"
     checks.require(owner, wrong)
     return wanted
 
 
-def flywheel_for(wanted, running_with, unit):
+def find_flywheel(wanted, running_with, unit):
     """Flywheel, kg m2, with which running has a coefficient of fluctuation, or 0 where none is needed; and the running.
 
     Parameters
@@ -210,7 +210,7 @@ def flywheel_for(wanted, running_with, unit):
     if excess(0.0) <= 0.0:
         return 0.0, runs[0.0]
     size, low, high = unit, 0.0, None
-    for _ in range(LARGEST):
+    for _ in range(MAX_DOUBLINGS):
         if excess(size) <= 0.0:
             high = size
             break
@@ -219,11 +219,11 @@ def flywheel_for(wanted, running_with, unit):
         running_with(size)  # says why the machine does not run
         raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
     while not math.isfinite(excess(low)):  # too light to run at all
-        if high < LIGHTEST * unit or high - low <= PRECISION * high:
+        if high < MIN_FLYWHEEL_RATIO * unit or high - low <= INERTIA_TOLERANCE * high:
             return high, runs[high]
         middle = 0.5 * (low + high)
         low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
-    inertia = float(brentq(excess, low, high, xtol=PRECISION * high, rtol=PRECISION))
+    inertia = float(brentq(excess, low, high, xtol=INERTIA_TOLERANCE * high, rtol=INERTIA_TOLERANCE))
     return inertia, runs.get(inertia) or running_with(inertia)
 
 
@@ -255,7 +255,7 @@ class Running(Powers):
     motor: Motor | None
     flywheel: float
     crank_angle: np.ndarray
-    _driven: Driven = field(repr=False)
+    _driven: DrivenMachine = field(repr=False)
     _pieces: Pieces = field(repr=False)
     _energy: np.ndarray = field(repr=False)
     _again: Callable[[float], "Running"] = field(repr=False)
@@ -400,9 +400,9 @@ class Running(Powers):
         >>> print(f"{run.flywheel_for(0.02):.3f} kg m2")
         0.108 kg m2
         """
-        wanted = fluctuation_wanted("flywheel_for", fluctuation)
+        wanted = parse_fluctuation("flywheel_for", fluctuation)
         unit = self.flywheel + self._state.inertia.max()
-        return flywheel_for(wanted, self.with_flywheel, unit)[0]
+        return find_flywheel(wanted, self.with_flywheel, unit)[0]
 
     def plot(self, ax=None):
         """Crank speed over the crank angle, and on a second axis the torques of motor and machine at the crank.
@@ -463,7 +463,7 @@ class Running(Powers):
     @cached_property
     def _at_points(self):
         speed, acceleration = (part.ravel() for part in self.motion(self._pieces.angle))
-        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=acceleration)
+        moving = replace_unchecked(self.scene, crank_speed=speed, crank_acceleration=acceleration)
         return moving.solve(self._pieces.angle.ravel())
 
     @cached_property

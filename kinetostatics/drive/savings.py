@@ -12,7 +12,7 @@ from ..numbers import checks
 from ..results.comparison import Comparison
 from .energy_flow import HELD, ROTOR
 
-OF_THE_DRIVE = {
+DRIVE_FIGURES = {
     "energy per turn, at the shaft": ("energy_per_turn", "J"),
     "energy per turn, through the air gap": ("air_gap_energy_per_turn", "J"),
     "lost in the rotor per turn, by slip": ("rotor_loss_per_turn", "J"),
@@ -25,7 +25,7 @@ OF_THE_DRIVE = {
     "fluctuation, by the mean of the extremes": ("fluctuation_arithmetic", "1"),
 }
 """Names of a `Running`'s figures and their units, by what tables call them."""
-AIR_GAP = ("air_gap_energy_per_turn", "rotor_loss_per_turn")
+AIR_GAP_FIGURES = ("air_gap_energy_per_turn", "rotor_loss_per_turn")
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class DrivenComparison(Comparison):
     def of_drives(self, name):
         """A figure of both machines' `Running` by its name, as "rotor_loss_per_turn"; NaN where there is none."""
         runs = self.reference.running, self.balanced.running
-        return tuple(np.nan if name in AIR_GAP and not run.has_air_gap else getattr(run, name) for run in runs)
+        return tuple(np.nan if name in AIR_GAP_FIGURES and not run.has_air_gap else getattr(run, name) for run in runs)
 
     @property
     def energies_per_turn(self):
@@ -109,7 +109,7 @@ class DrivenComparison(Comparison):
             As for `flywheels`.
         """
         rule = checks.Number("m", low=0.0, strict=True)
-        radius = checks.examined("flywheel_mass_saved", {"radius": rule}, {"radius": radius})["radius"]
+        radius = checks.check_values("flywheel_mass_saved", {"radius": rule}, {"radius": radius})["radius"]
         reference, balanced = self.flywheels(fluctuation)
         return (reference - balanced) / radius**2
 
@@ -117,7 +117,7 @@ class DrivenComparison(Comparison):
         """What the drives take, a pandas DataFrame: quantity, unit, its value with each machine, ratio, difference."""
         import pandas as pd
 
-        figures = {(text, unit): self.of_drives(name) for text, (name, unit) in OF_THE_DRIVE.items()}
+        figures = {(text, unit): self.of_drives(name) for text, (name, unit) in DRIVE_FIGURES.items()}
         figures["flywheel for the same fluctuation", "kg m2"] = self.flywheels(fluctuation)
         rows = [
             (text, unit, *pair, _ratio(*map(abs, pair)), abs(pair[0]) - abs(pair[1]))
@@ -137,11 +137,11 @@ def _ratio(reference, balanced):
     return reference / balanced if balanced else (np.inf if reference else np.nan)
 
 
-OFF = 1.5
+MAX_SPEED_RATIO = 1.5
 """Times by which the speed under a motor may be off that of the scene before a word is said of it."""
 
 
-def summary(runs, starts):
+def running_table(runs, starts):
     """Table with a column for each machine, a pandas DataFrame, its rows with their units.
 
     Parameters
@@ -150,7 +150,7 @@ def summary(runs, starts):
     starts : mapping of label to Trajectory or None
         From rest, None where a machine does not start.
     """
-    columns = {name: _rows(run, starts[name]) for name, run in runs.items()}
+    columns = {name: _running_rows(run, starts[name]) for name, run in runs.items()}
     return _table(columns)
 
 
@@ -168,10 +168,10 @@ def energy_table(runs):
     return _table(columns)
 
 
-def mistaken_speed(run, scene):
+def speed_hint(run, scene):
     """What is told of a machine whose motor turns it much faster or slower than its scene says; None otherwise."""
     meant, mean = abs(float(scene.crank_speed)), abs(run.mean_speed)
-    if meant == 0.0 or meant / OFF <= mean <= meant * OFF:
+    if meant == 0.0 or meant / MAX_SPEED_RATIO <= mean <= meant * MAX_SPEED_RATIO:
         return None
     return (
         f"the motor turns the crank at {mean:.6g} rad/s, but the crank speed given is {meant:.6g} rad/s: is the "
@@ -188,7 +188,7 @@ def _table(columns):
     return table.assign(**{name: [column.get(row, math.nan) for row in rows] for name, column in columns.items()})
 
 
-def _rows(run, start):
+def _running_rows(run, start):
     """Values by what they are and their unit."""
     low, high = run.speed_range
     low_angle, high_angle = map(math.degrees, run.speed_range_angles)

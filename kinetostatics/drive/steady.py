@@ -19,47 +19,47 @@ import numpy as np
 from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..solution.angles import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
-from .friction import driven_by
+from .friction import driven_machine
 from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
 from .resolution import require_inertia, resolved_with_bends
 from .running import Running
 
-STIFF = 4.0
+MAX_GROWTH_EXPONENT = 4.0
 """Integral of a over a piece, at most: more takes digits."""
-ROUNDED = 1e-14
+SPEED_ROUNDING = 1e-14
 """Relative change of speed that is rounding, for what a motor's torque makes of it."""
-STEPS = 40
-HALVED = 3
+MAX_NEWTON_STEPS = 40
+MAX_HALVINGS = 3
 """How often all pieces are halved where the iteration does not settle, as that of stiff motors on wide ones."""
-CONVERGED = 1e-14
+ENERGY_TOLERANCE = 1e-14
 
 
-def interpolated(pieces, energy):
+def energy_interpolant(pieces, energy):
     """Energy as a function of other pieces."""
     series = pieces.series(energy)
     return lambda finer: pieces.evaluate(series, finer.angle)
 
 
-def settled(driven, pieces, guess):
+def solve_near(driven, pieces, guess):
     """Pieces and energy of periodic running near a guess, a function of pieces, halved while that helps; or None."""
-    for halving in range(HALVED + 1):
+    for halving in range(MAX_HALVINGS + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
-        pieces = _yielding(driven, pieces, guess)
+        pieces = _split_stiff_pieces(driven, pieces, guess)
         energy = _newton(driven, pieces, guess(pieces))
         if energy is not None:
             return pieces, energy
     return None
 
 
-def _yielding(driven, pieces, guess):
+def _split_stiff_pieces(driven, pieces, guess):
     """Pieces divided where the motor is stiff, as near a guess."""
-    _, _, _, growth = looked_at(driven, pieces, guess(pieces))
-    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / STIFF, MOST_PIECES + 1.0)).astype(int)
+    _, _, _, growth = linearise(driven, pieces, guess(pieces))
+    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / MAX_GROWTH_EXPONENT, MOST_PIECES + 1.0)).astype(int)
     if parts.max() <= 1 or parts.sum() > MOST_PIECES:
         return pieces
     spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
@@ -67,12 +67,12 @@ def _yielding(driven, pieces, guess):
     return Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
 
 
-def unresolved(driven, pieces, energy):
+def unresolved_pieces(driven, pieces, energy):
     """Which pieces have series that are not done, and can be halved."""
-    state, inertia, speed, growth = looked_at(driven, pieces, energy)
+    state, inertia, speed, growth = linearise(driven, pieces, energy)
     drive = driven.motor_torque(speed)
-    wide = np.abs(pieces.whole(growth)) > STIFF
-    rounding = ROUNDED * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
+    wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
+    rounding = SPEED_ROUNDING * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
     floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
     rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
     tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
@@ -80,7 +80,7 @@ def unresolved(driven, pieces, energy):
     return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
 
 
-def looked_at(driven, pieces, energy, state=None):
+def linearise(driven, pieces, energy, state=None):
     """State, inertia, speed, and derivative of the net torque by U, at the points of pieces."""
     angle = pieces.angle
     if driven.by_speed:
@@ -99,10 +99,10 @@ def looked_at(driven, pieces, energy, state=None):
 def _newton(driven, pieces, energy):
     """Energy U of periodic running near a guess; None if the iteration does not settle on stable running."""
     state, before = None, math.inf
-    for _ in range(STEPS):
-        state, _, speed, growth = looked_at(driven, pieces, energy, state)
+    for _ in range(MAX_NEWTON_STEPS):
+        state, _, speed, growth = linearise(driven, pieces, energy, state)
         net = driven.motor_torque(speed) - state.torque
-        found = _periodic(pieces, growth, net - growth * energy)
+        found = _periodic_solution(pieces, growth, net - growth * energy)
         if found is None:
             return None
         change, factor = found - energy, 1.0
@@ -113,14 +113,14 @@ def _newton(driven, pieces, energy):
                 return None
         energy = energy + factor * change
         size = float(np.abs(change).max() / np.abs(energy).max())
-        if factor == 1.0 and (size < CONVERGED or (size < 1e-10 and size >= 0.1 * before)):
+        if factor == 1.0 and (size < ENERGY_TOLERANCE or (size < 1e-10 and size >= 0.1 * before)):
             stable = driven.direction * pieces.total(growth) < 0.0
             return energy if stable else None
         before = size
     return None
 
 
-def _periodic(pieces, growth, rest):
+def _periodic_solution(pieces, growth, rest):
     """Periodic solution of u' = growth u + rest; None where it grows over the period, or neither grows nor fades."""
     with np.errstate(over="ignore", invalid="ignore"):
         raised = pieces.integral(growth)
@@ -152,15 +152,15 @@ def _periodic(pieces, growth, rest):
     return np.exp(raised) * (np.array(left)[:, None] + gathered)
 
 
-FOLLOWED = 1e-6
+INTEGRATION_TOLERANCE = 1e-6
 """Tolerance to which a machine is followed from above."""
-LOOSE, RIGID = 1e-10, 1e6
+MIN_GROWTH, MAX_GROWTH = 1e-10, 1e6
 """Relative change of the energy of motion over a turn, by its own, of motors that cannot be followed to running."""
-TURNS = 100
+MAX_TURNS = 100
 """Turns that are followed."""
 
 
-def from_above(driven, pieces, start):
+def settle_by_integration(driven, pieces, start):
     """Running found by following the machine from a high speed, where Newton's iteration alone does not find it.
 
     Motions of one degree of freedom do not cross, so from above the highest periodic running is met, or none exists.
@@ -180,9 +180,16 @@ def from_above(driven, pieces, start):
 
     vars(standstill)["terminal"] = True
     energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
-    for turn in range(TURNS):
+    for turn in range(MAX_TURNS):
         found = solve_ivp(
-            net, ends, [energy], "LSODA", rtol=FOLLOWED, atol=1e-10 * most, dense_output=True, events=standstill
+            net,
+            ends,
+            [energy],
+            "LSODA",
+            rtol=INTEGRATION_TOLERANCE,
+            atol=1e-10 * most,
+            dense_output=True,
+            events=standstill,
         )
         if found.status != 0:
             angle = float(found.t[-1]) % period
@@ -197,7 +204,7 @@ def from_above(driven, pieces, start):
             )
         last, energy = energy, float(found.y[0, -1])
         if abs(energy - last) < 0.05 * last:
-            running = settled(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
+            running = solve_near(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
             if running is not None:
                 return running
             if abs(energy - last) < 1e-4 * last:
@@ -211,14 +218,14 @@ def from_above(driven, pieces, start):
 def _remedy(driven, pieces, start):
     """What keeps running from being found, by how the motor answers to speed."""
     inertia = driven.inertia(pieces.angle)
-    *_, growth = looked_at(driven, pieces, 0.5 * inertia * start * start)
+    *_, growth = linearise(driven, pieces, 0.5 * inertia * start * start)
     share = float(np.abs(pieces.whole(growth)).sum())
-    if share < LOOSE:
+    if share < MIN_GROWTH:
         return (
             f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
             f"{inertia.max():.6g} kg m2 at the crank; give a stronger motor, or less inertia"
         )
-    if share > RIGID:
+    if share > MAX_GROWTH:
         return (
             f"the motor is so rigid that its torque changes by {share:.1e} times the energy of motion, a turn, with "
             "the speed; give it its true slip, or a larger flywheel"
@@ -230,11 +237,11 @@ def _on_path(pieces, path, least):
     return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), least)
 
 
-SAMPLED = 96
+MEAN_LOAD_ANGLES = 96
 """Crank angles by which mean load torques are judged."""
-SEEN = 512
+SPEED_COUNT = 512
 """Speeds at which the mean torques of motor and loads are compared."""
-FEW = 16
+FRICTION_SPEED_COUNT = 16
 """Speeds at which mean torques of friction are computed at first, those between guessed from these."""
 
 
@@ -242,26 +249,26 @@ def operating_speed(driven):
     """Crank speed at which the mean torques of motor and loads agree and the motor yields to more load, rad/s."""
     motor, name = driven.motor, driven.scene.mechanism.name
     if math.isfinite(motor.top):
-        speed = motor.top * np.linspace(0.0, 1.0, SEEN)
+        speed = motor.top * np.linspace(0.0, 1.0, SPEED_COUNT)
     elif driven.by_speed:
-        speed = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, SEEN)]) * abs(motor.transmission)
+        speed = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, SPEED_COUNT)]) * abs(motor.transmission)
     else:
         mean = float(_mean_load(driven, np.ones(1))[0])
         raise DriveError(
             f"{name}: nothing holds the speed, as neither the motor's torque nor the loads depend on it; a turn leaves "
             f"{TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with speed"
         )
-    load = _guessed_load if driven.smooth_by_speed else _mean_load
-    load, spare, ends = _left_over(driven, speed, load)
-    if driven.smooth_by_speed and (ends is None or not _parts(_left_over(driven, np.array(ends))[1])):
-        load, spare, ends = _left_over(driven, speed)
+    load = _interpolated_mean_load if driven.smooth_by_speed else _mean_load
+    load, spare, ends = _spare_torque(driven, speed, load)
+    if driven.smooth_by_speed and (ends is None or not _parts(_spare_torque(driven, np.array(ends))[1])):
+        load, spare, ends = _spare_torque(driven, speed)
     if ends is not None:
         from scipy.optimize import brentq
 
         def spare_at(own):
             if not driven.by_speed:
                 return motor.torque(own) - load[0]
-            return float(_left_over(driven, np.array([own]))[1][0])
+            return float(_spare_torque(driven, np.array([own]))[1][0])
 
         return float(brentq(spare_at, *ends, xtol=1e-9 * ends[1], rtol=1e-9)) / motor.transmission
     if spare[-1] > 0.0:
@@ -276,12 +283,12 @@ def operating_speed(driven):
         f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
         f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
         f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
-        f"{_times(load, motor.torque(speed))}or another transmission",
+        f"{_required_strength(load, motor.torque(speed))}or another transmission",
         missing,
     )
 
 
-def _left_over(driven, speed, load_at=None):
+def _spare_torque(driven, speed, load_at=None):
     """Mean load torque at speeds of the motor's shaft, the motor's less it, and the highest two that part the signs."""
     motor = driven.motor
     load = (load_at or _mean_load)(driven, speed / motor.transmission) / motor.transmission
@@ -294,7 +301,7 @@ def _parts(spare):
     return spare[0] > 0.0 >= spare[1]
 
 
-def _times(load, torque):
+def _required_strength(load, torque):
     """How many times as strong a motor must be to carry the loads at some speed, as words."""
     drives = torque > 0.0
     if not drives.any():
@@ -302,7 +309,7 @@ def _times(load, torque):
     return f"{math.ceil(1e3 * np.min(load[drives] / torque[drives])) / 1e3:.6g} times as strong "
 
 
-def require_known(driven, speed):
+def require_within_motor_table(driven, speed):
     """Refuse crank speeds at which a table of the motor tells nothing."""
     own = driven.motor.transmission * speed
     low, high = driven.motor.limits
@@ -315,22 +322,22 @@ def require_known(driven, speed):
 
 def _mean_load(driven, speed):
     """Mean load torque over the period at constant crank speeds, N m."""
-    angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
+    angle = (np.arange(MEAN_LOAD_ANGLES) + 0.5) * driven.period / MEAN_LOAD_ANGLES
     if not driven.by_speed:
         return driven.at(angle).torque.mean() + 0.0 * speed
     grid = np.broadcast_arrays(angle[None, :], speed[:, None])
     return driven.at_constant_speed(*grid).torque.mean(axis=1)
 
 
-def _guessed_load(driven, speed):
+def _interpolated_mean_load(driven, speed):
     """The same where friction makes it smooth: from a few of the speeds, as nearly a line over their squares."""
-    few = np.linspace(0, speed.size - 1, FEW).astype(int)
+    few = np.linspace(0, speed.size - 1, FRICTION_SPEED_COUNT).astype(int)
     return np.interp(speed**2, speed[few] ** 2, _mean_load(driven, speed[few]))
 
 
-AGAIN = 60
+MAX_FRICTION_UPDATES = 60
 """How often friction is found anew under a constant torque, at most."""
-SETTLED = 2e-15
+SPEED_TOLERANCE = 2e-15
 """Relative change of speed that is rounding."""
 
 
@@ -377,45 +384,45 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     >>> print(f"{run.mean_speed:.4f} rad/s, fluctuation {run.fluctuation:.5f}")
     104.6753 rad/s, fluctuation 0.05021
     """
-    direction = _direction(scene) if motor is None else None
-    driven = driven_by("steady", scene, motor, flywheel, engine, direction)
+    direction = _direction_without_motor(scene) if motor is None else None
+    driven = driven_machine("steady", scene, motor, flywheel, engine, direction)
     checks.require("steady", _angles_problem(angles))
-    scene = with_fields(scene, sense=None)  # running never stands: its sense is that of its speed
-    pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
+    scene = replace_unchecked(scene, sense=None)  # running never stands: its sense is that of its speed
+    pieces, energy = (_run_at_mean_speed if motor is None else _run_under_motor)(driven, scene)
     angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
     again = partial(steady, scene, motor, angles=angles, engine=engine)
     return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy, again)
 
 
-def _driven_running(driven, scene):
+def _run_under_motor(driven, scene):
     """Pieces, and the energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
     pieces, bends = resolved_with_bends(driven, start)
     require_inertia(driven, pieces)
-    found = settled(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
-    pieces, energy = found or from_above(driven, pieces, start)
+    found = solve_near(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
+    pieces, energy = found or settle_by_integration(driven, pieces, start)
     for _ in range(LEVELS):
-        speed = looked_at(driven, pieces, energy)[2]
+        speed = linearise(driven, pieces, energy)[2]
         moved = parted(driven, pieces, driven.forces_on(pieces.angle, speed), bends)
         if moved is None:
-            finer = _finer(driven, pieces, energy)
+            finer = _halve_unresolved(driven, pieces, energy)
             if finer is None:
                 break
         else:
             finer, bends = moved
-        found = settled(driven, finer, interpolated(pieces, energy))
-        pieces, energy = found or from_above(driven, finer, start)
-    require_known(driven, looked_at(driven, pieces, energy)[2])
+        found = solve_near(driven, finer, energy_interpolant(pieces, energy))
+        pieces, energy = found or settle_by_integration(driven, finer, start)
+    require_within_motor_table(driven, linearise(driven, pieces, energy)[2])
     return pieces, energy
 
 
-def _finer(driven, pieces, energy):
+def _halve_unresolved(driven, pieces, energy):
     """Pieces halved where series are not done; None where all are, or there are too many."""
-    marked = unresolved(driven, pieces, energy)
+    marked = unresolved_pieces(driven, pieces, energy)
     return pieces.split(marked) if marked.any() and len(pieces.half) <= MOST_PIECES else None
 
 
-def _prescribed(driven, scene):
+def _run_at_mean_speed(driven, scene):
     """Pieces, and the energy U at their points, under the constant torque that keeps the mean speed of the scene."""
     if driven.loads_by_speed:
         raise DriveError(
@@ -445,7 +452,7 @@ def _under_constant_torque(driven, pieces, speed):
     Friction that hangs on speed and acceleration is found anew until they stay.
     """
     slow, acceleration = np.full(pieces.angle.shape, 1.0 / speed), np.zeros(pieces.angle.shape)
-    for _ in range(AGAIN):
+    for _ in range(MAX_FRICTION_UPDATES):
         state = driven.at_acceleration(pieces.angle, driven.direction / slow, acceleration)
         inertia, before = driven.flywheel + state.inertia, slow
         driven.torque_given = pieces.total(state.torque) / driven.period
@@ -453,7 +460,7 @@ def _under_constant_torque(driven, pieces, speed):
         gained = gained + pieces.largest(-gained)[0]
         energy, slow = _at_mean_speed(driven, pieces, inertia, gained, speed)
         acceleration = (driven.torque_given - state.torque - 0.5 * state.slope / slow**2) / inertia
-        if not driven.by_speed or np.abs(slow - before).max() <= SETTLED * slow.max():
+        if not driven.by_speed or np.abs(slow - before).max() <= SPEED_TOLERANCE * slow.max():
             break
     return energy, slow, acceleration
 
@@ -478,10 +485,10 @@ def _at_mean_speed(driven, pieces, inertia, gained, speed):
     return energy, np.sqrt(0.5 * inertia / energy)
 
 
-def _direction(scene):
+def _direction_without_motor(scene):
     """Sign of the crank speed of a scene that is to be run without motor."""
     checks.require("steady", scene_problem(scene))
-    speed, wrong = checks.single("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
+    speed, wrong = checks.single_number("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
     checks.require("steady", wrong)
     return math.copysign(1.0, speed)
 
@@ -492,4 +499,4 @@ def _is_count(angles):
 
 def _angles_problem(angles):
     """What is wrong with a number of crank angles, or None."""
-    return checks.count("angles", angles, size=checks.ANGLE) if _is_count(angles) else None
+    return checks.count("angles", angles, size=checks.BYTES_PER_ANGLE) if _is_count(angles) else None

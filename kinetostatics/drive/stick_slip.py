@@ -17,14 +17,14 @@ import numpy as np
 from ..errors import DriveError
 from .steady import steady
 
-RELATIVE = 3e-14
+RELATIVE_TOLERANCE = 3e-14
 """Tolerance of a step relative to the value, the smallest that the method takes."""
-ABSOLUTE = 1e-15
-AHEAD = 1e-6
+ABSOLUTE_TOLERANCE = 1e-15
+ANGLE_AHEAD = 1e-6
 """Crank angle ahead at which the sign of a force is looked at that is nothing at the start, rad."""
-MOST = 20_000
+MAX_STRETCHES = 20_000
 """Stretches after which a motion is given up."""
-MOST_EVALUATIONS = 1_000_000
+MAX_EVALUATIONS = 1_000_000
 """Evaluations of the acceleration after which a motion is given up: some thousand turns."""
 
 
@@ -38,7 +38,7 @@ class Stretch(NamedTuple):
     dense: Any
 
 
-class Path:
+class MotionPath:
     """Motion over all stretches: rows of crank angle, speed, work of all torques, work lost by friction, and sense.
 
     Where the crank stands still the sense is that of the motion before.
@@ -64,7 +64,7 @@ class Path:
         return found.reshape(5, *time.shape)
 
 
-class Followed(NamedTuple):
+class Motion(NamedTuple):
     """A motion: times, rows as of `Path`, the path, reversals as (time, angle), what ended it, starts of its stretches.
 
     `end` is "end", "ready", "standstill" where that was asked for, "stuck", or "lost" where it cannot be followed.
@@ -91,7 +91,7 @@ def sense_from_rest(driven, angle):
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0
 
 
-def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Followed:
+def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Motion:
     """Motion from a crank angle and speed until a time, a target speed, a standstill if asked for, or it sticks.
 
     `sense` is that of a start from rest, unless the torque left over decides it.
@@ -103,18 +103,18 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=
     what, crossed, evaluations = "stuck", None, itertools.count()
 
     def count(since, inside):
-        if next(evaluations) > MOST_EVALUATIONS:
+        if next(evaluations) > MAX_EVALUATIONS:
             raise DriveError(
                 f"{driven.scene.mechanism.name}: the motion is too long to follow: {time + since:.6g} s, to crank "
-                f"angle {math.degrees(inside + shift):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier "
+                f"angle {math.degrees(inside + shift):.6g} deg, took {MAX_EVALUATIONS} evaluations; give an earlier "
                 "time as until",
                 crank_angle=inside + shift,
             )
 
-    while direction and len(stretches) < MOST:
+    while direction and len(stretches) < MAX_STRETCHES:
         whole = math.floor(state[0] / driven.period) * driven.period
         shift, state[0] = shift + whole, state[0] - whole
-        found, what, crossed = _stretch(driven, state, direction, end - time, target, crossed, count)
+        found, what, crossed = _integrate_stretch(driven, state, direction, end - time, target, crossed, count)
         if what == "lost":
             break
         stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
@@ -131,13 +131,13 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=
                 reversals.append((float(time), float(state[0] + shift)))
         if what in ("end", "ready", "standstill", "stuck"):
             break
-    path = Path(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
+    path = MotionPath(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
     ended = "lost" if what in ("edge", "bend", "still") else what
     starts = [stretch.start for stretch in stretches]
-    return Followed(np.array(times), np.array(rows).T, path, reversals, ended, starts)
+    return Motion(np.array(times), np.array(rows).T, path, reversals, ended, starts)
 
 
-def _stretch(driven, state, direction, time, target, crossed, count):
+def _integrate_stretch(driven, state, direction, time, target, crossed, count):
     """Motion while nothing turns, what ended it, and the sign behind it of a force that crossed zero there, by row."""
     from scipy.integrate import solve_ivp
 
@@ -163,12 +163,12 @@ def _stretch(driven, state, direction, time, target, crossed, count):
         _event(lambda time, state: 1.0 if target is None else direction * (state[1] - target), 0),
     ]
     names = ["still", "edge", "ready"]
-    here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, AHEAD * direction))
+    here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, ANGLE_AHEAD * direction))
     for row, pair in enumerate(zip(here, ahead, strict=True)):
         side = (crossed or {}).get(row) or next((math.copysign(1.0, one) for one in pair if one), 1.0)
         events.append(_event(bend(row, side), 0))
         names.append("bend")
-    options = {"rtol": RELATIVE, "atol": ABSOLUTE, "method": "DOP853"}
+    options = {"rtol": RELATIVE_TOLERANCE, "atol": ABSOLUTE_TOLERANCE, "method": "DOP853"}
     found = solve_ivp(change, (0.0, time), state, dense_output=True, events=events, **options)
     if found.status < 0 or not np.isfinite(found.y).all():
         return found, "lost", None
@@ -192,13 +192,13 @@ def _event(function, direction):
     return function
 
 
-ROUGH = 1e-8
+SLOWING_TOLERANCE = 1e-8
 """Relative difference of energies after a turn by which it is judged whether a machine slows down at all."""
-SMALL = 1e-9
+ENERGY_TOLERANCE = 1e-9
 """Share of the energy that goes to and fro in a turn that counts as nothing."""
 
 
-def require_a_standstill(driven, angle, speed):
+def require_standstill(driven, angle, speed):
     """Refuse to wait for the standstill of a machine whose motor, or loads, give back in a turn all that they take."""
     way = math.copysign(1.0, speed)
     if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
@@ -209,7 +209,7 @@ def require_a_standstill(driven, angle, speed):
     between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
     taken = np.cumsum(between)
     motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
-    if taken[-1] <= SMALL * np.abs(between).sum() and taken.max() < (1.0 - SMALL) * motion:
+    if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
         raise DriveError(
             f"{driven.scene.mechanism.name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
             f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
@@ -224,15 +224,15 @@ def _require_slowing(driven, angle, speed, way):
     slower after a period never is.
     """
     why, forward = None, driven.motor is not None and way == driven.direction
-    if forward and abs(speed) >= _kept_speed(driven, angle):
+    if forward and abs(speed) >= _steady_speed(driven, angle):
         why = "its motor keeps it running"
-    elif (left := _energy_after_a_period(driven, angle, speed, way)) >= 1.0 - ROUGH:
+    elif (left := _energy_after_a_period(driven, angle, speed, way)) >= 1.0 - SLOWING_TOLERANCE:
         why = f"after a period it has {left:.6g} times the kinetic energy of before"
     if why is not None:
         raise DriveError(f"{driven.scene.mechanism.name}: never comes to a standstill: {why}; give a time as until")
 
 
-def _kept_speed(driven, angle):
+def _steady_speed(driven, angle):
     """Speed at a crank angle in periodic running under the motor, rad/s, without sign; infinite where there is none."""
     try:
         running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
@@ -253,9 +253,11 @@ def _energy_after_a_period(driven, angle, speed, way):
         return driven.here(place, way * size, way)[2] / start
 
     def still(place, energy):
-        return energy[0] - ROUGH
+        return energy[0] - SLOWING_TOLERANCE
 
     vars(still)["terminal"] = True
     ends = angle, angle + way * driven.period
-    found = solve_ivp(net, ends, [1.0], "LSODA", rtol=0.1 * ROUGH, atol=0.1 * ROUGH, events=still)
+    found = solve_ivp(
+        net, ends, [1.0], "LSODA", rtol=0.1 * SLOWING_TOLERANCE, atol=0.1 * SLOWING_TOLERANCE, events=still
+    )
     return float(found.y[0, -1]) if found.status == 0 else 0.0

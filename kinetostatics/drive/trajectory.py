@@ -11,12 +11,12 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
 from .motor import Motor
-from .one_dof import Driven
+from .one_dof import DrivenMachine
 
-TIME = checks.Number("s", table=True)
+TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Of the integral of power over a step of the integration."""
 
@@ -84,7 +84,7 @@ class Trajectory:
     speed: np.ndarray
     acceleration: np.ndarray
     events: tuple[Event, ...]
-    _driven: Driven = field(repr=False)
+    _driven: DrivenMachine = field(repr=False)
     _dense: Any = field(repr=False)
     _ends: np.ndarray = field(repr=False)
 
@@ -100,9 +100,9 @@ class Trajectory:
     def at(self, time):
         """The same motion at other times within it, s: so many evenly spread, or an array of them."""
         if isinstance(time, int | np.integer) and not isinstance(time, bool):
-            checks.require("at", checks.count("time", time, size=checks.ANGLE))
+            checks.require("at", checks.count("time", time, size=checks.BYTES_PER_ANGLE))
             time = np.linspace(self.time[0], self.time[-1], time)
-        time = checks.examined("at", {"time": TIME}, {"time": time})["time"]
+        time = checks.check_values("at", {"time": TIME_RULE}, {"time": time})["time"]
         time = np.atleast_1d(np.array(time, dtype=float))
         low, high = self.time[0], self.time[-1]
         if time.min() < low or time.max() > high:
@@ -111,7 +111,9 @@ class Trajectory:
             )
         angle, speed, sense = self._dense(time)[[0, 1, 4]]
         found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed, sense)))
-        return with_fields(self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True)))
+        return replace_unchecked(
+            self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True))
+        )
 
     @cached_property
     def solution(self):
@@ -122,7 +124,7 @@ class Trajectory:
     def _moving(self):
         """The scene at the speeds, accelerations and senses of the motion."""
         sense = np.where(self.speed == 0.0, self._dense(self.time)[4], np.sign(self.speed))
-        return with_fields(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration, sense=sense)
+        return replace_unchecked(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration, sense=sense)
 
     @property
     def _unchecked(self):

@@ -15,19 +15,19 @@ from ..machine import plausibility
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from .friction import driven_by
+from .friction import driven_machine
 from .motor import Motor
-from .steady import require_known, steady
-from .stick_slip import followed, require_a_standstill
+from .steady import require_within_motor_table, steady
+from .stick_slip import integrate_motion, require_standstill
 from .trajectory import Event, Trajectory
 
-READY = 0.99
+STARTED_SPEED_RATIO = 0.99
 """Share of the mean speed of steady running at which a machine has started."""
-LONGEST = 1e5
+MAX_TURNS = 1e5
 """Turns after which a start is given up."""
-FARTHEST = 1e6
+MAX_ANGLE = 1e6
 """Crank angle, rad, beyond which too many digits are lost to begin there."""
-SMALL = 1e-9
+MIN_TORQUE_RATIO = 1e-9
 """Torque, relative to the largest, that moves nothing."""
 
 
@@ -69,16 +69,16 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     >>> motion.energy_drift < 1e-12
     True
     """
-    driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
+    driven, flywheel, angle, speed = _initial_state("coast", scene, motor, flywheel, from_angle, from_speed, engine)
     if not (isinstance(until, str) and until == "standstill"):
         checks.require("coast", 'give until, a time in s, or "standstill"' if until is None else None)
-        until, wrong = checks.single("until", until, "s", low=0.0, strict=True)
+        until, wrong = checks.single_number("until", until, "s", low=0.0, strict=True)
         checks.require("coast", wrong and f'until must be a time in s, or "standstill": {wrong}')
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
     else:
-        require_a_standstill(driven, angle, speed)
-    return _followed(driven, scene, angle, speed, until)
+        require_standstill(driven, angle, speed)
+    return _trajectory(driven, scene, angle, speed, until)
 
 
 def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None) -> Trajectory:
@@ -121,33 +121,33 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     """
     if not isinstance(motor, Motor):
         checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
-    driven, flywheel, angle, _ = _begun("start", scene, motor, flywheel, from_angle, 0.0, engine)
+    driven, flywheel, angle, _ = _initial_state("start", scene, motor, flywheel, from_angle, 0.0, engine)
     target = None
     if until is None:
-        target = READY * steady(scene, motor, flywheel, engine=engine).mean_speed
+        target = STARTED_SPEED_RATIO * steady(scene, motor, flywheel, engine=engine).mean_speed
     else:
-        until, wrong = checks.single("until", until, "s", low=0.0, strict=True)
+        until, wrong = checks.single_number("until", until, "s", low=0.0, strict=True)
         checks.require("start", wrong)
     pushing, _ = driven.at_rest(angle, driven.direction)
-    if not pushing * driven.direction > SMALL * _most_torque(driven):
-        raise _no_start(driven, angle, "it does not start")
-    found = _followed(driven, scene, angle, 0.0, until, target, one_way=True)
+    if not pushing * driven.direction > MIN_TORQUE_RATIO * _largest_torque(driven):
+        raise _start_error(driven, angle, "it does not start")
+    found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True)
     if found.events[-1].name == "reversal":
-        raise _no_start(driven, found.events[-1].crank_angle, f"it starts and stops after {found.time[-1]:.6g} s")
+        raise _start_error(driven, found.events[-1].crank_angle, f"it starts and stops after {found.time[-1]:.6g} s")
     return found
 
 
-def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
+def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """The machine and where it begins, looked at."""
-    angle, wrong_angle = checks.single("from_angle", from_angle, "rad")
-    if not wrong_angle and abs(angle) > FARTHEST:
-        wrong_angle = f"from_angle must be at most {FARTHEST:g} rad in size, got {angle:g}; take whole turns off"
-    speed, wrong_speed = checks.single("from_speed", from_speed, "rad/s")
-    inertia, wrong_inertia = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
+    angle, wrong_angle = checks.single_number("from_angle", from_angle, "rad")
+    if not wrong_angle and abs(angle) > MAX_ANGLE:
+        wrong_angle = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
+    speed, wrong_speed = checks.single_number("from_speed", from_speed, "rad/s")
+    inertia, wrong_inertia = checks.single_number("flywheel", flywheel, "kg*m**2", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
-    for hint in plausibility.of_one(angle):
+    for hint in plausibility.single_angle_hints(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
-    driven = driven_by(owner, scene, motor, inertia, engine)
+    driven = driven_machine(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():
         raise DriveError(
@@ -158,13 +158,13 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     return driven, inertia, angle, speed
 
 
-def _most_torque(driven):
+def _largest_torque(driven):
     rest = np.zeros(96)
     angle = np.linspace(0.0, driven.period, 96, endpoint=False)
     return max(float(np.abs(driven.at_constant_speed(angle, rest).torque).max()), abs(float(driven.motor_torque(0.0))))
 
 
-def _no_start(driven, angle, what):
+def _start_error(driven, angle, what):
     """Why a machine does not start, and what would help."""
     rest = float(driven.motor_torque(0.0)) * driven.direction
     places = np.linspace(0.0, driven.period, 720, endpoint=False)
@@ -174,7 +174,7 @@ def _no_start(driven, angle, what):
     rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
-    easy = _easiest(places, asked - rest, driven.direction)
+    easy = _easiest_start(places, asked - rest, driven.direction)
     if easy is not None:
         remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque carries it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
@@ -188,7 +188,7 @@ def _no_start(driven, angle, what):
     )
 
 
-def _easiest(places, missing, direction):
+def _easiest_start(places, missing, direction):
     """Crank angle from which torque at rest carries a machine round, or None where it does no work over the turn.
 
     It lies behind the place up to which most energy is asked: from there on more is given than taken.
@@ -202,19 +202,19 @@ def _easiest(places, missing, direction):
     return float(places[::step][high % places.size])
 
 
-def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
+def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
     driven.prepare(max(abs(speed), abs(target or 0.0)))
-    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
+    end = until if isinstance(until, float) else _time_limit(driven, speed if target is None else target)
     sense = driven.direction if one_way else None
-    found = followed(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
+    found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
     time, rows = found.time, found.rows
     if found.end == "lost":
-        raise _lost(driven, time[-1], *rows[:2, -1])
+        raise _integration_error(driven, time[-1], *rows[:2, -1])
     if found.end == "end" and not isinstance(until, float):
-        raise _never(driven, target, end)
+        raise _time_limit_error(driven, target, end)
     if driven.motor is not None:
-        require_known(driven, rows[1])
+        require_within_motor_table(driven, rows[1])
     stopped = "reversal" if one_way else "standstill"
     last = stopped if found.end in ("standstill", "stuck") else "end"
     turns = (Event("reversal", *turn) for turn in found.reversals)
@@ -225,7 +225,7 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, ends)
 
 
-def _lost(driven, time, angle, speed):
+def _integration_error(driven, time, angle, speed):
     """Why a motion cannot go on."""
     driven.scene.solve(np.array([angle + speed * 1e-6]))
     return DriveError(
@@ -235,13 +235,13 @@ def _lost(driven, time, angle, speed):
     )
 
 
-def _never(driven, target, end):
+def _time_limit_error(driven, target, end):
     what = "standstill" if target is None else f"{target:.6g} rad/s"
     return DriveError(
         f"{driven.scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until"
     )
 
 
-def _long(driven, speed):
+def _time_limit(driven, speed):
     """Time after which a motion that does not end is given up, s."""
-    return LONGEST * TURN / max(abs(speed), 1e-3)
+    return MAX_TURNS * TURN / max(abs(speed), 1e-3)

@@ -9,7 +9,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..numbers.arithmetic import ROUNDING, SPLIT, lost, off_square, rest, total
+from ..numbers.arithmetic import (
+    SPLITTER,
+    SQUARE_TOLERANCE,
+    compensated_sum,
+    length_error,
+    square_difference_terms,
+    sum_corrections,
+)
 from .graph import BY_ANGLE, Node, needed
 from .simplify import drop_unused, fused_sums
 
@@ -70,7 +77,7 @@ def two_sum(a, b):
 """Helper of compensated sums."""
 SQUARES = f"""@njit(error_model="numpy")
 def squared(a):
-    whole, spread = a * a, {SPLIT!r} * a
+    whole, spread = a * a, {SPLITTER!r} * a
     high = spread - (spread - a)
     low = a - high
     return whole, ((high * high - whole) + 2.0 * high * low) + low * low
@@ -139,7 +146,7 @@ def loop_source(outputs, fuse=True, kind="float64") -> str:
         f"            results[start + uint64({row}) * count + i] = {_name(part)}" for row, part in enumerate(outputs)
     ]
     fma = FUSED if sums or any(node.operation == "fma" for node in nodes) else ""
-    header = LOOP_HEADER.format(threshold=-ROUNDING) + _helpers(nodes) + fma
+    header = LOOP_HEADER.format(threshold=-SQUARE_TOLERANCE) + _helpers(nodes) + fma
     return (header + "\n".join(lines) + "\n").replace("float64", kind)
 
 
@@ -319,7 +326,7 @@ def _expression(node, words):
 def _plain_root(square, unit):
     if square > 0.0:
         return math.sqrt(square)
-    return 0.0 if square > -ROUNDING * unit else math.nan
+    return 0.0 if square > -SQUARE_TOLERANCE * unit else math.nan
 
 
 def _plain_divisor(root, unit):
@@ -327,28 +334,28 @@ def _plain_divisor(root, unit):
 
 
 def _root(square, unit):
-    return np.where(square > -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
+    return np.where(square > -SQUARE_TOLERANCE * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
 
 
 def _root_of(square, unit, out):
     np.maximum(square, 0.0, out=out)
     np.sqrt(out, out)
-    np.copyto(out, np.nan, where=np.less_equal(square, -ROUNDING * unit))
+    np.copyto(out, np.nan, where=np.less_equal(square, -SQUARE_TOLERANCE * unit))
 
 
 def _plain_total(*terms):
     try:
         return math.fsum(terms)
     except (OverflowError, ValueError):
-        return total(*terms)
+        return compensated_sum(*terms)
 
 
 def _plain_rest(length, x, y):
-    return _plain_total(*off_square(length, x, y)) / (2.0 * length)
+    return _plain_total(*square_difference_terms(length, x, y)) / (2.0 * length)
 
 
 def _lost_by_squares(length, x, y):
-    return lost(*off_square(length, x, y))
+    return sum_corrections(*square_difference_terms(length, x, y))
 
 
 def _scalar_total(*terms):
@@ -356,12 +363,12 @@ def _scalar_total(*terms):
 
 
 def _scalar_lost(*terms):
-    return np.float64(lost(*map(float, terms)))
+    return np.float64(sum_corrections(*map(float, terms)))
 
 
 def _total_of(*terms_and_out):
     *terms, out = terms_and_out
-    np.copyto(out, total(*terms))
+    np.copyto(out, compensated_sum(*terms))
 
 
 def compile_line(source, scope):
@@ -386,7 +393,7 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
-    "lost": lost,
+    "lost": sum_corrections,
     "lost_by_squares": _lost_by_squares,
     "rest": _plain_rest,
     "nan": math.nan,
@@ -402,10 +409,10 @@ BY_DESIGN = {
     "root": _root,
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
-    "total": total,
-    "lost": lost,
+    "total": compensated_sum,
+    "lost": sum_corrections,
     "lost_by_squares": _lost_by_squares,
-    "rest": rest,
+    "rest": length_error,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -414,8 +421,8 @@ SCALARS = BY_DESIGN | {
     "divisor": lambda root, unit: np.float64(_plain_divisor(root, unit)),
     "total": _scalar_total,
     "lost": _scalar_lost,
-    "lost_by_squares": lambda length, x, y: _scalar_lost(*off_square(length, x, y)),
-    "rest": lambda length, x, y: _scalar_total(*off_square(length, x, y)) / (2.0 * length),
+    "lost_by_squares": lambda length, x, y: _scalar_lost(*square_difference_terms(length, x, y)),
+    "rest": lambda length, x, y: _scalar_total(*square_difference_terms(length, x, y)) / (2.0 * length),
 }
 """The same on NumPy scalars, which report underflow; sums never underflow."""
 ARRAYS = {

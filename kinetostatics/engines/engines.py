@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError
-from ..mechanics.motion import gap, groups_behind
-from ..mechanics.quantities import CHECKS, all_found, of_scene
+from ..mechanics.motion import gap_mask, required_groups
+from ..mechanics.quantities import FRICTION_CHECKS, of_scene, resolved_names
 from ..numbers.arithmetic import read_only, stack
 from ..numbers.planar import plus
 from .error_bounds import CAP, with_bounds
@@ -27,8 +27,8 @@ class Kernels:
     def values(self, state, names=None):
         """Values by name; None: closure and all results of the groups."""
         state = state if self.way is None else replace(state, way=self.way)
-        names = all_found(state) if names is None else names
-        behind = groups_behind(state.mechanism)
+        names = resolved_names(state) if names is None else names
+        behind = required_groups(state.mechanism)
         return {name: self._values(state, name, behind) for name in names}
 
     def with_bounds(self, state, names, tight=False):
@@ -41,7 +41,7 @@ class Kernels:
         if name == "closure":
             return read_only(stack(state.closure))
         found = of_scene(state)[name].read(state)
-        return found if name in CHECKS else read_only(plus(found, gap(state.placement, behind[name])))
+        return found if name in FRICTION_CHECKS else read_only(plus(found, gap_mask(state.placement, behind[name])))
 
 
 KERNELS = Kernels()

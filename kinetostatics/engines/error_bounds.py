@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import NotGivenError
-from ..numbers.arithmetic import APART, UNIT, UNSEEN
+from ..numbers.arithmetic import NEGLIGIBLE_LENGTH, RELATIVE_OFFSET, UNIT_ROUNDOFF
 from ..numbers.planar import plus, product
 from .derivatives import adjoints
 from .graph import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, needed, varies
@@ -84,8 +84,8 @@ def _ulp(functions):
     return {"sin": functions, "cos": functions, "atan": functions, "sqrt": 1.0, "root": 1.0}
 
 
-OWN = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, _ulp(2.0), as_recorded=True)
-DOUBLE = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, _ulp(4.0), 2.0**1022)
+OWN = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, _ulp(2.0), as_recorded=True)
+DOUBLE = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, _ulp(4.0), 2.0**1022)
 SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, _ulp(8.0), 2.0**126)
 PRECISIONS = {"double": DOUBLE, "single": SINGLE}
 """Arithmetic of programs that JAX or another precision runs, by the user's word."""
@@ -183,7 +183,7 @@ class ErrorBounds:
         relative, rest = self._given.error(node)
         if self.arithmetic.as_recorded:
             return Error(relative, rest)
-        finer = UNIT / self.arithmetic.unit
+        finer = UNIT_ROUNDOFF / self.arithmetic.unit
         return Error(float(finer < 1.0) + finer * relative, plus(product(finer, rest), self.arithmetic.dust))
 
     def _require_small(self, node):
@@ -371,7 +371,7 @@ def _beside_length(bounds, rest):
     """Bound on the error of a length and its rest together, in units, with those of the components."""
     length, x, y = rest.arguments
     lost = bounds.graph.node("lost_by_squares", length, x, y)
-    own = 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length
+    own = 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT_ROUNDOFF) + 8.0 * lost) / length
     dust = product(1.0 / length, bounds.arithmetic.dust)
     return reduce(plus, map(bounds.total, (x, y)), plus(own, dust))
 
@@ -513,9 +513,11 @@ def _moved_apart(parts, unit):
     """Distance, in units, by which `elementary.apart` moved a number off zero; None where it did not."""
     for part in parts:
         if not isinstance(part, Node):
-            if part == APART * UNSEEN:
-                return APART * UNSEEN / unit
-        elif part.operation == "*" and APART in (factor for factor in part.arguments if not isinstance(factor, Node)):
+            if part == RELATIVE_OFFSET * NEGLIGIBLE_LENGTH:
+                return RELATIVE_OFFSET * NEGLIGIBLE_LENGTH / unit
+        elif part.operation == "*" and RELATIVE_OFFSET in (
+            factor for factor in part.arguments if not isinstance(factor, Node)
+        ):
             return part * (1.0 / unit)
     return None
 
@@ -559,7 +561,7 @@ def _tight_bound(output, most, running, plain):
             wanted.add(node)
     ends = {node for node in wanted if not varies(node)}
     slopes = adjoints(graph, output, wanted, SEED, 1.0, ends)
-    shared: Any = len(slopes) * 2.0**-48 / UNIT  # adjoints that underflow
+    shared: Any = len(slopes) * 2.0**-48 / UNIT_ROUNDOFF  # adjoints that underflow
     for node, error in first.cut.items():
         shared = first.fused(abs(slopes[node]), error, shared) if node in slopes else shared
     bound = first.fused(first.off / SEED, shared, own)
@@ -576,7 +578,7 @@ def _divides(node, user):
 
 def of_magnitude(vector, bounds):
     """Bound on the error of a vector's magnitude, from the vector's values and the bounds of its components."""
-    return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
+    return np.hypot(*bounds) * SAFE + 4 * UNIT_ROUNDOFF * np.hypot(*vector)
 
 
 def where_known(values, bounds):

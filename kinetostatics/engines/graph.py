@@ -6,12 +6,12 @@ writes source from it; the number of operations at each crank angle is its cost.
 
 import numpy as np
 
-from ..numbers.arithmetic import APART
-from ..numbers.planar import Nothing
+from ..numbers.arithmetic import RELATIVE_OFFSET
+from ..numbers.planar import SymbolicZero
 
 BY_DESIGN, BY_ANGLE = range(2)
 """The value of a node varies with the design alone, or with the crank angle as well."""
-OTHERS = (np.ndarray, Nothing)
+OTHERS = (np.ndarray, SymbolicZero)
 """Operands that combine with a node by their own arithmetic."""
 INPUTS = ("angle", "parameter", "table")
 """Operations whose arguments are not nodes."""
@@ -89,7 +89,7 @@ class Node:
         return self.graph.node("divisor", self, unit)
 
     def moved_apart(self, unit):
-        return self + APART * unit
+        return self + RELATIVE_OFFSET * unit
 
     def total_with(self, terms):
         """Called by `arithmetic.total`."""

@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
-from ..numbers.arithmetic import ROUNDING, total
+from ..numbers.arithmetic import SQUARE_TOLERANCE, compensated_sum
 from ..numbers.lazy import cached_property
 from . import numba_backend
 from .codegen import BY_DESIGN, compile_line, line_source, loop_source
@@ -78,10 +78,10 @@ class DeviceProgram:
         self._options = AS_WRITTEN if device.platform == PROVEN else None
         outputs = split.at_angles.outputs
         scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
-        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": total}
+        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": compensated_sum}
         scope["fma"] = lambda one, other, more: one * other + more
         scope["root"] = lambda square, unit: xp.where(
-            square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
+            square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
         )
         line = compile_line(line_source(outputs), scope)
 

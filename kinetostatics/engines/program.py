@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import NotGivenError, QuantityError
 from ..machine import plausibility
 from ..machine.links import present
-from ..numbers.checks.rules import FAR
+from ..numbers.checks.rules import MAX_LENGTH_IN_LINKS
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import FLOATS, Leaves
 from . import numba_backend
@@ -336,7 +336,7 @@ def _recorded(state, structure, quantities, sizes):
 def plausibility_test(kind, judged=()):
     """Function of a scene's numbers that returns its extent over its shortest length, and whether hints may be due.
 
-    None if the scene cannot be recorded. `judged` holds pairs of a leaf and its usual range, a `checks.Usual`.
+    None if the scene cannot be recorded. `judged` holds pairs of a leaf and its usual range, a `checks.PlausibleRange`.
     """
     outputs = []
 
@@ -352,26 +352,32 @@ def plausibility_test(kind, judged=()):
 
     try:
         scene = recorded_scene(kind.structure)
-        extent, reaches, bars, bodies, turning, arms = plausibility.sizes(scene.mechanism)
+        extent, reaches, bars, bodies, turning, arms = plausibility.compared_sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
     odd = [outside(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
-    odd += [f"not extent < {FAR} * longest"] if bars else []
-    odd += [f"longest > {plausibility.LONGEST}", f"longest > {plausibility.SLENDER} * shortest"] if bars else []
+    odd += [f"not extent < {MAX_LENGTH_IN_LINKS} * longest"] if bars else []
+    odd += (
+        [f"longest > {plausibility.MAX_LENGTH}", f"longest > {plausibility.MAX_LENGTH_RATIO} * shortest"]
+        if bars
+        else []
+    )
     odd += [
-        f"{noted(inertia)} > {plausibility.THICK} * {noted(mass)} * {noted(long)} ** 2"
+        f"{noted(inertia)} > {plausibility.LARGE_INERTIA_FACTOR} * {noted(mass)} * {noted(long)} ** 2"
         for inertia, mass, long in turning
     ]
     if present(scene.crank_speed) is not None and scene.mechanism.crank.length is not None:
-        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {plausibility.FASTEST}"]
+        odd += [
+            f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {plausibility.MAX_PIN_SPEED}"
+        ]
     odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
-    odd += ["True" for _ in plausibility.beside_rods(scene.mechanism, scene.loads)]
+    odd += ["True" for _ in plausibility.loads_beside_rods(scene.mechanism, scene.loads)]
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):
     v = sizes(0.0, 0.0, 1.0, numbers, ())
     extent, longest = {noted(extent)}, max({", ".join([*map(noted, bars), "0.0", "0.0"])})
     shortest = min({", ".join([*map(noted, reaches), "inf", "inf"])})
-    thin = longest * longest / {12.0 * plausibility.THIN}
+    thin = longest * longest / {12.0 * plausibility.SMALL_INERTIA_FACTOR}
     return extent / shortest, {" or ".join(odd) or "False"}"""
     if any(node.operation == "table" for node in needed(outputs)):
         return None

@@ -17,13 +17,13 @@ from ..machine import loads
 from ..machine.crank import ray
 from ..machine.loads import Load, ProcessForce, table_pieces
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.load_values import given, moving, title_of
-from ..mechanics.motion import groups_behind, places
-from ..mechanics.quantities import CHECKS, all_found, components, of_scene
-from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.arithmetic import UNIT
+from ..mechanics.load_values import title_of, user_value, without_forces
+from ..mechanics.motion import coordinates, required_groups
+from ..mechanics.quantities import FRICTION_CHECKS, components, of_scene, resolved_names
+from ..mechanics.quantities import component_sizes as sizes_of
+from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import put_together, with_fields
+from ..numbers.parameter_tree import replace_unchecked, unflatten
 from ..numbers.planar import plus
 from .error_bounds import Error
 from .graph import Graph, Node, needed, operations
@@ -40,7 +40,7 @@ class Gaps:
     """
 
     def __init__(self, graph, scene):
-        self._placement, self._behind = scene.placement, groups_behind(scene.mechanism)
+        self._placement, self._behind = scene.placement, required_groups(scene.mechanism)
         self._roots: list[Node] = []
         self._bits: list[int] = []
         for node in graph:
@@ -52,7 +52,7 @@ class Gaps:
 
     def added(self, output, name):
         """An output plus 0 times each root that it lacks; roots that lie below another are left out."""
-        parts = (np.ravel(part)[0] for part in places(self._placement, self._behind[name]))
+        parts = (np.ravel(part)[0] for part in coordinates(self._placement, self._behind[name]))
         missing = self._of(parts) & ~self._of([output])
         for place, root in reversed([*enumerate(self._roots)]):
             if missing >> place & 1:
@@ -69,7 +69,7 @@ class Gaps:
         return bits
 
 
-WITHOUT_GAPS = ("closure", *CHECKS)
+WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
 """Quantities that report gaps themselves, and so stay numbers there."""
 
 
@@ -177,7 +177,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     """
     recorder = Recorder(structure, way, SimplifiedGraph())
     if quantities is None:
-        quantities = all_found(recorder.recorded)
+        quantities = resolved_names(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
     gaps = Gaps(recorder.graph, recorder.recorded)
     outputs = tuple(
@@ -213,7 +213,7 @@ class Recorder:
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, items, friction, sense = put_together(
+        mechanism, speed, acceleration, items, friction, sense = unflatten(
             structure, self._parameter, self._array, lambda: None
         )
         self.angle = self._nodes(self.graph.angle())
@@ -262,23 +262,23 @@ class Recorder:
     def _load(self, load, place, idle):
         """The load, with its values from a table if it takes plain numbers only."""
         if not isinstance(load, Load):
-            if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
+            if self._is_elementwise(load, lambda angle: [load.push(without_forces(replace(idle, crank_angle=angle)))]):
                 return load
             return ProcessForce(self._given(load, place), load.on)
         value = load.value_now
         if isinstance(value, loads.Table):
-            return with_fields(load, **{load.VALUE: self._read(value, load.UNIT, place)})
+            return replace_unchecked(load, **{load.VALUE: self._read(value, load.UNIT, place)})
         if not callable(value) or self._is_elementwise(
-            value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
+            value, lambda angle: [value(without_forces(replace(idle, crank_angle=angle)))]
         ):
             return load
-        return with_fields(load, **{load.VALUE: self._given(load, place)})
+        return replace_unchecked(load, **{load.VALUE: self._given(load, place)})
 
     def _given(self, load, place):
         """Values of a load given by user code, from a table."""
         names = (("value", 0, getattr(load, "UNIT", "N")),)
         (values,) = self._tabled(
-            names, lambda motion, leaves: [given(motion.loads[place], motion)], title_of(load), place
+            names, lambda motion, leaves: [user_value(motion.loads[place], motion)], title_of(load), place
         )
         return values
 
@@ -291,7 +291,7 @@ class Recorder:
         if table.over == "angle":
             (values,) = self._tabled((("value", 0, unit),), lambda motion, leaves: [item(motion)(motion)], of=place)
             (errors,) = self._tabled(
-                ERRORS[:1], lambda motion, leaves: [table_pieces.rounding(item(motion), motion) / UNIT]
+                ERRORS[:1], lambda motion, leaves: [table_pieces.rounding_bound(item(motion), motion) / UNIT_ROUNDOFF]
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
@@ -301,7 +301,7 @@ class Recorder:
             of=place,
             bounded=lambda motion, leaves: [
                 *item(motion).pieces(motion),
-                *table_pieces.kinks_within(item(motion), motion),
+                *table_pieces.kink_bounds(item(motion), motion),
             ],
         )
         start, value, slope, *kinks = rows
@@ -358,13 +358,13 @@ def _errors_of_piece(value, slope, kinks, travel, rate):
 
     def of_value(bounds):
         bounds.look_at((travel, rate))
-        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        jumps = plus(jump / UNIT_ROUNDOFF, 0.0 / bounds.above(near, bounds.total(rate)))
         total = bounds.total(travel)
         if total is None:  # the travel is exact
             return Error(0.0, jumps)
         off = 2.0 * total  # also of the travel by which the piece was chosen
         jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT, None), jumps))
+        return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT_ROUNDOFF, None), jumps))
 
     return {value: of_value, slope: lambda bounds: Error(3.0, None)}
 

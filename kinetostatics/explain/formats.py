@@ -4,7 +4,7 @@ from collections.abc import Callable
 from html import escape
 from typing import NamedTuple
 
-from ..numbers.formatting import exact, number
+from ..numbers.formatting import number, shortest_exact
 from .formulas import CALLS
 from .symbols import Symbol
 
@@ -29,26 +29,26 @@ class Style(NamedTuple):
     """Whether a quotient needs no brackets, being a fraction with a bar."""
 
 
-def written(tree, style, name):
+def write_formula(tree, style, name):
     """A formula in a style; ``name(place)`` gives what stands for a named number, a `Symbol` or a float."""
-    return _written(tree, style, name)[0]
+    return _write(tree, style, name)[0]
 
 
-def _written(tree, style, name):
+def _write(tree, style, name):
     """Text of a formula, and how tightly it holds together."""
     kind, *parts = tree
 
     def inner(part, least):
-        text, hold = _written(part, style, name)
+        text, hold = _write(part, style, name)
         return text if hold >= least else style.brackets.format(text)
 
     if kind == "name":
         found = name(parts[0])
         if isinstance(found, Symbol):
             return style.symbol(found), POWER if found.primes else ATOM
-        return style.number(found), _hold_of(found)
+        return style.number(found), _binding(found)
     if kind == "number":
-        return style.number(parts[0], True), _hold_of(parts[0])
+        return style.number(parts[0], True), _binding(parts[0])
     if kind == "sum":
         (sign, first), *rest = parts
         text = style.sign + inner(first, PRODUCT) if sign < 0 else inner(first, NEGATIVE)
@@ -65,16 +65,16 @@ def _written(tree, style, name):
         return style.quotient.format(inner(parts[0], over), inner(parts[1], under)), PRODUCT
     if kind == "power":
         return style.power.format(inner(parts[0], ATOM), parts[1]), POWER
-    return style.calls[parts[0]].format(*(_written(part, style, name)[0] for part in parts[1:])), ATOM
+    return style.calls[parts[0]].format(*(_write(part, style, name)[0] for part in parts[1:])), ATOM
 
 
-def _hold_of(value):
-    return NEGATIVE if value < 0 else PRODUCT if "e" in in_digits(value) else ATOM
+def _binding(value):
+    return NEGATIVE if value < 0 else PRODUCT if "e" in format_number(value) else ATOM
 
 
-def in_digits(value, exactly=False):
+def format_number(value, exactly=False):
     """A number to 6 digits, or as short as tells it exactly."""
-    return exact(value) if exactly else number(value) or "nan"
+    return shortest_exact(value) if exactly else number(value) or "nan"
 
 
 GREEK = {
@@ -95,7 +95,7 @@ GREEK = {
 
 
 def _latex_number(value, exactly=False):
-    digits, found, power = in_digits(value, exactly).partition("e")
+    digits, found, power = format_number(value, exactly).partition("e")
     return rf"{digits} \cdot 10^{{{int(power)}}}" if found else digits
 
 
@@ -116,7 +116,7 @@ def _below(symbol):
 
 
 def _mathml_number(value, exactly=False):
-    digits, found, power = in_digits(value, exactly).replace("-", "−").partition("e")
+    digits, found, power = format_number(value, exactly).replace("-", "−").partition("e")
     if found:
         power = int(power.replace("−", "-"))
         return (
@@ -137,7 +137,7 @@ def _mathml_symbol(symbol):
 
 
 TEXT = Style(
-    in_digits,
+    format_number,
     lambda symbol: symbol.text,
     " + ",
     " - ",

@@ -9,11 +9,11 @@ from types import MappingProxyType
 from typing import Any
 
 from ..engines.graph import Node
-from ..numbers.arithmetic import APART
+from ..numbers.arithmetic import RELATIVE_OFFSET
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
 """Functions by recorded operation; the second argument of a root only says what rounding is."""
-UNSEEN = 1e-120
+MAX_OFFSET = 1e-120
 """Constant that is added to keep a square or distance off zero."""
 ONE, ZERO = ("number", 1.0), ("number", 0.0)
 
@@ -48,19 +48,19 @@ def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
     if node in raised:
         return ("call", "max", *map(part_of, node.arguments))
     return _OPERATIONS[node.operation](
-        *(part_of(part) for part in node.arguments if not _is_nothing(part, node.operation))
+        *(part_of(part) for part in node.arguments if not _is_offset(part, node.operation))
     )
 
 
-def _is_nothing(part, operation):
+def _is_offset(part, operation):
     """Whether an argument only keeps a number off zero, as `elementary.apart` does, and changes no digit."""
     if isinstance(part, Node):
         return (
             operation == "+"
             and part.operation == "*"
-            and any(isinstance(one, float) and one == APART for one in part.arguments)
+            and any(isinstance(one, float) and one == RELATIVE_OFFSET for one in part.arguments)
         )
-    return operation == "+" and 0.0 < abs(part) < UNSEEN
+    return operation == "+" and 0.0 < abs(part) < MAX_OFFSET
 
 
 def _sum(left, right=ZERO):

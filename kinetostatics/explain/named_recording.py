@@ -23,16 +23,16 @@ from ..engines.graph import INPUTS, Node
 from ..engines.record import Recorder
 from ..machine.group import FRAME, Resolved
 from ..machine.kinematic_state import place as placed
+from ..machine.kinematic_state import sense_of
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
 from ..machine.loads import value_of
-from ..machine.sense import sense_of
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import FrictionSolver, size_of
-from ..mechanics.load_values import pushed, settled, title_of
+from ..mechanics.load_values import evaluate_load, slider_push, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
-from ..numbers.planar import number, plus, product
-from .symbols import Symbol, keys_of, of_path, symbol_of
+from ..numbers.planar import number_or_zero, plus, product
+from .symbols import Symbol, load_keys, path_symbol, quantity_symbol
 
 KERNELS = (
     "kinetostatics.machine",
@@ -233,7 +233,7 @@ GIVEN, WEIGHT = "Given", "Weight"
 ORDERS = ("", "first", "second")
 
 
-def told(state, paths, units):
+def record_with_names(state, paths, units):
     """The scene of a `Dynamics`, recorded with names, and what recorded it.
 
     Parameters
@@ -250,10 +250,10 @@ def told(state, paths, units):
     names.title = GIVEN
     for place, node in enumerate(recorder.parameters):
         path = paths.get(place)
-        symbol = of_path(path) if path else Symbol("c", "", str(place + 1))
+        symbol = path_symbol(path) if path else Symbol("c", "", str(place + 1))
         names.of[node] = Named(symbol, GIVEN, path or "a number of the scene", units.get(path, ""), "given")
     names.of[recorder.graph[recorder.angle[0].index]] = Named(Symbol("phi"), GIVEN, "crank angle", "rad", "given")
-    heads = [(title_of(item), key) for item, key in zip(state.loads, keys_of(state.loads), strict=True)]
+    heads = [(title_of(item), key) for item, key in zip(state.loads, load_keys(state.loads), strict=True)]
     rows = {
         row: (table, *spelled)
         for table in recorder.tables
@@ -264,17 +264,17 @@ def told(state, paths, units):
         owner = heads[table.of][1] if isinstance(table.of, int) else table.of
         words = "read at this crank angle"
         names.of[node] = Named(Symbol(name, "", owner, primes), GIVEN, words, unit, "given")
-    made = object.__new__(Told)
+    made = object.__new__(NamedDynamics)
     vars(made).update(vars(scene))
     vars(made).update(names=names, heads=heads, runs=bool(state.crank_speed != 0))
     return made, recorder
 
 
-def result(made, quantity, found, sized=False):
+def name_result(made, quantity, found, sized=False):
     """Recorded numbers of a quantity, named, of a vector that is `sized` its magnitude; what nothing makes is plain."""
     parts = found.read(made)
     with made.names.under("Result"):
-        symbol = Symbol("R", "", quantity) if found.kind == "reaction" else symbol_of(quantity)
+        symbol = Symbol("R", "", quantity) if found.kind == "reaction" else quantity_symbol(quantity)
         words = found.label
         if found.vector:
             parts = made.names.vector(tuple(parts), symbol, words, found.unit, turned="always")
@@ -284,7 +284,7 @@ def result(made, quantity, found, sized=False):
         return (made.names.number(parts, symbol, words, found.unit, turned="always"),)
 
 
-class Told(Dynamics):
+class NamedDynamics(Dynamics):
     """A recorded scene that names what it finds; made by `told`."""
 
     names: Any
@@ -299,7 +299,7 @@ class Told(Dynamics):
             placement = crank.place(self.crank_angle)
             self._placed(placement, crank)
         for group in self.mechanism.groups:
-            with names.under(_moving(group)):
+            with names.under(_motion_title(group)):
                 for slider, guide in group.guides.items():
                     symbol = Symbol("u", "", f"guide{group.label}")
                     names.vector(guide.direction, symbol, f"unit vector of the guide of the {slider}", "1")
@@ -394,7 +394,7 @@ class Told(Dynamics):
         for item, (title, key) in zip(self.loads, self.heads, strict=True):
             if hasattr(item, "wrenches"):
                 with self.names.under(title):
-                    for link, wrench in settled(item, self).wrenches(self):
+                    for link, wrench in evaluate_load(item, self).wrenches(self):
                         if link != FRAME:
                             words = f"{key.replace('_', ' ')} on the {link}"
                             found.append((link, self._wrench(wrench, ("L", "K"), f"{key}_{link}", words)))
@@ -408,7 +408,7 @@ class Told(Dynamics):
             if hasattr(item, "push"):
                 with self.names.under(title):
                     words = f"{key.replace('_', ' ')} along the guide of the {item.on}"
-                    push = self.names.number(pushed(item, self), Symbol("L", "", key), words, "N")
+                    push = self.names.number(slider_push(item, self), Symbol("L", "", key), words, "N")
                     pushes[item.on] = plus(pushes.get(item.on), push)
         return pushes
 
@@ -451,10 +451,10 @@ class Told(Dynamics):
     def friction_solver(self):
         """What resolves each part, with friction or without."""
         way = sense_of(self.crank_speed, None) if self.runs and self.sense is None else self.crank_sense
-        return _Telling(self.mechanism, self.friction, way, self.names)
+        return _NamedFrictionSolver(self.mechanism, self.friction, way, self.names)
 
 
-class _Telling(FrictionSolver):
+class _NamedFrictionSolver(FrictionSolver):
     """Resolves parts, and names what acts on their links and what is found."""
 
     def __init__(self, mechanism, friction, direction, names):
@@ -463,7 +463,7 @@ class _Telling(FrictionSolver):
 
     def __call__(self, part, placement, loads, along):
         names = self.names
-        with names.under(_carrying(part)):
+        with names.under(_forces_title(part)):
             loads, along = dict(loads), dict(along)
             for name in part.links:
                 how = "but for what is told apart" if name in along else "with its inertia and what hangs on it"
@@ -475,7 +475,7 @@ class _Telling(FrictionSolver):
             resolved = self._named(super().__call__(part, placement, loads, along), part)
             names.reading = True
             for law, amount in self.laws:
-                size = number(product(law.factor, size_of(law.kind, law.reaction(resolved))))
+                size = number_or_zero(product(law.factor, size_of(law.kind, law.reaction(resolved))))
                 names.satisfies(node_of(amount), node_of(size))
         return resolved
 
@@ -505,7 +505,7 @@ class _Telling(FrictionSolver):
                 symbol, words = Symbol("R", "", name), f"reaction {words}"
                 reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
             else:
-                scalars[name] = names.number(scalars.get(name), symbol_of(name), words, unit, True, "within")
+                scalars[name] = names.number(scalars.get(name), quantity_symbol(name), words, unit, True, "within")
         return Resolved(reactions, scalars, resolved.demands)
 
 
@@ -520,17 +520,17 @@ def _derivative(order, words):
     return f"{ORDERS[order]} derivative by phi of the {words}" if order else words
 
 
-def _listed(names):
+def _joined(names):
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _moving(group):
-    joints = f"joint {_listed(group.joints)}" if group.joints else ""
+def _motion_title(group):
+    joints = f"joint {_joined(group.joints)}" if group.joints else ""
     return (
-        f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
+        f"Motion of {_joined(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
     )
 
 
-def _carrying(part):
-    return f"Forces on {_listed(list(part.links))}" if part.links else "Forces"
+def _forces_title(part):
+    return f"Forces on {_joined(list(part.links))}" if part.links else "Forces"

@@ -5,7 +5,7 @@ from itertools import groupby
 from math import atan2, degrees
 from textwrap import wrap
 
-from .formats import in_digits
+from .formats import format_number
 
 WIDTH = 80
 NOTE = (
@@ -50,13 +50,13 @@ def _alike(steps):
 def _head(words, steps):
     """What some steps have in common, and of a unit vector where it points to."""
     if words.startswith("unit vector") and len(steps) == 2:
-        return f"{words}, at {in_digits(degrees(atan2(steps[1].value, steps[0].value)))} deg"
+        return f"{words}, at {format_number(degrees(atan2(steps[1].value, steps[0].value)))} deg"
     return words
 
 
 def _value(step):
     unit = "" if step.unit == "1" else f" {step.unit}"
-    angle = f" = {in_digits(degrees(step.value))} deg" if step.unit == "rad" else ""
+    angle = f" = {format_number(degrees(step.value))} deg" if step.unit == "rad" else ""
     return f"{step.shown}{unit}{angle}"
 
 
@@ -175,7 +175,7 @@ def html(made):
     return "\n".join([*found, f"<p><strong>{escape(made.conclusion)}</strong></p></div>"])
 
 
-def page(made):
+def whole_page(made):
     """A whole page of HTML."""
     head = f'<meta charset="utf-8"><title>{escape(made.title)}</title>'
     return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{html(made)}\n</body></html>'
@@ -187,7 +187,7 @@ def _math(inner):
 
 def _mathml_value(step):
     unit = "" if step.unit == "1" else f'<mspace width="0.25em"/><mtext>{_unit_text(step.unit)}</mtext>'
-    angle = f"<mo>=</mo><mn>{in_digits(degrees(step.value))}</mn><mtext>°</mtext>" if step.unit == "rad" else ""
+    angle = f"<mo>=</mo><mn>{format_number(degrees(step.value))}</mn><mtext>°</mtext>" if step.unit == "rad" else ""
     return f"{step.mathml[3]}{unit}{angle}"
 
 

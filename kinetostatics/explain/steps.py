@@ -13,13 +13,13 @@ import numpy as np
 from ..engines.graph import INPUTS, Node, is_negative, needed
 from ..engines.program import Program
 from ..engines.record import Recording
-from ..numbers.units import NONE, dimension, spelled
+from ..numbers.units import DIMENSIONLESS, dimension, unit_name
 from .formulas import formula, names_in
 from .named_recording import Named, Symbol
 
-LONGEST = 12
+MAX_FORMULA_SIZE = 12
 """Named numbers and constants in one formula; with more it is parted."""
-NOISE = 2.0**-51
+NOISE_RATIO = 2.0**-51
 """Size of a value, relative to what it is made of (`_size`), up to which it is rounding."""
 
 
@@ -132,7 +132,7 @@ def _ends(names, outputs, raised):
     found = [node for node in found if node not in names.laws]
     for place, node in enumerate(found):
         parts = _parts(names, node)
-        while sum(1 if part in ends else sizes[part] for part in parts) > LONGEST:
+        while sum(1 if part in ends else sizes[part] for part in parts) > MAX_FORMULA_SIZE:
             whole = _largest(parts, ends, sizes, names)
             if whole not in names.of:
                 titles = (names.of[one].title for one in found[place:] if names.is_told(one))
@@ -157,7 +157,7 @@ def _largest(parts, ends, sizes, names):
     inner = whole
     while inner not in names.of:
         below = [part for part in _parts(names, inner) if part not in ends]
-        if not below or max(map(sizes.__getitem__, below)) < LONGEST // 3:
+        if not below or max(map(sizes.__getitem__, below)) < MAX_FORMULA_SIZE // 3:
             return whole
         inner = max(below, key=sizes.__getitem__)
     return inner
@@ -182,10 +182,10 @@ def _reached(names, outputs):
         if node not in found:
             found.add(node)
             waiting += _parts(names, node)
-    return _after_one_another(names, found)
+    return _sorted_by_use(names, found)
 
 
-def _after_one_another(names, nodes):
+def _sorted_by_use(names, nodes):
     """Nodes, each after its parts."""
     found: dict[Node, None] = {}
     for last in sorted(nodes, key=lambda node: (node in names.laws, node.index)):
@@ -216,7 +216,7 @@ def _values(names, outputs, recorder, state):
 
 def _noise(values, sizes):
     """Nodes whose values are zero but for rounding; none where a value is divided by one, so that rounding decides."""
-    found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE * sizes[node]}
+    found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE_RATIO * sizes[node]}
     divided = any(node.operation == "/" and values[node] and node.arguments[1] in found for node in values)
     return set() if divided else found
 
@@ -259,7 +259,7 @@ class _Units:
         named = self.names.of.get(node)
         if named is not None and named.unit:
             return named.unit.replace("**", "").replace("*", " ")
-        return spelled(self.powers(node) or NONE)
+        return unit_name(self.powers(node) or DIMENSIONLESS)
 
     def powers(self, node):
         """Powers of m, kg and s; None of a constant."""
@@ -285,18 +285,18 @@ class _Units:
         if self._is_told(node):
             return dimension(self.names.of[node].unit)
         if node.operation in INPUTS:
-            return NONE
+            return DIMENSIONLESS
         parts = [self.known[part] if isinstance(part, Node) else None for part in _operands(node)]
         kind = node.operation
         if kind in ("sin", "cos", "atan", "sign"):
-            return NONE
+            return DIMENSIONLESS
         if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
             return None
         if kind in ("*", "/"):
             sign = 1 if kind == "*" else -1
             if parts[1] is None:
                 return parts[0]
-            return tuple(a + sign * b for a, b in zip(parts[0] or NONE, parts[1], strict=True))
+            return tuple(a + sign * b for a, b in zip(parts[0] or DIMENSIONLESS, parts[1], strict=True))
         if kind in ("sqrt", "root"):
             return None if parts[0] is None else tuple(part / 2 for part in parts[0])
         return next((part for part in parts if part is not None), None)

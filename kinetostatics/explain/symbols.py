@@ -29,7 +29,7 @@ class Symbol(NamedTuple):
         return re.sub(r"[^\w.]", "_", stem) + "'" * self.primes
 
 
-def keys_of(loads):
+def load_keys(loads):
     """What each load is called: as in paths, with its number where there are several of a kind."""
     found, counts = [], dict[str, int]()
     for item in loads:
@@ -39,7 +39,7 @@ def keys_of(loads):
     return found
 
 
-LAST = {
+LETTERS = {
     "mass": "m",
     "inertia": "J",
     "along": "a",
@@ -55,7 +55,7 @@ LAST = {
     "free_length": "l0",
     "free_angle": "theta0",
 }
-WHOLE = {
+PATH_LETTERS = {
     "crank_speed": "omega",
     "crank_acceleration": "alpha",
     "gravity.acceleration": "g",
@@ -63,10 +63,10 @@ WHOLE = {
 }
 
 
-def of_path(path):
+def path_symbol(path):
     """Symbol of a number of the scene."""
-    if path in WHOLE:
-        return Symbol(WHOLE[path])
+    if path in PATH_LETTERS:
+        return Symbol(PATH_LETTERS[path])
     *owner, last = [part for part in path.split(".") if part != "centre"]
     if last in ("x", "y"):
         return Symbol(last, "", "_".join(owner))
@@ -76,10 +76,10 @@ def of_path(path):
         stem, found, label = last.partition(name)
         if found:
             return Symbol(letter, "", "_".join((*owner, stem + label)).strip("_"))
-    return Symbol(LAST.get(last, last), "", "_".join(owner))
+    return Symbol(LETTERS.get(last, last), "", "_".join(owner))
 
 
-ENDINGS = {
+ENDING_LETTERS = {
     "_force": "F",
     "_moment": "M",
     "_position": "s",
@@ -93,11 +93,11 @@ ENDINGS = {
 """Letters of quantities whose names end so."""
 
 
-def symbol_of(quantity):
+def quantity_symbol(quantity):
     """Symbol of a quantity by name."""
     if quantity.startswith("balancing_torque"):
         return Symbol("T")
-    for ending, letter in ENDINGS.items():
+    for ending, letter in ENDING_LETTERS.items():
         stem, found, label = quantity.partition(ending)
         if found:
             return Symbol(letter, "", stem + label)

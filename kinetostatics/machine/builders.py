@@ -8,7 +8,7 @@ from ..numbers import checks
 from .cams.cam_roller import CamRoller
 from .cams.cams import CosineLaw, LawCam
 from .crank import Crank
-from .followers.roller import RollerFollower
+from .followers.translating import RollerFollower
 from .groups.lever import LeverGroup
 from .groups.rocker import RockerGroup
 from .groups.slider import SliderGroup
@@ -17,7 +17,7 @@ from .guide import Guide
 from .links import Link, present
 from .mechanism import Mechanism
 
-LEVEL = Guide()
+LEVEL_GUIDE = Guide()
 """The guide along +x through O."""
 
 
@@ -280,7 +280,7 @@ def _warn_off_law(cam, group):
             (f"guide_angle {angle} is not the cam's {cam.guide_angle}", np.cos(angle - cam.guide_angle), 1.0),
             (f"coupler_length {length} m is not the cam's {cam.coupler_length} m", length, cam.coupler_length),
         ]
-        if checks.known(value) and checks.known(wanted) and np.any(np.abs(value - wanted) > 1e-9)
+        if checks.has_known_values(value) and checks.has_known_values(wanted) and np.any(np.abs(value - wanted) > 1e-9)
     ]
     if wrong:
         kind = "cosine law" if isinstance(cam, CosineLaw) else "law"
@@ -289,7 +289,9 @@ def _warn_off_law(cam, group):
 
 def _guide(guide, angle, offset):
     if guide is None:
-        return LEVEL if type(angle) is type(offset) is float and angle == offset == 0.0 else Guide.at(angle, offset)
+        return (
+            LEVEL_GUIDE if type(angle) is type(offset) is float and angle == offset == 0.0 else Guide.at(angle, offset)
+        )
     free = present(angle) is None and present(offset) is None
     checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
     return guide

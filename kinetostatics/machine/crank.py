@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
-from ..numbers.planar import added, minus, number, subtracted, vector
+from ..numbers.planar import add_vectors, minus, number_or_zero, subtract_vectors, vector_or_zero
 from .group import FRAME, Bar, Group, Output, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, arm, first_at, present, second_at
@@ -33,7 +33,7 @@ def resolve(load):
 
     `load` is what acts on the crank, its own and what hangs on it, a wrench about O.
     """
-    return vector(subtracted(None, load.force)), number(minus(None, load.moment))
+    return vector_or_zero(subtract_vectors(None, load.force)), number_or_zero(minus(None, load.moment))
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Crank(checks.Checked):
     RULES = checks.Rules(
         "crank",
         length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
-        link=checks.Made(Link, "a Link"),
+        link=checks.InstanceOf(Link, "a Link"),
     )
 
     @property
@@ -149,7 +149,7 @@ class Crank(checks.Checked):
 def place(link: LinkMotion, along, across):
     """Joint of a link at so far along its direction and across it, to the left (kernel); None is zero."""
     lever = arm(link.direction, along, across)
-    return Joint(added(link.joint.position, lever), first_at(link, lever), second_at(link, lever))
+    return Joint(add_vectors(link.joint.position, lever), first_at(link, lever), second_at(link, lever))
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,11 +11,13 @@ from ..numbers.paths import Batched
 from .links import Rolling, Sliding, Turning, present
 
 COEFFICIENT = checks.Number(
-    "1", low=0.0, usual=checks.Usual(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?")
+    "1",
+    low=0.0,
+    usual=checks.PlausibleRange(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?"),
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
-PIN = replace(SIZE, usual=checks.Usual(1.0, "is it in mm?", 1e-3, in_links=True))
-PASSES = (3, 6, 12)
+PIN_RADIUS = replace(SIZE, usual=checks.PlausibleRange(1.0, "is it in mm?", 1e-3, in_links=True))
+PASSES_BY_SOLVER = (3, 6, 12)
 """Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
 
 
@@ -47,7 +49,7 @@ class PinFriction(checks.Checked, Batched):
     radius: Any
 
     PAIR: ClassVar = Turning
-    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN)
+    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN_RADIUS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +151,7 @@ class RollerFriction(checks.Checked, Batched):
     def _rolls(self):
         """Say where the roller would slide."""
         values = self.mu, self.pin_radius, self.roller_radius
-        if all(map(checks.known, values)) and np.any(
+        if all(map(checks.has_known_values, values)) and np.any(
             stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius
         ):
             yield checks.Problem(
@@ -159,13 +161,13 @@ class RollerFriction(checks.Checked, Batched):
             )
 
     PAIR: ClassVar = Rolling
-    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN, roller_radius=SIZE)
+    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN_RADIUS, roller_radius=SIZE)
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
 
 
-def kind_for(pair):
+def friction_kind(pair):
     """Kind of friction that a pair of a mechanism may have."""
     if isinstance(pair, Sliding):
         return GuideFriction if pair.against == "frame" else SlotFriction
@@ -173,7 +175,7 @@ def kind_for(pair):
 
 
 @dataclass(frozen=True, eq=False)
-class Rub(Batched):
+class JointFriction(Batched):
     """Friction at one joint.
 
     `sense` is the sign of the motion there where it is known beforehand; of a roller that of the crank. It stays so
@@ -186,7 +188,7 @@ class Rub(Batched):
 
     PATHS: ClassVar = {"friction": ""}
     RULES = checks.Rules(
-        "friction", friction=checks.Own(("mu",), "friction"), sense=checks.Optional(checks.Number("1"))
+        "friction", friction=checks.HasMembers(("mu",), "friction"), sense=checks.Optional(checks.Number("1"))
     )
 
     def __post_init__(self):
@@ -204,12 +206,12 @@ class Frictions(Mapping, Batched):
     `passes` is how many times directions of reactions are found anew.
     """
 
-    rubs: tuple[Rub, ...] = ()
-    passes: int = PASSES[0]
+    rubs: tuple[JointFriction, ...] = ()
+    passes: int = PASSES_BY_SOLVER[0]
 
     __eq__, __hash__ = object.__eq__, object.__hash__
     PATHS: ClassVar = {"rubs": ""}
-    RULES = checks.Rules("friction", rubs=checks.Own((), "friction by joint"))
+    RULES = checks.Rules("friction", rubs=checks.HasMembers((), "friction by joint"))
 
     def __post_init__(self):
         """Checked where it is given, with the mechanism."""
@@ -237,21 +239,21 @@ class Frictions(Mapping, Batched):
         return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
 
 
-NONE = Frictions()
+NO_FRICTION = Frictions()
 
 
 def _missing(name):
     raise KeyError(name)
 
 
-def taken(given):
+def frictions_by_joint(given):
     """Friction as it is kept, from a dict by joint."""
     if isinstance(given, Frictions):
         return given
-    return Frictions(tuple(Rub(name, friction) for name, friction in given.items())) if given else NONE
+    return Frictions(tuple(JointFriction(name, friction) for name, friction in given.items())) if given else NO_FRICTION
 
 
-def problems(mechanism, given):
+def friction_problems(mechanism, given):
     """What is wrong with friction given for a mechanism, as sentences."""
     if not isinstance(given, Mapping):
         text = 'must be a dict of joint to friction, as {"O": ks.PinFriction(mu, radius)}'
@@ -261,8 +263,8 @@ def problems(mechanism, given):
     for name, friction in given.items():
         if not isinstance(name, str) or name not in pairs:
             yield checks.choice("friction: joint", name, tuple(pairs))
-        elif not isinstance(friction, kind_for(pairs[name])):
-            wanted = kind_for(pairs[name]).__name__
+        elif not isinstance(friction, friction_kind(pairs[name])):
+            wanted = friction_kind(pairs[name]).__name__
             what = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}[
                 type(pairs[name])
             ]
@@ -275,7 +277,7 @@ def problems(mechanism, given):
 def _too_large(mechanism, name, friction):
     """Say where a roller is larger than its path is curved."""
     tightest = next((getattr(group, "tightest", None) for group in mechanism.groups if name in group.pairs), None)
-    if tightest is None or not (checks.known(tightest) and checks.known(friction.roller_radius)):
+    if tightest is None or not (checks.has_known_values(tightest) and checks.has_known_values(friction.roller_radius)):
         return
     if np.any(np.asarray(friction.roller_radius) >= tightest):
         yield (
@@ -289,7 +291,7 @@ def _another(mechanism, name, friction):
     """Say where a roller has another radius in its friction than on its cam."""
     roller = next((getattr(group, "roller", None) for group in mechanism.groups if name in group.pairs), None)
     given = friction.roller_radius
-    if roller is None or not (checks.known(roller.radius) and checks.known(given)):
+    if roller is None or not (checks.has_known_values(roller.radius) and checks.has_known_values(given)):
         return
     if np.any(other := np.asarray(given) != roller.radius):
         yield checks.Problem(

@@ -81,7 +81,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..numbers.parameter_tree import say_together
+from ..numbers.parameter_tree import come_from_one_class
 from .kinematic_state import Throw
 from .links import Wrench
 
@@ -166,7 +166,7 @@ class Group:
     @property
     def follows(self):
         """Whether `follow` belongs to the class that places it, and so knows its joints."""
-        return say_together(type(self), "follow", "place")
+        return come_from_one_class(type(self), "follow", "place")
 
     @property
     def names(self):

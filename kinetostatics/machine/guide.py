@@ -9,7 +9,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis
-from ..numbers.planar import added, number, turned
+from ..numbers.planar import add_vectors, number_or_zero, rotate
 from .group import Output
 from .links import Joint, LinkMotion, present
 
@@ -57,7 +57,9 @@ class Guide(checks.Checked):
             return
         if self.angle is None and self.exact is None:
             yield "it needs an angle, or an exact direction; use Guide.at"
-        length = 1.0 if self.exact is None or not all(map(checks.known, self.exact)) else np.hypot(*self.exact)
+        length = (
+            1.0 if self.exact is None or not all(map(checks.has_known_values, self.exact)) else np.hypot(*self.exact)
+        )
         if np.any(np.abs(length - 1.0) > 1e-9):
             yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
 
@@ -134,7 +136,7 @@ class Guide(checks.Checked):
         >>> guide.direction, guide.guide_offset
         ((1.0, 0.0), -0.02)
         """
-        points = checks.examined("guide", {"W1": POINT, "W2": POINT}, {"W1": W1, "W2": W2})
+        points = checks.check_values("guide", {"W1": POINT, "W2": POINT}, {"W1": W1, "W2": W2})
         batch = [f"{name} must be one point, not a batch" for name, point in points.items() if any(map(np.ndim, point))]
         checks.require("guide", *batch)
         from decimal import Decimal, localcontext
@@ -187,15 +189,19 @@ class Guide(checks.Checked):
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 
-def slid(position, reach, travel, line):
+def slider_motion(position, reach, travel, line):
     """Slider at its coordinate along a guide, in reach of a joint at `position` (kernel).
 
     Its pin is found by the shorter sum: along a level guide from O, else from that joint.
     """
     level = line.direction is None
-    pin = (travel.position, number(line.offset)) if level else added(position, turned(reach, line.direction))
-    first, second = (turned((part, 0.0), line.direction) for part in (travel.first, travel.second))
-    return LinkMotion(Joint(pin, first, second), turned((1.0, 0.0), line.direction), None, None)
+    pin = (
+        (travel.position, number_or_zero(line.offset))
+        if level
+        else add_vectors(position, rotate(reach, line.direction))
+    )
+    first, second = (rotate((part, 0.0), line.direction) for part in (travel.first, travel.second))
+    return LinkMotion(Joint(pin, first, second), rotate((1.0, 0.0), line.direction), None, None)
 
 
 def guide_outputs(slider, pin, label):

@@ -1,4 +1,10 @@
-"""Where a mechanism is at its crank angles, and what is known of how its joints move besides."""
+"""Where a mechanism is at its crank angles, and what is known of how its joints move besides.
+
+The sense of rotation: which way a crank turns, or at rest is about to turn, +1 counter-clockwise and -1 clockwise.
+
+Friction, tables with values for the stroke back and functions of the motion depend on it. A scene at rest gives it as
+`sense`, or by the sign of its crank acceleration.
+"""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -7,8 +13,9 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
-from ..numbers.planar import length, length_and_rest
-from .links import Joint, LinkMotion
+from ..numbers.arithmetic import sign, where_zero
+from ..numbers.planar import length, length_with_error, number_or_zero
+from .links import Joint, LinkMotion, present
 
 
 class Throw(NamedTuple):
@@ -28,7 +35,7 @@ class Throw(NamedTuple):
     @property
     def radius_and_rest(self):
         """Distance from O, and what rounding took off it."""
-        return (self.at[0], None) if self.ahead else length_and_rest(self.at)
+        return (self.at[0], None) if self.ahead else length_with_error(self.at)
 
 
 class Swing(NamedTuple):
@@ -67,7 +74,7 @@ class Course(NamedTuple):
     departure: Any = None
 
 
-UNKNOWN = Course()
+UNKNOWN_COURSE = Course()
 
 
 @dataclass
@@ -98,7 +105,7 @@ class Placement:
 
     def course(self, joint) -> Course:
         """What is known of how a joint moves."""
-        return self.courses.get(joint, UNKNOWN)
+        return self.courses.get(joint, UNKNOWN_COURSE)
 
 
 def place(group, placement):
@@ -141,7 +148,7 @@ def margin(group, placement, shape):
     found = group.closure(placement)
     if group.trusted:
         return found
-    words = "one value, not several" if isinstance(found, list | tuple) else checks.unfit(found)
+    words = "one value, not several" if isinstance(found, list | tuple) else checks.not_a_number(found)
     if getattr(found, "dtype", np.dtype(float)) == np.dtype(bool):
         words = "truth values; give numbers"
     if words is None and not _fits(np.shape(found), shape):
@@ -174,3 +181,34 @@ def require_positions(group, placement, margins):
         if wrong.any()
         else None,
     )
+
+
+SPEED_WEIGHT = 2.0**600
+"""Factor by which a crank speed counts before the crank acceleration."""
+SENSE_REMEDY = (
+    "but crank_speed and crank_acceleration are both 0: give sense=+1 or sense=-1, the way the crank is about to turn, "
+    "or a crank_acceleration"
+)
+"""How to mend a scene at rest."""
+
+
+def sense_of(speed, acceleration):
+    """Which way a crank turns: the sign of its speed, at rest of its acceleration; +1 where both are 0."""
+    speed, acceleration = present(speed), present(acceleration)
+    if speed is None or acceleration is None:
+        return sign(number_or_zero(acceleration if speed is None else speed) + 0.0)
+    return sign(speed * SPEED_WEIGHT + acceleration + 0.0)
+
+
+def has_no_sense(scene):
+    """Where a crank stands and is about to turn neither way, as far as is known: an array of bool."""
+    if scene.sense is not None:
+        return np.False_
+    return np.logical_and(where_zero(scene.crank_speed), where_zero(scene.crank_acceleration))
+
+
+def require_sense(reason, motion):
+    """Raise `ParameterError` where a crank stands and is about to turn neither way; the reason says what needs it."""
+    still = has_no_sense(motion)
+    if still.any():
+        raise ParameterError(f"{reason}, {SENSE_REMEDY}", still.any(axis=-1) if still.ndim > 1 else None)

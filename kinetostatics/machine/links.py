@@ -20,7 +20,19 @@ from typing import Any, NamedTuple
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.planar import added, cross, left, minus, moment, plus, product, stretched, subtracted, vector, work
+from ..numbers.planar import (
+    add_vectors,
+    cross,
+    left,
+    minus,
+    moment,
+    plus,
+    product,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+    work,
+)
 
 TERMS = {
     "tip.reach": ("h", "from the pivot to the pin"),
@@ -129,38 +141,38 @@ def present(value):
 def arm(direction, along, across):
     """Vector from a link's reference joint to the point (along, across) of it; None for the joint itself."""
     if across is None:
-        return stretched(along, direction)
-    return added(stretched(along, direction), stretched(across, left(direction)))
+        return scale_vector(along, direction)
+    return add_vectors(scale_vector(along, direction), scale_vector(across, left(direction)))
 
 
-def between(start, end, length):
+def link_between(start, end, length):
     """Motion of a link from joint to joint: its direction and rate by the difference of positions and velocities."""
     direction, first, second = (
-        tuple(part / length for part in vector(subtracted(b, a))) for a, b in zip(start, end, strict=True)
+        tuple(part / length for part in vector_or_zero(subtract_vectors(b, a))) for a, b in zip(start, end, strict=True)
     )
     return LinkMotion(start, direction, cross(direction, first), cross(direction, second))
 
 
 def tip(pivot, length, direction, ratio, slope):
     """Joint at the end of a link that turns about a fixed pivot."""
-    reach = stretched(length, direction)
+    reach = scale_vector(length, direction)
     aside = left(reach)
     return Joint(
-        added(pivot, reach),
-        stretched(ratio, aside),
-        subtracted(stretched(slope, aside), stretched(product(ratio, ratio), reach)),
+        add_vectors(pivot, reach),
+        scale_vector(ratio, aside),
+        subtract_vectors(scale_vector(slope, aside), scale_vector(product(ratio, ratio), reach)),
     )
 
 
 def first_at(link, arm):
     """First kinematic coefficient of the point of a link at `arm` from its reference joint."""
-    return added(link.joint.first, _turned(arm, link.ratio))
+    return add_vectors(link.joint.first, _turned(arm, link.ratio))
 
 
 def second_at(link, arm):
     """Second kinematic coefficient of the point of a link at `arm` from its reference joint."""
-    turning = subtracted(_turned(arm, link.ratio_slope), stretched(product(link.ratio, link.ratio), arm))
-    return added(link.joint.second, turning)
+    turning = subtract_vectors(_turned(arm, link.ratio_slope), scale_vector(product(link.ratio, link.ratio), arm))
+    return add_vectors(link.joint.second, turning)
 
 
 def _turned(arm, rate):
@@ -169,7 +181,7 @@ def _turned(arm, rate):
     return (-rate * arm[1], rate * arm[0])
 
 
-class Spot(NamedTuple):
+class PointMotion(NamedTuple):
     """A point in motion: a joint, or the point of a link at `arm` from its reference joint."""
 
     joint: Joint
@@ -178,7 +190,7 @@ class Spot(NamedTuple):
 
     @property
     def position(self):
-        return added(self.joint.position, self.arm)
+        return add_vectors(self.joint.position, self.arm)
 
     @property
     def first(self):
@@ -189,9 +201,9 @@ class Spot(NamedTuple):
         return self.joint.second if self.link is None else second_at(self.link, self.arm)
 
 
-def accelerated(first, second, speed_squared, crank_acceleration):
+def acceleration_of(first, second, speed_squared, crank_acceleration):
     """Acceleration of a point from its kinematic coefficients; None when it has none."""
-    return added(stretched(speed_squared, second), stretched(crank_acceleration, first))
+    return add_vectors(scale_vector(speed_squared, second), scale_vector(crank_acceleration, first))
 
 
 def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
@@ -210,13 +222,13 @@ def load(link, body, speed_squared, crank_acceleration, gravity):
     if mass is not None:
         scale, turned = mass * speed_squared, _turned(to_centre, link.ratio_slope)
         first = first_at(link, to_centre) if crank_acceleration is not None else None
-        moved = accelerated(first, added(link.joint.second, turned), scale, product(mass, crank_acceleration))
-        across = subtracted(stretched(mass, gravity), moved)
-        pull = stretched(product(scale, product(link.ratio, link.ratio)), to_centre)
+        moved = acceleration_of(first, add_vectors(link.joint.second, turned), scale, product(mass, crank_acceleration))
+        across = subtract_vectors(scale_vector(mass, gravity), moved)
+        pull = scale_vector(product(scale, product(link.ratio, link.ratio)), to_centre)
     turning = angular_acceleration(
         link.ratio, link.ratio_slope, product(inertia, speed_squared), product(inertia, crank_acceleration)
     )
-    return Wrench(added(across, pull), minus(moment(to_centre, across), turning))
+    return Wrench(add_vectors(across, pull), minus(moment(to_centre, across), turning))
 
 
 def virtual_work(link, wrench):
@@ -281,7 +293,7 @@ class Slot(NamedTuple):
     angle: Any = 0.0
 
 
-class Led(NamedTuple):
+class CamDriven(NamedTuple):
     """A link whose one freedom the curve in `cam` gives: where it slides the coordinate of its joint, else its angle.
 
     The angle counts from the direction to O, clockwise for an assembly of +1. The curve is fixed to the link `body` and

@@ -14,29 +14,31 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from ..numbers.paths import Batched
-from ..numbers.planar import minus, moment, plus, subtracted
+from ..numbers.planar import minus, moment, plus, subtract_vectors
 from . import plausibility
 from .crank import Crank
-from .friction import kind_for
+from .friction import friction_kind
 from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
 from .kinematic_state import margin, place
 from .links import Sliding, Turning, Wrench, arm, present
 
 NAME = checks.Name()
-GROUP = f"{Group.__module__}.{Group.__name__}"
+GROUP_CLASS = f"{Group.__module__}.{Group.__name__}"
 
 
-class Chain:
+class GroupsRule:
     """Rule of a field that holds groups."""
 
-    rule = checks.Own(MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own, derived from Group")
+    rule = checks.HasMembers(
+        MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own, derived from Group"
+    )
 
     def quick(self, value):
         if type(value) is tuple and all(isinstance(group, Group) and group.trusted for group in value):
             return value
-        return checks.UNSURE
+        return checks.UNDECIDED
 
     def taken(self, value, field=""):
         if not isinstance(value, tuple | list):
@@ -44,7 +46,7 @@ class Chain:
         found = [self.rule.taken(group, "a group") for group in value]
         found += [NAME.taken(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
         strange = [group for group in value if not isinstance(group, Group)]
-        found += [(group, f"{type(group).__name__} is not derived from {GROUP}") for group in strange]
+        found += [(group, f"{type(group).__name__} is not derived from {GROUP_CLASS}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)
         return tuple(group for group, _ in found[: len(value)]), problem
 
@@ -55,7 +57,7 @@ def _on(group):
     return found if type(found) is tuple else (found,)
 
 
-REMEDY = "give the second group another pin, pivot_name or label"
+NAME_REMEDY = "give the second group another pin, pivot_name or label"
 
 
 def _spelled(part, table):
@@ -65,7 +67,7 @@ def _spelled(part, table):
     texts = {field.name: getattr(part, field.name) for field in fields(part)}
     marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
     found = []
-    for spelled in getattr(with_fields(part, **marks), table):
+    for spelled in getattr(replace_unchecked(part, **marks), table):
         for name, mark in marks.items():
             spelled = spelled.replace(mark, texts[name])
         found.append(spelled)
@@ -112,10 +114,10 @@ def name_problems(parts):
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in own for ending in endings])
         add(forces, "quantity", kind, [*part.motions, *part.contacts])
-    return [*problems, *repeated, *([REMEDY] if repeated else [])]
+    return [*problems, *repeated, *([NAME_REMEDY] if repeated else [])]
 
 
-_NAMED_WELL: set = set()
+_VALID_NAMES: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
 
 
@@ -150,7 +152,7 @@ class Mechanism(Batched):
     groups: tuple[Any, ...]
 
     PATHS: ClassVar = {"crank": "", "groups": ""}
-    RULES = checks.Rules("mechanism", name=NAME, crank=checks.Made(Crank, "a Crank"), groups=Chain())
+    RULES = checks.Rules("mechanism", name=NAME, crank=checks.InstanceOf(Crank, "a Crank"), groups=GroupsRule())
 
     def __post_init__(self):
         self.RULES.admit(self)
@@ -158,10 +160,10 @@ class Mechanism(Batched):
         groups = [group.on_crank(throws) for group in self.groups]
         vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
-        if names is None or names not in _NAMED_WELL:
+        if names is None or names not in _VALID_NAMES:
             checks.require(self.name, *name_problems(self.parts))
             if names is not None:
-                _NAMED_WELL.add(names)
+                _VALID_NAMES.add(names)
 
     @property
     def parts(self):
@@ -251,7 +253,7 @@ class Mechanism(Batched):
     @property
     def friction_kinds(self):
         """Kind of friction that each joint may have, by its name in `friction`: `PinFriction`, `GuideFriction` ..."""
-        return {name: kind_for(pair) for name, pair in self.pairs.items()}
+        return {name: friction_kind(pair) for name, pair in self.pairs.items()}
 
     @property
     def _wholes(self):
@@ -298,7 +300,7 @@ class Mechanism(Batched):
     @cached_property
     def hints(self):
         """What looks like a slip of units, as sentences."""
-        return plausibility.of_mechanism(self)
+        return plausibility.mechanism_hints(self)
 
     @cached_property
     def extent(self):
@@ -360,7 +362,7 @@ class Mechanism(Batched):
                 link, wrench = (name, demand) if name in self.links else self._at_joint(name, demand, placement)
                 if link != FRAME:
                     own = loads[link]
-                    loads[link] = Wrench(subtracted(own.force, wrench.force), minus(own.moment, wrench.moment))
+                    loads[link] = Wrench(subtract_vectors(own.force, wrench.force), minus(own.moment, wrench.moment))
         return found
 
     def _at_joint(self, joint, demand, placement):

@@ -8,45 +8,45 @@ from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 from .group import FRAME
 from .links import present
-from .loads.points import carrier
+from .loads.points import point_on_link
 
-THIN = 1000.0
+SMALL_INERTIA_FACTOR = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
-THICK = 3.0
+LARGE_INERTIA_FACTOR = 3.0
 """How many times mass times length squared it may be: a uniform rod's is 1/12, in kg cm2 833, in kg mm2 83 333."""
 OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
 """Units that make a uniform rod's inertia more like itself from that many times mass times length squared on."""
-LONGEST = 100.0
+MAX_LENGTH = 100.0
 """Length, m, that no link has."""
-SLENDER = 2000.0
+MAX_LENGTH_RATIO = 2000.0
 """How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
-FASTEST = 60.0
+MAX_PIN_SPEED = 60.0
 """Speed of a crank's pin, m/s, that no machine has: stresses by inertia go by its square, racing engines end at 50."""
 TWO_TURNS = 4.0 * np.pi
 """Size, rad, from which on crank angles may look like degrees."""
-TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
+TURN_CONVERTED_TWICE = 2.0 * np.pi * np.pi / 180.0
 """A turn in radians that was taken for degrees."""
-SMALL = 0.9 * TURN_TWICE, 1.01 * TURN_TWICE
+CONVERTED_TURN_LIMITS = 0.9 * TURN_CONVERTED_TWICE, 1.01 * TURN_CONVERTED_TWICE
 """Sizes, rad, between which crank angles reach that are such a turn, with or without its end."""
 
 
-def of_mechanism(mechanism):
+def mechanism_hints(mechanism):
     """Sentences on sliders that stand still, and on lengths and inertias of links that look like another unit's."""
-    bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
+    bars = [bar for bar in mechanism.bars if checks.has_known_values(bar.length)]
     inertias = (text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link), mechanism.crank)))
     return (*_still(mechanism), *_lengths(bars), *inertias)
 
 
-def of_scene(mechanism, crank_speed, numbers):
+def scene_hints(mechanism, crank_speed, numbers):
     """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and that."""
     longest = _longest(mechanism)
-    odd = [text for path, value, usual in numbers if (text := checks.unusual(path, value, usual, longest))]
+    odd = [text for path, value, usual in numbers if (text := checks.implausibility(path, value, usual, longest))]
     return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
 
 
 def _longest(mechanism):
     """Length of the longest link between two joints, m; 0 where none is known."""
-    return max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
+    return max((_most(bar.length) for bar in mechanism.bars if checks.has_known_values(bar.length)), default=0.0)
 
 
 def _lengths(bars):
@@ -55,9 +55,9 @@ def _lengths(bars):
     if not lengths:
         return
     (longest, link), (shortest, other) = max(lengths), min(lengths)
-    if longest > LONGEST:
+    if longest > MAX_LENGTH:
         yield f"the {link} is {longest:.6g} m long; are lengths in mm?"
-    elif longest > SLENDER * shortest:
+    elif longest > MAX_LENGTH_RATIO * shortest:
         yield (
             f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is "
             "one of them in mm?"
@@ -66,19 +66,23 @@ def _lengths(bars):
 
 def _fast(length, crank_speed, longest):
     """What is odd about the speed of the crank's pin."""
-    if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
+    if (
+        length is None
+        or not (checks.has_known_values(length) and checks.has_known_values(crank_speed))
+        or longest > MAX_LENGTH
+    ):
         return
     radius, speed = _most(length), _most(abs(crank_speed))
-    if radius * speed > FASTEST:
+    if radius * speed > MAX_PIN_SPEED:
         yield (
             f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
             f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
 
 
-def of_loads(mechanism, loads):
+def load_hints(mechanism, loads):
     """Say which loads between two points act along a cylinder, but not on both its rod and itself."""
-    for load, slot, other in beside_rods(mechanism, loads):
+    for load, slot, other in loads_beside_rods(mechanism, loads):
         place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
         yield (
             f"{load.title}: it acts along the {slot.link} on {slot.joint!r}, a joint of the "
@@ -87,18 +91,18 @@ def of_loads(mechanism, loads):
         )
 
 
-def beside_rods(mechanism, loads):
+def loads_beside_rods(mechanism, loads):
     """Loads between a cylinder and the joint of its rod that another link owns, with the slot and the other point."""
     for slot in mechanism.slots:
         for load in loads:
             ends: Any = getattr(load, "between", ())
             if slot.rod and len(ends) == 2 and slot.joint in ends:
-                carriers = {carrier(mechanism, end).link for end in ends}
+                carriers = {point_on_link(mechanism, end).link for end in ends}
                 if slot.link in carriers and slot.rod not in carriers:
                     yield load, slot, ends[ends[0] == slot.joint]
 
 
-def sizes(mechanism):
+def compared_sizes(mechanism):
     """What a first look compares, of any numbers.
 
     In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, triples of
@@ -158,19 +162,19 @@ def _is_on_the_frame(mechanism, link):
 def _as_long_as_its_arm(mechanism, bar):
     """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about."""
     _, along, across = mechanism.joints[bar.start]
-    if not all(map(checks.known, (along, across, bar.length))):
+    if not all(map(checks.has_known_values, (along, across, bar.length))):
         return False
     return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
 
 
 def _inertia(bar, link, crank):
     """What is odd about a link's inertia beside its mass and length; none at all makes a point mass."""
-    if link is None or not (checks.known(link.mass) and checks.known(link.inertia)):
+    if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
-    if _any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
+    if _any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
-    elif _is_moved(bar, crank) and _any((inertia > THICK * unit) & (unit > 0)):
+    elif _is_moved(bar, crank) and _any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
         times = inertia / np.where(unit > 0, unit, np.inf)
         worst = np.argmax(times)
         odd, most = np.ravel(np.broadcast_to(inertia, np.shape(times)))[worst], np.ravel(times)[worst]
@@ -189,12 +193,12 @@ def _unit_of_inertia(inertia, times):
     return "is it in kg m2, about the mass centre?"
 
 
-def of_given_angles(given, angle):
+def given_angle_hints(given, angle):
     """Say if crank angles look like degrees or a count of them, by what was given and as they are taken."""
-    return of_count(given) or of_angles(angle)
+    return angle_count_hints(given) or angle_hints(angle)
 
 
-def of_one(angle):
+def single_angle_hints(angle):
     """Say if a single crank angle looks like degrees: whole, from two turns in radians to three in degrees."""
     if not TWO_TURNS <= abs(angle) <= 1080.0 or not _whole(angle):
         return ()
@@ -204,7 +208,7 @@ def of_one(angle):
     )
 
 
-def of_count(given):
+def angle_count_hints(given):
     """Say if a crank angle looks like a count of them: a whole number of more than two turns."""
     if not isinstance(given, int | np.integer) or given < TWO_TURNS:
         return ()
@@ -214,13 +218,17 @@ def of_count(given):
     )
 
 
-def of_angles(angle):
+def angle_hints(angle):
     """Say if crank angles look like degrees, or like radians taken for degrees."""
     if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
         return ()
     first, last = angle.item(0), angle.item(-1)
     if -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS:
-        return _converted_twice(angle) if SMALL[0] < abs(last - first) < SMALL[1] and angle.size > 2 else ()
+        return (
+            _converted_twice(angle)
+            if CONVERTED_TURN_LIMITS[0] < abs(last - first) < CONVERTED_TURN_LIMITS[1] and angle.size > 2
+            else ()
+        )
     if angle.size < 3:
         return _few(np.ravel(angle))
     row = np.ravel(angle)
@@ -246,7 +254,7 @@ def _converted_twice(angle):
     row = np.ravel(angle)
     step, reach = row[1] - row[0], row[-1] - row[0]
     even = np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
-    if not even or not any(abs(abs(whole) - TURN_TWICE) < 1e-9 for whole in (reach, reach + step)):
+    if not even or not any(abs(abs(whole) - TURN_CONVERTED_TWICE) < 1e-9 for whole in (reach, reach + step)):
         return ()
     return (
         f"crank angles from {row[0]:g} to {row[-1]:g} are a turn in radians, converted from degrees once more; they "

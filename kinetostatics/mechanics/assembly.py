@@ -5,15 +5,15 @@ import numpy as np
 from ..errors import AssemblyError, ParameterError
 from ..machine.kinematic_state import require_positions
 from ..machine.loads import TURN
-from ..numbers.arithmetic import ROUNDING
+from ..numbers.arithmetic import SQUARE_TOLERANCE
 from ..numbers.brackets import find_minima, find_roots
 from . import quantities
 
-STEPS = 720
+MARGIN_SAMPLES = 720
 """Crank angles a turn at which margins are looked at first."""
-HALF = 1e8
+HALF_DIGITS_CONDITION = 1e8
 """Condition from which half of the digits are lost."""
-NO_DIGIT = 1e16
+NO_DIGITS_CONDITION = 1e16
 """Condition from which rates and forces have no correct digit."""
 
 
@@ -27,7 +27,7 @@ def check(solution):
     """
     placement, margins = solution.placement, []
     found = solution.mechanism.margins(placement, solution.shape)
-    for group, margin in zip(solution.mechanism.groups, map(_looked_at, found), strict=True):
+    for group, margin in zip(solution.mechanism.groups, map(_margin_values, found), strict=True):
         if margin is None:
             continue
         margins.append(margin)
@@ -38,8 +38,8 @@ def check(solution):
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
-        if smallest < -ROUNDING:
-            raise _error(solution.mechanism, group, placement, margin)
+        if smallest < -SQUARE_TOLERANCE:
+            raise _error_at_samples(solution.mechanism, group, placement, margin)
     return margins if _in_double_precision(solution) else []
 
 
@@ -48,7 +48,7 @@ def _in_double_precision(solution):
     return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
 
 
-def _looked_at(margin):
+def _margin_values(margin):
     """The margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
     if isinstance(margin, np.ndarray) and margin.dtype == float:
         return margin
@@ -58,13 +58,15 @@ def _looked_at(margin):
         return None
 
 
-def growth(solution, name, values):
+def unbounded_force_problem(solution, name, values):
     """What must be said of forces near change points that are passed, as a sentence, or None."""
     sizes = np.abs(values) if values.shape == solution.shape else np.abs(values).max(axis=0)
     terms = np.maximum(solution.largest_force_term, solution.largest_torque_term)
     with np.errstate(invalid="ignore"):
         beyond = (
-            sizes > HALF * np.broadcast_to(terms, sizes.shape[:-1])[..., None] if sizes.ndim else sizes > HALF * terms
+            sizes > HALF_DIGITS_CONDITION * np.broadcast_to(terms, sizes.shape[:-1])[..., None]
+            if sizes.ndim
+            else sizes > HALF_DIGITS_CONDITION * terms
         )
     if not np.any(beyond):
         return None
@@ -78,7 +80,7 @@ def growth(solution, name, values):
     )
 
 
-def _error(mechanism, group, placement, margin):
+def _error_at_samples(mechanism, group, placement, margin):
     open_ = margin < 0
     count = int(open_.sum())
     design = ""
@@ -86,11 +88,11 @@ def _error(mechanism, group, placement, margin):
     if margin.ndim > 1:
         where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
         design = f" (first in design {where[0] if len(where) == 1 else where})"
-    gaps = intervals(mechanism, group, where, np.ravel(placement.angle))
-    return _open(mechanism, group, placement, f"at {count} of {margin.size} crank angles{design}", gaps)
+    gaps = group_gaps(mechanism, group, where, np.ravel(placement.angle))
+    return _assembly_error(mechanism, group, placement, f"at {count} of {margin.size} crank angles{design}", gaps)
 
 
-def _open(mechanism, group, placement, where, gaps, *remedy):
+def _assembly_error(mechanism, group, placement, where, gaps, *remedy):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
     why = group.requirement(placement) or f"the closure of {type(group).__name__} is negative there"
     return AssemblyError(
@@ -100,7 +102,7 @@ def _open(mechanism, group, placement, where, gaps, *remedy):
     )
 
 
-def intervals(mechanism, group, design=(), angles=()):
+def group_gaps(mechanism, group, design=(), angles=()):
     """Crank-angle intervals where a group does not close, to rounding accuracy, within the turns that its motion takes.
 
     Found on a grid of half a degree, at the given angles and where the closure margin is smallest between them, each
@@ -109,7 +111,7 @@ def intervals(mechanism, group, design=(), angles=()):
     margin, whole = _margin(mechanism, group, design), TURN * mechanism.turns
     grid = np.concatenate([_grid(mechanism), np.mod(angles, whole)])
     with np.errstate(invalid="ignore"):
-        grid = np.unique(np.concatenate([grid, np.mod(_lowest(margin, mechanism, 0.0), whole)]))
+        grid = np.unique(np.concatenate([grid, np.mod(_margin_minima(margin, mechanism, 0.0), whole)]))
         gap = margin(grid) < 0
         if gap.all():
             return ((0.0, whole),)
@@ -124,47 +126,49 @@ def intervals(mechanism, group, design=(), angles=()):
         stops[-1] += whole
     with np.errstate(invalid="ignore"):
         # the others are change points, where it closes but for rounding
-        real = margin((starts + stops) / 2) < -ROUNDING
+        real = margin((starts + stops) / 2) < -SQUARE_TOLERANCE
     kept = real if real.any() else ~real
     return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
 
-def near_limits(mechanism, below):
+def limit_angles(mechanism, below):
     """Crank angles, rad, where the closure margin of a group is smallest, and less than `below`.
 
     Within one turn, or the turns after which the motion repeats.
     """
-    found = [_lowest(_margin(mechanism, group), mechanism, below) for group in mechanism.groups]
+    found = [_margin_minima(_margin(mechanism, group), mechanism, below) for group in mechanism.groups]
     return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 
 
-def gaps(mechanism):
+def gap_intervals(mechanism):
     """Crank-angle intervals where some group does not close, in order, as `near_limits`; they do not overlap."""
     found = []
     for group in mechanism.groups:
-        if _is_open(mechanism, group, _dense(mechanism, group)):
-            found += intervals(mechanism, group)
-    return _united(found, TURN * mechanism.turns)
+        if _is_open(mechanism, group, _test_angles(mechanism, group)):
+            found += group_gaps(mechanism, group)
+    return _merge_intervals(found, TURN * mechanism.turns)
 
 
 def require_turn(mechanism):
     """Raise `AssemblyError` if the mechanism does not close somewhere in the turn, be it between any samples."""
     for group in mechanism.groups:
-        angle = _dense(mechanism, group)
+        angle = _test_angles(mechanism, group)
         if _is_open(mechanism, group, angle):
-            placement, where = mechanism.place(angle), intervals(mechanism, group)
-            raise _open(mechanism, group, placement, "all round the turn", where, " so that the crank turns all round")
+            placement, where = mechanism.place(angle), group_gaps(mechanism, group)
+            raise _assembly_error(
+                mechanism, group, placement, "all round the turn", where, " so that the crank turns all round"
+            )
 
 
-def _dense(mechanism, group):
+def _test_angles(mechanism, group):
     """Crank angles half a degree apart, and those between them where the margin is smallest."""
     with np.errstate(invalid="ignore"):
-        return np.concatenate([_grid(mechanism), _lowest(_margin(mechanism, group), mechanism, 0.0)])
+        return np.concatenate([_grid(mechanism), _margin_minima(_margin(mechanism, group), mechanism, 0.0)])
 
 
 def _is_open(mechanism, group, angle):
     with np.errstate(invalid="ignore"):
-        return (_margin(mechanism, group)(angle) < -ROUNDING).any()
+        return (_margin(mechanism, group)(angle) < -SQUARE_TOLERANCE).any()
 
 
 def _margin(mechanism, group, design=()):
@@ -179,10 +183,10 @@ def _margin(mechanism, group, design=()):
 
 def _grid(mechanism):
     """Crank angles half a degree apart, as far as the motion takes to repeat."""
-    return np.linspace(0.0, TURN * mechanism.turns, STEPS * mechanism.turns, endpoint=False)
+    return np.linspace(0.0, TURN * mechanism.turns, MARGIN_SAMPLES * mechanism.turns, endpoint=False)
 
 
-def _lowest(margin, mechanism, below):
+def _margin_minima(margin, mechanism, below):
     """Crank angles of the local minima of a margin that may be less than `below`, found between half degrees."""
     grid = _grid(mechanism)
     samples = margin(grid)
@@ -191,14 +195,14 @@ def _lowest(margin, mechanism, below):
     place = grid[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
     if not place.size:
         return place
-    step = TURN / STEPS
+    step = TURN / MARGIN_SAMPLES
     with np.errstate(invalid="ignore"):
         found = find_minima(lambda angle, _: margin(angle), (place - step, place, place + step))
-    lowest = np.where(margin(found) < margin(place) - ROUNDING, found, place)
+    lowest = np.where(margin(found) < margin(place) - SQUARE_TOLERANCE, found, place)
     return lowest[margin(lowest) < below]
 
 
-def _united(intervals, whole):
+def _merge_intervals(intervals, whole):
     """The same intervals in order, those that overlap as one."""
     united: list[tuple[float, float]] = []
     for start, stop in sorted(intervals):

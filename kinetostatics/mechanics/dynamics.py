@@ -15,14 +15,14 @@ from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
-from ..numbers.planar import added, minus, moment, number, plus, product
+from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product
 from . import energy_contact, springs
 from .friction import FrictionSolver, larger, smaller
-from .load_values import pushed, settled
-from .motion import Motion, places
+from .load_values import evaluate_load, slider_push
+from .motion import Motion, coordinates
 from .principal_points import principal_points
 
-UNBALANCED = 1e-6
+MAX_POWER_ERROR = 1e-6
 """Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
 
 
@@ -59,7 +59,7 @@ class Dynamics(Motion):
     @property
     def acting(self):
         """Loads by link and forces along guides by slider as groups resolve them."""
-        return springs.acting(self)
+        return springs.loads_on_groups(self)
 
     def departure(self, item):
         """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
@@ -132,7 +132,7 @@ class Dynamics(Motion):
             return
         lost = self.largest(torque - self.balancing_torque_by_power)
         scale = np.maximum(self.largest_torque_term, self.largest(torque))
-        if np.any(lost > UNBALANCED * scale):
+        if np.any(lost > MAX_POWER_ERROR * scale):
             warnings.warn(
                 f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers "
                 f"differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own "
@@ -235,7 +235,7 @@ class Dynamics(Motion):
     @cached_property
     def gravity(self):
         """Acceleration by weight, m/s2; None without."""
-        return reduce(added, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
+        return reduce(add_vectors, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
 
     @cached_property
     def inertia(self):
@@ -255,7 +255,7 @@ class Dynamics(Motion):
         found = dict(self.mass_loads)
         for name, wrench in self.wrenches:
             own = found[name]
-            found[name] = Wrench(added(own.force, wrench.force), plus(own.moment, wrench.moment))
+            found[name] = Wrench(add_vectors(own.force, wrench.force), plus(own.moment, wrench.moment))
         return found
 
     def _mass_loads(self, gravity):
@@ -268,7 +268,7 @@ class Dynamics(Motion):
     @cached_property
     def wrenches(self):
         """Pairs of a link and a wrench on it, of all loads that act so."""
-        settling = (settled(item, self) for item in self.loads if hasattr(item, "wrenches"))
+        settling = (evaluate_load(item, self) for item in self.loads if hasattr(item, "wrenches"))
         return [pair for item in settling for pair in item.wrenches(self) if pair[0] != FRAME]
 
     @cached_property
@@ -277,7 +277,7 @@ class Dynamics(Motion):
         pushes: dict[str, Any] = {}
         for item in self.loads:
             if hasattr(item, "push"):
-                pushes[item.on] = plus(pushes.get(item.on), pushed(item, self))
+                pushes[item.on] = plus(pushes.get(item.on), slider_push(item, self))
         return pushes
 
     @cached_property
@@ -301,12 +301,12 @@ class Dynamics(Motion):
     @cached_property
     def closed(self):
         """Whether the mechanism closes at each angle."""
-        parts = (np.asarray(part, dtype=float) for part in places(self.placement, self.mechanism.parts))
+        parts = (np.asarray(part, dtype=float) for part in coordinates(self.placement, self.mechanism.parts))
         return np.isfinite(reduce(plus, parts))
 
     def largest(self, part):
         """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""
-        size, closed = np.broadcast_arrays(np.abs(np.asarray(number(part), dtype=float)), self.closed)
+        size, closed = np.broadcast_arrays(np.abs(np.asarray(number_or_zero(part), dtype=float)), self.closed)
         if not size.ndim:
             return size if closed else size * np.nan
         return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)

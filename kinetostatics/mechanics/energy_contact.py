@@ -20,19 +20,19 @@ from ..machine.group import FRAME
 from ..machine.links import arm, first_at, second_at, virtual_work
 from ..numbers import checks
 from ..numbers.arithmetic import sign
-from ..numbers.planar import minus, number, plus, product, work
-from .load_values import pushed, settled
+from ..numbers.planar import minus, number_or_zero, plus, product, work
+from .load_values import evaluate_load, slider_push
 
 
 def reduced_inertia(motion):
     """Reduced inertia of all links, kg m2; None without any mass."""
-    return _summed(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    return _sum(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
 
 
 def reduced_inertia_slope(motion):
     """Its derivative by the crank angle, kg m2; None where it does not change."""
     slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
-    return product(2.0, _summed(slopes))
+    return product(2.0, _sum(slopes))
 
 
 def kinetic_energy(motion):
@@ -43,7 +43,7 @@ def kinetic_energy(motion):
 
 def potential_energy(motion):
     """Potential energy of the loads that have one, J."""
-    return _summed(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
+    return _sum(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
 
 
 def load_torque(motion):
@@ -53,19 +53,19 @@ def load_torque(motion):
         product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))
         for name, link in motion.mechanism.links.items()
     )
-    return minus(None, plus(_summed(weights), motion.load_work))
+    return minus(None, plus(_sum(weights), motion.load_work))
 
 
 def work_of(item, motion):
     """Work of a load but weight per unit of crank angle, N m; None where it does none."""
     if hasattr(item, "push"):
-        return product(pushed(item, motion), motion.placement.travels[item.on].first)
-    wrenches = settled(item, motion).wrenches(motion)
+        return product(slider_push(item, motion), motion.placement.travels[item.on].first)
+    wrenches = evaluate_load(item, motion).wrenches(motion)
     links = motion.placement.links
-    return _summed(virtual_work(links[name], wrench) for name, wrench in wrenches if name != FRAME)
+    return _sum(virtual_work(links[name], wrench) for name, wrench in wrenches if name != FRAME)
 
 
-def _summed(parts):
+def _sum(parts):
     return reduce(plus, parts, None)
 
 
@@ -89,14 +89,14 @@ def pressure(dynamics, name):
     group = next((group for group in dynamics.mechanism.groups if name in group.contacts), None)
     if group is None:
         known = [own for group in dynamics.mechanism.groups for own in group.contacts]
-        raise QuantityError(_unknown(dynamics.mechanism, name, known))
+        raise QuantityError(_unknown_contact(dynamics.mechanism, name, known))
     touch = group.contacts[name]
-    force = number(dynamics.resolved.scalars[touch.force])
+    force = number_or_zero(dynamics.resolved.scalars[touch.force])
     with np.errstate(divide="ignore", invalid="ignore"):
         return touch.body.pressure(force, group.relative_radius(name, dynamics.placement, sign(force)))
 
 
-def _unknown(mechanism, name, known):
+def _unknown_contact(mechanism, name, known):
     if known:
         return checks.choice(f"{mechanism.name}: contact", name, tuple(known))
     return (
@@ -107,19 +107,21 @@ def _unknown(mechanism, name, known):
 
 def refusals(solution):
     """Where rollers undercut the side of a cam that carries them, as sentences."""
-    if not solution.kind.answer(_touching):
+    if not solution.kind.answer(_has_contacts):
         return []
     state = solution.dynamics
     parts = [(group, name) for group in state.mechanism.groups for name in group.contacts]
-    return [problem for group, name in parts for problem in _undercut(state, group, name, group.contacts[name])]
+    return [
+        problem for group, name in parts for problem in _undercut_problems(state, group, name, group.contacts[name])
+    ]
 
 
-def _touching(kind):
+def _has_contacts(kind):
     mechanism = kind.numbered.mechanism
     return any(group.contacts for group in mechanism.groups)
 
 
-def _undercut(dynamics, group, name, touch):
+def _undercut_problems(dynamics, group, name, touch):
     with np.errstate(all="ignore"):
         both = [np.asarray(group.relative_radius(name, dynamics.placement, side)) for side in (-1.0, 1.0)]
         if any(part.dtype != float for part in both) or not any(np.any(part <= 0.0) for part in both):

@@ -17,8 +17,20 @@ from typing import Any, NamedTuple
 
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Rolling, Sliding, Turning, Wrench
-from ..numbers.arithmetic import held, root, sign, sqrt
-from ..numbers.planar import NOTHING, absent, added, length, minus, number, plus, product, quotient, stretched, vector
+from ..numbers.arithmetic import clamped_sqrt, sign, sqrt, stop_gradient
+from ..numbers.planar import (
+    SYMBOLIC_ZERO,
+    add_vectors,
+    length,
+    minus,
+    none_if_zero,
+    number_or_zero,
+    plus,
+    product,
+    quotient,
+    scale_vector,
+    vector_or_zero,
+)
 
 MIN_SQUARE = 1e-290
 """Square of a force that is added so that a force of zero can be divided by, N2."""
@@ -114,7 +126,7 @@ def direction_of(law, parts):
         return (None, None)
     if law.kind == "length":
         over = 1.0 / size_of("length", parts)  # friction does not change with the direction to first order
-        return tuple(product(law.factor, None if part is None else held(over * part)) for part in parts)
+        return tuple(product(law.factor, None if part is None else stop_gradient(over * part)) for part in parts)
     if first is None or second is None:
         return tuple(None if part is None else law.factor * sign(part) for part in parts)
     ahead = 0.5 * sign(abs(first) - abs(second))
@@ -178,7 +190,7 @@ class FrictionSolver:
         own = part.links
         channels = {channel.name: channel for law in laws for channel, _ in law.effects}
         inner = [channel for channel in channels.values() if _acts_on(channel, own)]
-        unloaded = dict.fromkeys(own, Wrench((NOTHING, NOTHING), NOTHING))
+        unloaded = dict.fromkeys(own, Wrench((SYMBOLIC_ZERO, SYMBOLIC_ZERO), SYMBOLIC_ZERO))
         columns = [part.resolve(placement, *_with_friction(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
         equations = FrictionEquations(laws, [channel.name for channel in inner], free, columns)
         amounts = self._amounts(equations, laws, placement)
@@ -214,7 +226,9 @@ class FrictionSolver:
             if pair.against != FRAME:
                 effects.append((_moment(pair.against), 1))
             factor = friction.mu * friction.radius * way
-            yield FrictionLaw(name, factor, lambda found: vector(found.reactions[name]), "length", tuple(effects))
+            yield FrictionLaw(
+                name, factor, lambda found: vector_or_zero(found.reactions[name]), "length", tuple(effects)
+            )
         else:
             slide, half = part.sliding(name, placement), friction.half_length
 
@@ -235,7 +249,7 @@ class FrictionSolver:
         """Friction of a roller's pin under its whole load: the cam force, and the force along the profile by which the
         cam turns the roller. The couple acts on the link that carries the pin.
         """
-        first = vector(placement.joints[pair.joint].first)
+        first = vector_or_zero(placement.joints[pair.joint].first)
         speed = length(first)
         lever = friction.mu * friction.pin_radius / friction.roller_radius
         slope = lever / sqrt(1.0 - lever * lever) * self._sense(name)
@@ -266,12 +280,14 @@ class FrictionSolver:
             name = channel.name
             if name in reactions and name in part.pairs:
                 along = part.sliding(name, placement).direction
-                reactions[name] = added(reactions[name], stretched(amount, (1.0, 0.0) if along is None else along))
+                reactions[name] = add_vectors(
+                    reactions[name], scale_vector(amount, (1.0, 0.0) if along is None else along)
+                )
             for link, wrench in channel.wrenches:
                 if link not in own:
                     old = demands.get(link, Wrench(None, None))
-                    given = stretched(-amount, wrench.force), product(-amount, wrench.moment)
-                    demands[link] = Wrench(added(old.force, given[0]), plus(old.moment, given[1]))
+                    given = scale_vector(-amount, wrench.force), product(-amount, wrench.moment)
+                    demands[link] = Wrench(add_vectors(old.force, given[0]), plus(old.moment, given[1]))
         return Resolved(reactions, resolved.scalars, demands)
 
 
@@ -283,7 +299,7 @@ def _force(name, pair, slide):
     """Force along a straight pair; along a guide it stays in the guide's axes."""
     if pair.against == FRAME:
         return Channel(name, (), ((pair.link, 1.0),))
-    back = Wrench(stretched(-1.0, slide.direction), minus(None, slide.moment))
+    back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
     return Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
 
 
@@ -298,8 +314,8 @@ def _with_friction(loads, along, acting, own):
         for link, wrench in channel.wrenches:
             if link in own:
                 old = loads[link]
-                force, moment = stretched(amount, wrench.force), product(amount, wrench.moment)
-                loads[link] = Wrench(added(old.force, force), plus(old.moment, moment))
+                force, moment = scale_vector(amount, wrench.force), product(amount, wrench.moment)
+                loads[link] = Wrench(add_vectors(old.force, force), plus(old.moment, moment))
         for link, push in channel.pushes:
             along[link] = plus(along.get(link), amount * push)
     return loads, along
@@ -325,8 +341,8 @@ class FrictionEquations:
 
     def __init__(self, laws, names, free, columns):
         self._laws = laws
-        self._free = [tuple(map(absent, law.reaction(free))) for law in laws]
-        slopes = [[tuple(map(absent, law.reaction(column))) for column in columns] for law in laws]
+        self._free = [tuple(map(none_if_zero, law.reaction(free))) for law in laws]
+        slopes = [[tuple(map(none_if_zero, law.reaction(column))) for column in columns] for law in laws]
         counts = [sum(any(part is not None for part in law[place]) for law in slopes) for place in range(len(names))]
         used = [place for place in sorted(range(len(names)), key=counts.__getitem__) if counts[place]]
         self._slopes = [[law[place] for place in used] for law in slopes]
@@ -350,13 +366,13 @@ class FrictionEquations:
             reactions = [self._reaction(place, unknowns) for place in range(len(self._laws))]
         amounts = self._amounts(reactions)
         self.residual = self._change(unknowns, amounts, reactions)
-        closed = held(0.0 * root(self.margin + 0.0 * angle, 1.0))
+        closed = stop_gradient(0.0 * clamped_sqrt(self.margin + 0.0 * angle, 1.0))
         return [amount + closed for amount in amounts]
 
     def _amounts(self, reactions):
         """Friction of each law, from its reaction."""
         sizes = (size_of(law.kind, parts) for law, parts in zip(self._laws, reactions, strict=True))
-        return [number(product(law.factor, size)) for law, size in zip(self._laws, sizes, strict=True)]
+        return [number_or_zero(product(law.factor, size)) for law, size in zip(self._laws, sizes, strict=True)]
 
     def _totals(self, amounts):
         """Friction by channel, from that of each law."""
@@ -421,7 +437,7 @@ def _solution_of(matrix, right):
     for i in reversed(range(count)):
         rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, count)), None)
         found[i] = product(minus(right[i], rest), inverse[i])
-    return [number(one) for one in found]
+    return [number_or_zero(one) for one in found]
 
 
 def _pivots(matrix):

@@ -5,9 +5,9 @@ import warnings
 import numpy as np
 
 from ..errors import ConditionWarning, JammingError
-from ..machine.friction import PASSES
-from ..machine.sense import WANTED, stands
-from ..numbers.parameter_tree import with_fields
+from ..machine.friction import PASSES_BY_SOLVER
+from ..machine.kinematic_state import SENSE_REMEDY, has_no_sense
+from ..numbers.parameter_tree import replace_unchecked
 
 MAX_CHANGE = 1e-13
 """Upper limit of the relative change of forces by one more pass, times the margin from jamming, for convergence."""
@@ -28,8 +28,8 @@ def solve_friction(item, evaluate=None):
         at the friction afterwards, so the item gets more passes than most need.
     """
     if evaluate is None:
-        return _with_passes(item, max(item.friction.passes, PASSES[1]))
-    for passes in (item.friction.passes, *(more for more in PASSES if more > item.friction.passes)):
+        return _with_passes(item, max(item.friction.passes, PASSES_BY_SOLVER[1]))
+    for passes in (item.friction.passes, *(more for more in PASSES_BY_SOLVER if more > item.friction.passes)):
         item = _with_passes(item, passes)
         margin, residual = evaluate(item)
         if not _is_plain(margin) or np.all(converged(margin, residual) | np.logical_not(margin > 0)):
@@ -45,7 +45,7 @@ def with_one_more_pass(item):
 def _with_passes(item, passes):
     if passes == item.friction.passes:
         return item
-    return with_fields(item, friction=with_fields(item.friction, passes=passes))
+    return replace_unchecked(item, friction=replace_unchecked(item.friction, passes=passes))
 
 
 def checks_of(solution):
@@ -65,7 +65,7 @@ def _is_plain(values):
 
 def problem_at_rest(solution):
     """Problem of friction on a crank that neither moves nor begins to, as a sentence, or None."""
-    return f"friction acts against motion, {WANTED}" if np.any(stands(solution)) else None
+    return f"friction acts against motion, {SENSE_REMEDY}" if np.any(has_no_sense(solution)) else None
 
 
 def check(solution, on_gap):

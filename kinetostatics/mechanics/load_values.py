@@ -14,18 +14,18 @@ from weakref import WeakSet
 import numpy as np
 
 from ..errors import ParameterError
+from ..machine.kinematic_state import require_sense
 from ..machine.links import present
 from ..machine.loads import Load, Table, is_given
-from ..machine.sense import require_sense
 from ..numbers import checks
 from ..numbers.arithmetic import is_foreign_array
-from ..numbers.parameter_tree import with_fields
+from ..numbers.parameter_tree import replace_unchecked
 from .motion import Motion
 
-STANDING = 1e-150
+SPEED_AT_REST = 1e-150
 """Crank speed, rad/s, that a function of the motion sees at rest, times the sense of rotation or, without one, the
 crank acceleration: velocities have the sense of the motion about to begin. It is nothing beside any other speed."""
-KNOWN = (
+MOTION_MEMBERS = (
     "crank_angle",
     "crank_speed",
     "crank_acceleration",
@@ -39,7 +39,7 @@ KNOWN = (
 """What a function of the motion may ask for."""
 
 
-class Moving(Motion):
+class ForceFreeMotion(Motion):
     """A motion as functions of it see it, without forces: these come of what the functions give."""
 
     @property
@@ -53,7 +53,7 @@ class Moving(Motion):
             raise AttributeError(name)
         raise UnknownForceError(
             f"a function of the motion asks for {name!r}, which it has not: forces come of what the function gives; it "
-            f"may ask for {', '.join(KNOWN)}"
+            f"may ask for {', '.join(MOTION_MEMBERS)}"
         )
 
 
@@ -61,7 +61,7 @@ class UnknownForceError(ParameterError, AttributeError):
     """A load asks for what is computed from it."""
 
 
-class Watched(Moving):
+class WatchedMotion(ForceFreeMotion):
     """A motion that notes in `asked` what of its crank's drive is read, by a velocity as well."""
 
     def __getattribute__(self, name):
@@ -70,42 +70,42 @@ class Watched(Moving):
         return super().__getattribute__(name)
 
 
-def drive_asked_for(item, motion):
+def drive_dependence(item, motion):
     """Names among crank_speed, crank_acceleration and sense that a user's code for a load reads at the crank angles.
 
     Code cannot depend on what it does not read; whether it depends on what it reads, values could not tell for sure.
     """
-    watched = moving(motion, Watched)
+    watched = without_forces(motion, WatchedMotion)
     vars(watched)["asked"] = set()
     (item.value_now if isinstance(item, Load) else item.push)(watched)
     return vars(watched)["asked"]
 
 
-def moving(motion, kind=Moving):
+def without_forces(motion, kind=ForceFreeMotion):
     """The motion without its forces."""
     begins = present(motion.crank_acceleration if motion.sense is None else motion.sense)
-    speed = motion.crank_speed if begins is None else motion.crank_speed + STANDING * begins
+    speed = motion.crank_speed if begins is None else motion.crank_speed + SPEED_AT_REST * begins
     made = kind(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
     vars(made).update(shape=motion.shape, placement=motion.placement)
     return made
 
 
-def settled(item, motion):
+def evaluate_load(item, motion):
     """The load with what its table or function gives at the crank angles of a motion; others as they are."""
-    return item if item.is_given else with_fields(item, **{item.VALUE: amount(item, motion)})
+    return item if item.is_given else replace_unchecked(item, **{item.VALUE: load_value(item, motion)})
 
 
-def amount(item, motion):
+def load_value(item, motion):
     """What the table or function of a load gives, checked."""
-    return _checked(item, item.value_now(moving(motion)), motion)
+    return _checked(item, item.value_now(without_forces(motion)), motion)
 
 
-def given(item, motion):
+def user_value(item, motion):
     """What code of the user's gives for a load: its value, or its push."""
-    return amount(item, motion) if getattr(item, "VALUE", "") else pushed(item, motion)
+    return load_value(item, motion) if getattr(item, "VALUE", "") else slider_push(item, motion)
 
 
-def pushed(item, motion):
+def slider_push(item, motion):
     """Force of a load on its slider, N; what code of the user's returns is checked.
 
     Raises
@@ -114,8 +114,8 @@ def pushed(item, motion):
         It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
     """
     if isinstance(item, Load):
-        return settled(item, motion).push(motion)
-    return _checked(item, item.push(moving(motion)), motion)
+        return evaluate_load(item, motion).push(motion)
+    return _checked(item, item.push(without_forces(motion)), motion)
 
 
 def title_of(item):
@@ -127,10 +127,10 @@ def _checked(item, found, motion):
     if isinstance(found, np.ndarray) and found.dtype == object:
         return found
     unit, title = getattr(item, "UNIT", "N"), title_of(item)
-    found = checks.converted(title, "what its function returns", found, unit.replace(" ", "*"))
+    found = checks.to_plain_named(title, "what its function returns", found, unit.replace(" ", "*"))
     owner, what = f"{title}: its function", "torque" if unit == "N m" else "force"
     wanted = f"must return its {what} in {unit}, a number or an array of shape {motion.shape}, one for each crank angle"
-    words = None if hasattr(found, "to_numpy") else checks.unfit(found)
+    words = None if hasattr(found, "to_numpy") else checks.not_a_number(found)
     if words:
         raise ParameterError(f"{owner} {wanted}, got {checks.shown(found)}, {words.format(unit=unit)}")
     if is_foreign_array(found):
@@ -167,9 +167,9 @@ def _require_finite(owner, push, motion):
         )
 
 
-FEW = 2
+PURITY_ANGLES = 2
 """Crank angles at which a function is called twice."""
-_known_pure: Any = WeakSet()
+_pure_functions: Any = WeakSet()
 
 
 def require_pure(motion):
@@ -180,17 +180,17 @@ def require_pure(motion):
     """
     for item in motion.loads:
         function = _function_of(item)
-        if function is None or _is_known(function):
+        if function is None or _is_known_pure(function):
             continue
         _require_same_twice(item, function, motion)
         with suppress(TypeError):  # from an object that takes no weak references, or has no hash
-            _known_pure.add(getattr(function, "__func__", function))
+            _pure_functions.add(getattr(function, "__func__", function))
 
 
-def _is_known(function):
+def _is_known_pure(function):
     """Whether a function, or the one behind a method, was called twice before."""
     try:
-        return getattr(function, "__func__", function) in _known_pure
+        return getattr(function, "__func__", function) in _pure_functions
     except TypeError:
         return False
 
@@ -212,7 +212,7 @@ def _require_same_twice(item, function, motion):
         varies = any(
             np.ndim(part) and np.shape(part)[-1] > 1 for part in (motion.crank_speed, motion.crank_acceleration)
         )
-        few = motion if angle.ndim == 0 or varies else replace(motion, crank_angle=angle[..., :FEW])
+        few = motion if angle.ndim == 0 or varies else replace(motion, crank_angle=angle[..., :PURITY_ANGLES])
         first, second = (np.asarray(getattr(found, "magnitude", found), dtype=float) for found in _twice(function, few))
         differ = np.ravel(first != second) & ~np.ravel(np.isnan(first) & np.isnan(second))
     except Exception:
@@ -229,4 +229,4 @@ def _require_same_twice(item, function, motion):
 
 def _twice(function, motion):
     with np.errstate(all="ignore"):
-        return [function(moving(motion)) for _ in range(2)]
+        return [function(without_forces(motion)) for _ in range(2)]

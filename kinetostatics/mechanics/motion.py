@@ -16,24 +16,24 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import QuantityError
-from ..machine.friction import NONE, Frictions
+from ..machine.friction import NO_FRICTION, Frictions
 from ..machine.group import FRAME, RATES, TRAVELS
-from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
+from ..machine.kinematic_state import sense_of
+from ..machine.links import Joint, PointMotion, acceleration_of, angular_acceleration, arm, present
 from ..machine.loads import is_given
-from ..machine.loads.points import PLACE
+from ..machine.loads.points import PLACE_RULE
 from ..machine.mechanism import Mechanism
-from ..machine.sense import sense_of
 from ..numbers import checks, parameter_tree
-from ..numbers.arithmetic import held, namespace, read_only, stack
+from ..numbers.arithmetic import namespace, read_only, stack, stop_gradient
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import Leaves, taken_apart, wider
-from ..numbers.planar import number, plus, product, stretched, vector
+from ..numbers.parameter_tree import Leaves, broadcast_shape, flatten
+from ..numbers.planar import number_or_zero, plus, product, scale_vector, vector_or_zero
 from .quantities import of_mechanism
 
 
-def groups_behind(mechanism):
+def required_groups(mechanism):
     """Groups that must be assembled for a quantity to have a value, by its name: all, unless it is of a group."""
-    groups, inner = mechanism.groups, _inner(mechanism.groups)
+    groups, inner = mechanism.groups, _inner_groups(mechanism.groups)
     found: defaultdict[str, tuple] = defaultdict(lambda: groups)
     for place, group in enumerate(groups):
         outer = set().union(*(own for own in inner if place in own))
@@ -48,7 +48,7 @@ def groups_behind(mechanism):
     return found
 
 
-def _inner(groups):
+def _inner_groups(groups):
     """Places of each group and of all that it hangs on."""
     found: list[set[int]] = []
     joints: dict[str, set[int]] = {}
@@ -63,18 +63,18 @@ def _inner(groups):
     return found
 
 
-def places(placement, groups):
+def coordinates(placement, groups):
     """Coordinates of the joints and directions of the links of groups, all NaN where one cannot be assembled."""
     joints = [placement.joints[name].position for group in groups for name in group.joints]
     directions = [placement.links[name].direction for group in groups for name in group.links]
     return [part for pair in (*joints, *directions) for part in pair]
 
 
-def gap(placement, groups):
+def gap_mask(placement, groups):
     """Zero where all of some groups are assembled, NaN elsewhere; None if none of them moves."""
-    total = reduce(plus, (part for part in places(placement, groups) if hasattr(part, "shape")), None)
+    total = reduce(plus, (part for part in coordinates(placement, groups) if hasattr(part, "shape")), None)
     if total is None or total.dtype == object:
-        return None if total is None else 0.0 * held(total)
+        return None if total is None else 0.0 * stop_gradient(total)
     xp = namespace(total)
     return xp.where(xp.isfinite(total), xp.zeros_like(total), xp.full_like(total, xp.nan))
 
@@ -86,11 +86,11 @@ class SceneParts(NamedTuple):
     crank_speed: Any
     crank_acceleration: Any
     loads: Any
-    friction: Any = NONE
+    friction: Any = NO_FRICTION
     sense: Any = None
 
 
-def _given(kind):
+def _has_no_user_code(kind):
     return all(map(is_given, kind.numbered.loads))
 
 
@@ -118,7 +118,7 @@ class Motion:
     crank_speed: Any
     crank_acceleration: Any
     loads: tuple = ()
-    friction: Frictions = NONE
+    friction: Frictions = NO_FRICTION
     sense: Any = None
 
     @cached_property
@@ -130,19 +130,19 @@ class Motion:
             scene = (*scene, self.friction, self.sense)
         elif self.friction.rubs:
             scene = (*scene, self.friction)
-        return (SceneParts, *taken_apart(scene, leaves)[1:]), leaves
+        return (SceneParts, *flatten(scene, leaves)[1:]), leaves
 
     @cached_property
     def kind(self):
         """What all scenes of its structure have in common."""
         structure, leaves = self.apart
-        return parameter_tree.of(structure) if leaves.lasting else parameter_tree.Kind(structure)
+        return parameter_tree.structure_cache(structure) if leaves.lasting else parameter_tree.StructureCache(structure)
 
     @cached_property
     def loads_are_given(self):
         """Whether all loads are numbers, checked when they were made, and none code of the user's."""
         _, leaves = self.apart
-        return self.kind.answer(_given) if leaves.lasting else all(map(is_given, self.loads))
+        return self.kind.answer(_has_no_user_code) if leaves.lasting else all(map(is_given, self.loads))
 
     @property
     def proportion(self):
@@ -155,7 +155,7 @@ class Motion:
         _, leaves = self.apart
         if leaves.lasting:
             return leaves.shape(self.crank_angle.shape)
-        return wider(
+        return broadcast_shape(
             self.crank_angle.shape,
             self.mechanism,
             self.crank_speed,
@@ -189,12 +189,12 @@ class Motion:
 
     def velocity(self, point):
         """Velocity of a point, given as for `position`, (2, ..., N), m/s."""
-        return self.as_vector(stretched(self.crank_speed, self._asked(point).first))
+        return self.as_vector(scale_vector(self.crank_speed, self._asked(point).first))
 
     def acceleration(self, point):
         """Acceleration of a point, given as for `position`, (2, ..., N), m/s2."""
         found = self._asked(point)
-        return self.as_vector(accelerated(found.first, found.second, *self.accelerating))
+        return self.as_vector(acceleration_of(found.first, found.second, *self.accelerating))
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
@@ -211,7 +211,7 @@ class Motion:
         """The rate of a link; of one that turns evenly NaN too where it cannot be there."""
         if hasattr(self.placement.links[link].ratio, "shape"):
             return rate
-        return plus(rate, gap(self.placement, groups_behind(self.mechanism)[link + RATES[0]]))
+        return plus(rate, gap_mask(self.placement, required_groups(self.mechanism)[link + RATES[0]]))
 
     def travel(self, slider=None):
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m.
@@ -242,12 +242,12 @@ class Motion:
 
     def _number_problem(self, name, value):
         """What is wrong with what must be a number, m, or one for each crank angle; or None."""
-        words = checks.unfit(value)
+        words = checks.not_a_number(value)
         if words is None and isinstance(value, list | tuple):
             words = "several; give an array"
         if words is None and isinstance(value, np.ndarray):
             words = f"of {value.dtype}" if value.dtype.kind not in "iufO" else None
-            words = words or checks.fitting(**{name: value.shape, "crank angles": self.shape})
+            words = words or checks.broadcast_problem(**{name: value.shape, "crank angles": self.shape})
         return words and f"{name} must be a number, m, got {checks.shown(value)}, {words}"
 
     @property
@@ -311,23 +311,23 @@ class Motion:
         """A point as the user names it, looked at closely if it is no name."""
         if isinstance(point, str):
             return self.spot(point)
-        point, problem = PLACE.taken(point, "point")
+        point, problem = PLACE_RULE.taken(point, "point")
         checks.require(self.mechanism.name, problem)
         return self.spot(point)
 
-    def spot(self, place) -> Spot:
+    def spot(self, place) -> PointMotion:
         """A point in motion: of a joint or a mass centre by name, at a place on a link, or fixed."""
         joints, links = self.placement.joints, self.placement.links
         if isinstance(place, str):
             found = self._look_up("joint or link", place, {**joints, **links})
             if place in joints:
-                return Spot(found)
+                return PointMotion(found)
             body = self.mechanism.links[place].body
-            return Spot(found.joint, arm(found.direction, body.along, body.across), found)
+            return PointMotion(found.joint, arm(found.direction, body.along, body.across), found)
         if not isinstance(place[0], str) or place[0] == FRAME:
-            return Spot(Joint(tuple(place[-2:]), None, None))
+            return PointMotion(Joint(tuple(place[-2:]), None, None))
         link = self._look_up("link", place[0], links)
-        return Spot(link.joint, arm(link.direction, *map(present, place[1:])), link)
+        return PointMotion(link.joint, arm(link.direction, *map(present, place[1:])), link)
 
     def _look_up(self, kind, name, table):
         if not isinstance(name, str) or name not in table:
@@ -337,7 +337,7 @@ class Motion:
 
     def as_vector(self, parts):
         """Components as one array (2, ..., N); None is the zero vector."""
-        x, y = vector(parts)
+        x, y = vector_or_zero(parts)
         if not hasattr(x, "shape"):
             x = x + 0.0 * y  # a constant component is NaN where the other one is
         if not hasattr(y, "shape"):
@@ -345,7 +345,7 @@ class Motion:
         return read_only(stack(self._full(x, y)))
 
     def _scalar(self, part):
-        return read_only(self._full(number(part))[0])
+        return read_only(self._full(number_or_zero(part))[0])
 
     def _full(self, *parts):
         """The parts with the shape of crank angles and designs together."""

@@ -17,9 +17,9 @@ from typing import Any
 
 from ..errors import ParameterError
 from ..machine.group import FRAME
-from ..machine.links import accelerated, arm, first_at, present, second_at
+from ..machine.links import acceleration_of, arm, first_at, present, second_at
 from ..numbers import checks
-from ..numbers.planar import added, plus, product, stretched
+from ..numbers.planar import add_vectors, plus, product, scale_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class PrincipalPoints:
         """Principal-point vector of each link, and of each joint that takes part by itself, (2, ..., N), m."""
         mass = self._present_mass()
         links = {
-            name: motion.as_vector(stretched(1.0 / mass, arm_in))
+            name: motion.as_vector(scale_vector(1.0 / mass, arm_in))
             for name, (_, arm_in) in self._arms(motion.placement).items()
             if arm_in is not None
         }
@@ -92,8 +92,8 @@ class PrincipalPoints:
     def mass_centre_velocity(self, motion):
         """Velocity of the common mass centre, (2, ..., N), m/s."""
         moving = [first_at(link, lever) for link, lever in self._arms(motion.placement).values()]
-        moving += [stretched(part, motion.placement.joints[name].first) for name, part in self.carried.items()]
-        total = stretched(motion.crank_speed / self._present_mass(), reduce(added, moving, None))
+        moving += [scale_vector(part, motion.placement.joints[name].first) for name, part in self.carried.items()]
+        total = scale_vector(motion.crank_speed / self._present_mass(), reduce(add_vectors, moving, None))
         return motion.as_vector(total)
 
     def mass_centre_acceleration(self, motion):
@@ -102,14 +102,14 @@ class PrincipalPoints:
 
     def shaking_force(self, motion):
         """Force of the inertia of all moving masses on the frame, minus mass times a_S, (2, ..., N), N."""
-        return motion.as_vector(stretched(-1.0, reduce(added, self._inertia(motion), None)))
+        return motion.as_vector(scale_vector(-1.0, reduce(add_vectors, self._inertia(motion), None)))
 
     def _inertia(self, motion):
         for link, lever in self._arms(motion.placement).values():
-            yield accelerated(first_at(link, lever), second_at(link, lever), *motion.accelerating)
+            yield acceleration_of(first_at(link, lever), second_at(link, lever), *motion.accelerating)
         for name, part in self.carried.items():
             joint = motion.placement.joints[name]
-            yield stretched(part, accelerated(joint.first, joint.second, *motion.accelerating))
+            yield scale_vector(part, acceleration_of(joint.first, joint.second, *motion.accelerating))
 
     def _arms(self, placement):
         """By link: the link as if it turned in place, and its static moment turned into the frame's axes."""
@@ -126,7 +126,7 @@ class PrincipalPoints:
         return self.mass
 
 
-def _inward(mechanism, held, joint):
+def _holder(mechanism, held, joint):
     """Link that holds a joint, its place on that link, and the link's reference joint; None where none holds it."""
     if joint in held:
         bar = held[joint]
@@ -172,7 +172,7 @@ def principal_points(mechanism):
     held = {bar.end: bar for bar in reversed(mechanism.bars)}
     for name, link in links:
         joint = mechanism.references[name]
-        while (step := _inward(mechanism, held, joint)) is not None:
+        while (step := _holder(mechanism, held, joint)) is not None:
             on, place, joint = step
             static_moments[on] = tuple(
                 plus(moment, product(link.mass, present(part)))

@@ -50,7 +50,7 @@ class Quantity(NamedTuple):
         return f".{name}" if kind is attrgetter else f".{name}({json.dumps(given)[1:-1]})"
 
 
-CHECKS = ("friction_margin", "friction_residual")
+FRICTION_CHECKS = ("friction_margin", "friction_residual")
 """Quantities that tell how well friction was found."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 
@@ -58,11 +58,11 @@ _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 def of_mechanism(mechanism) -> dict[str, Quantity]:
     """Every quantity of a mechanism, by name."""
     if mechanism not in _known:
-        _known[mechanism] = _declared(mechanism)
+        _known[mechanism] = _declare(mechanism)
     return _known[mechanism]
 
 
-def _declared(mechanism):
+def _declare(mechanism):
     found: dict[str, Quantity] = {}
 
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
@@ -115,18 +115,18 @@ def of_scene(scene) -> dict[str, Quantity]:
         found[f"{joint}_friction_loss"] = Quantity("W", f"friction loss {joint}", read, kind="friction")
     found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
     found["friction_torque"] = Quantity("N m", "friction torque", attrgetter("friction_torque"), kind="energy")
-    for name in CHECKS:
+    for name in FRICTION_CHECKS:
         found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
     return found
 
 
-def all_found(scene):
+def resolved_names(scene):
     """Names of what is found together: closure, all that parts resolve, and friction."""
     own = of_mechanism(scene.mechanism)
     return ("closure", *scene.mechanism.outputs, *(name for name in of_scene(scene) if name not in own))
 
 
-def still(ratio):
+def is_still(ratio):
     """Whether a kinematic coefficient stands for what does not turn."""
     return ratio is None
 
@@ -212,14 +212,14 @@ def values(solution, name):
     return parts[0] if len(parts) == 1 else magnitude(parts)
 
 
-def sizes(solution, name):
+def component_sizes(solution, name):
     """Components of a quantity with the magnitude in place of those of a vector."""
     parts = components(solution, name)
     vector = name != "closure" and quantity(solution, name).vector
     return (magnitude(parts),) if vector else parts
 
 
-def scale(solution, name):
+def largest_term(solution, name):
     """Largest of the terms that a force, moment or torque is the sum of; 0 for a motion or a function of the user's.
 
     What is small beside it may be rounding of terms that cancel.

@@ -22,28 +22,28 @@ that of a spring whose rate does not change and little more, (k + q l^2) e + q p
 from functools import reduce
 
 from ..machine.links import Wrench
-from ..numbers.parameter_tree import say_together
-from ..numbers.planar import added, minus, plus, product, stretched
-from .load_values import pushed
+from ..numbers.parameter_tree import come_from_one_class
+from ..numbers.planar import add_vectors, minus, plus, product, scale_vector
+from .load_values import slider_push
 
-UNSEEN = 2.0**-120
+MIN_RATE = 2.0**-120
 """Rate, N/m, that counts as nothing: where there is neither spring nor inertia something is to be divided by."""
 
 
-def acting(dynamics):
+def loads_on_groups(dynamics):
     """Loads on links by name, and forces along guides by slider, that together with the former act on the groups.
 
     Of a slider with springs inertia along its guide is among the latter, where the departure of its motion is known.
     """
     loads, pushes = dynamics.link_loads, dynamics.pushes
     for slider in {item.on: None for item in dynamics.loads if _is_spring(item)}:
-        found = _along(dynamics, slider)
+        found = _total_push(dynamics, slider)
         if found is not None:
             loads, pushes = loads | {slider: _without_inertia(dynamics, slider)}, pushes | {slider: found}
     return loads, pushes
 
 
-def _along(dynamics, slider):
+def _total_push(dynamics, slider):
     """All that acts on a slider along its guide, with its inertia; None where that is known in no better way."""
     mass, travel = dynamics.mechanism.links[slider].body.mass, dynamics.placement.travels[slider]
     if mass is None:
@@ -59,34 +59,34 @@ def _along(dynamics, slider):
         share = share / len(springs)
     force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        rate, besides = _rates(item, dynamics)
-        both, inertia, rate = _parted(share, rate)
+        rate, besides = _split_rate(item, dynamics)
+        both, inertia, rate = _split_common(share, rate)
         elongation = dynamics.elongation(item.free_position, slider)
         force = minus(force, both * departure + (inertia * travel.second + rate * elongation))
         force = minus(force, product(besides, elongation))
-    others = (pushed(item, dynamics) for item in items if not _is_spring(item))
+    others = (slider_push(item, dynamics) for item in items if not _is_spring(item))
     return reduce(plus, others, force)
 
 
-def _parted(inertia, rate):
+def _split_common(inertia, rate):
     """What inertia and the rate of a spring have in common, and what each has besides: h, w - h and c - h."""
-    size = inertia + abs(rate) + UNSEEN
+    size = inertia + abs(rate) + MIN_RATE
     w, c = inertia / size, rate / size
     return 2.0 * c * inertia, w * ((inertia - rate) + (abs(rate) - rate)), c * (abs(rate) - inertia)
 
 
-def _rates(item, dynamics):
+def _split_rate(item, dynamics):
     """Rate of a spring that no crank angle changes, if it tells of one, and what it has besides."""
     return item.parted_rate(dynamics) if _is_spring(item, "parted_rate") else (item.spring_rate(dynamics), None)
 
 
 def _is_spring(item, rate="spring_rate"):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
-    return say_together(type(item), rate, "push", "spring_rate")
+    return come_from_one_class(type(item), rate, "push", "spring_rate")
 
 
 def _without_inertia(dynamics, slider):
     """Load on a slider without the force of its inertia."""
-    weight = stretched(dynamics.mechanism.links[slider].body.mass, dynamics.gravity)
+    weight = scale_vector(dynamics.mechanism.links[slider].body.mass, dynamics.gravity)
     applied = (wrench.force for name, wrench in dynamics.wrenches if name == slider)
-    return Wrench(reduce(added, applied, weight), dynamics.link_loads[slider].moment)
+    return Wrench(reduce(add_vectors, applied, weight), dynamics.link_loads[slider].moment)

@@ -30,7 +30,7 @@ def is_foreign_array(x):
     return is_array_api_obj(x)
 
 
-def looked_at(x):
+def concrete_array(x):
     """Numbers as a NumPy array; None where a library traces them, as JAX does for a derivative, and shows no value."""
     try:
         return np.asarray(x)
@@ -40,7 +40,7 @@ def looked_at(x):
 
 def where_zero(x):
     """Where numbers are 0; nowhere if their values are not known."""
-    known = looked_at(x)
+    known = concrete_array(x)
     return np.False_ if known is None else np.asarray(known == 0.0)
 
 
@@ -70,35 +70,35 @@ def atan(x):
 
 
 _OBJECT = np.dtype(object)
-UNIT = 2.0**-53
+UNIT_ROUNDOFF = 2.0**-53
 """Largest relative error of one rounding in double precision."""
-ROUNDING = 4e-15
+SQUARE_TOLERANCE = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-SPLIT, SINGLE_SPLIT = 2.0**27 + 1.0, 2.0**12 + 1.0
+SPLITTER, SINGLE_SPLITTER = 2.0**27 + 1.0, 2.0**12 + 1.0
 """Factors by which a number, in double or single precision, is split into two of half as many digits."""
-MOST_TERMS = 6
+MAX_SUM_TERMS = 6
 """Numbers that `total` takes, in every engine."""
-UNSEEN = 2.0**-310
+NEGLIGIBLE_LENGTH = 2.0**-310
 """Unit, m, of which what counts as nothing changes no digit of any other distance."""
-APART = 2.0**-90
+RELATIVE_OFFSET = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
 
-def root(square, unit):
+def clamped_sqrt(square, unit):
     """Root of a square that counts in `unit`; NaN where that is negative by more than rounding.
 
     NaN also where both are too small for the precision: no sign is known of such a square.
     """
     if _holds_objects(square):
-        return _each("forgiving_root", square, unit, lambda square: square.sqrt())
+        return _call_method("forgiving_root", square, unit, lambda square: square.sqrt())
     xp = namespace(square)
-    return xp.where(square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0 * unit)), xp.nan)
+    return xp.where(square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0 * unit)), xp.nan)
 
 
-def divisor(root, unit):
+def guarded_divisor(root, unit):
     """A root to divide by, not smaller than `unit`: rates and forces stay finite at their poles."""
     if _holds_objects(root):
-        return _each("kept_off_zero", root, unit, lambda root: root)
+        return _call_method("kept_off_zero", root, unit, lambda root: root)
     return namespace(root).maximum(root, unit)
 
 
@@ -117,47 +117,49 @@ def _sign_of_one(x):
     return np.copysign(1.0, x) if isinstance(x, float | int) else x.sign() if hasattr(x, "sign") else x.sgn()
 
 
-def held(x):
+def stop_gradient(x):
     """The same number, whose derivatives count as zero: for what a solution does not change with to first order."""
     if _holds_objects(x):
         return np.frompyfunc(lambda part: part.held() if hasattr(part, "held") else part, 1, 1)(x)
     return x.held() if hasattr(x, "held") else x
 
 
-def apart(distance, unit):
+def offset_from_zero(distance, unit):
     """A distance moved off zero by nothing that counts, so that it has a direction; an enclosure is left alone."""
     if _holds_objects(distance):
-        return _each("moved_apart", distance, unit, lambda distance: distance)
+        return _call_method("moved_apart", distance, unit, lambda distance: distance)
     if not isinstance(distance, float | int) and not hasattr(distance, "dtype"):
         return distance.moved_apart(unit) if hasattr(distance, "moved_apart") else distance
-    return distance + APART * unit
+    return distance + RELATIVE_OFFSET * unit
 
 
-def total(*terms):
+def compensated_sum(*terms):
     """Sum of up to six numbers, rounded as if once: what cancels leaves the digits that the numbers have.
 
     What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
     Absent numbers are none. Enclosures and others of any precision need no help from rounding.
     """
     present = [term for term in terms if term is not None]
-    if len(present) > MOST_TERMS:
-        raise ParameterError(f"arithmetic.total takes {MOST_TERMS} numbers at most, got {len(present)}; make two of it")
+    if len(present) > MAX_SUM_TERMS:
+        raise ParameterError(
+            f"arithmetic.total takes {MAX_SUM_TERMS} numbers at most, got {len(present)}; make two of it"
+        )
     recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
         return recorded.total_with(present) if len(present) > 1 else recorded
     if not _are_floats(present):
         return sum(present)
-    *lost, whole = summed(summed(present))
+    *lost, whole = vector_sum(vector_sum(present))
     return whole + sum(lost)
 
 
-def lost(*terms):
+def sum_corrections(*terms):
     """Magnitudes of what a `total` adds up at last beside the sum; zero where that has not lost anything."""
-    *parts, _ = summed(summed(terms))
+    *parts, _ = vector_sum(vector_sum(terms))
     return sum(map(abs, parts))
 
 
-def rest(length, x, y):
+def length_error(length, x, y):
     """What rounding took off the length of a vector: with it in a `total` that is as if exact.
 
     In exact arithmetic there is none, so it has no derivatives. The squares are taken in two parts (Veltkamp, Dekker).
@@ -167,19 +169,19 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
-    return total(*off_square(length, x, y)) / (2.0 * length)
+    return compensated_sum(*square_difference_terms(length, x, y)) / (2.0 * length)
 
 
-def off_square(length, x, y):
+def square_difference_terms(length, x, y):
     """Terms of what the square of a length lacks of that of a vector, exactly."""
-    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    (one, first), (two, second), (three, third) = map(two_square, (x, y, length))
     return one, first, two, second, -three, -third
 
 
-def squared(a, split=None):
+def two_square(a, split=None):
     """Square of a number, rounded, and what that lost."""
     if split is None:
-        split = SINGLE_SPLIT if _is_single(a) else SPLIT
+        split = SINGLE_SPLITTER if _is_single(a) else SPLITTER
     whole, spread = a * a, split * a
     high = spread - (spread - a)
     low = a - high
@@ -194,16 +196,16 @@ def _are_floats(parts):
     return all(isinstance(part, float) or getattr(part, "dtype", _OBJECT) != _OBJECT for part in parts)
 
 
-def summed(terms):
+def vector_sum(terms):
     """What each sum of terms one after the other loses, and the last sum."""
     whole, lost = terms[0], []
     for term in terms[1:]:
-        whole, rest = sum_and_rest(whole, term)
+        whole, rest = two_sum(whole, term)
         lost.append(rest)
     return *lost, whole
 
 
-def sum_and_rest(a, b):
+def two_sum(a, b):
     """Sum of two numbers, and what it loses by rounding (Knuth)."""
     whole = a + b
     part = whole - a
@@ -214,7 +216,7 @@ def _holds_objects(x):
     return getattr(x, "dtype", None) == _OBJECT
 
 
-def _each(method, x, unit, exactly):
+def _call_method(method, x, unit, exactly):
     """Apply a method of recorded numbers; enclosures and others of any precision need no help from rounding."""
 
     def of_one(x, unit):

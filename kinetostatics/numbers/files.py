@@ -13,11 +13,11 @@ import numpy as np
 
 from ..errors import CaseError, FileError
 from . import checks
-from .formatting import heading, tolerant
-from .texts import on_disk
+from .formatting import heading, parse_user_heading
+from .texts import find_on_disk
 from .units import NUMBER, factor, quoted
 
-LARGEST_TABLE = 10_000_000
+MAX_TABLE_BYTES = 10_000_000
 """Bytes that a table may have: half a million rows."""
 _NUMBER = re.compile(NUMBER)
 
@@ -31,7 +31,7 @@ def read_text(path, largest):
         It is none of these, or no text.
     """
     try:
-        path = on_disk(path)
+        path = find_on_disk(path)
         found = path.stat()
         if not stat.S_ISREG(found.st_mode):
             kind = "folder" if stat.S_ISDIR(found.st_mode) else "pipe or device"
@@ -94,18 +94,18 @@ def read_columns(path, wanted):
 
 def headings(path):
     """Name and unit of each column of a CSV file, from its first line that is no comment."""
-    return list(map(tolerant, _rows(path)[0]))
+    return list(map(parse_user_heading, _rows(path)[0]))
 
 
 def _column(headings, rows, name, wanted):
     """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
-    names, units = zip(*map(tolerant, headings), strict=True)
+    names, units = zip(*map(parse_user_heading, headings), strict=True)
     places = [place for place, found in enumerate(names) if found == name]
     if len(places) != 1:
         there = ", ".join(map(repr, headings[:20]))
         twice = f"{len(places)} columns are {name!r}, of {there}; keep one"
         raise ValueError(
-            twice if places else f"no column {name!r}; it has {there}{_renamed(name, wanted, names, units)}"
+            twice if places else f"no column {name!r}; it has {there}{_heading_advice(name, wanted, names, units)}"
         )
     (place,) = places
     own, unit = headings[place], units[place]
@@ -121,7 +121,7 @@ def _column(headings, rows, name, wanted):
     return np.array([cells[place] for _, cells in rows], dtype=float) * scale
 
 
-def _renamed(name, wanted, names, units):
+def _heading_advice(name, wanted, names, units):
     """Advice on how to head the column that is meant by a name, empty if none is like it."""
     near = checks.nearest(name, names)
     if near is None:
@@ -136,7 +136,7 @@ def _is_number(cell):
 
 def _rows(path):
     """Headings, and each row that is not empty with the number of its line."""
-    text = read_text(path, LARGEST_TABLE)
+    text = read_text(path, MAX_TABLE_BYTES)
     lines = csv.reader(_without_comments(text), skipinitialspace=True, strict=True)
     try:
         rows = [(lines.line_num, [cell.strip() for cell in cells]) for cells in lines if any(map(str.strip, cells))]
@@ -167,36 +167,36 @@ def _without_comments(text):
 
 
 @contextmanager
-def written_whole(path):
+def write_atomically(path):
     """Path of a temporary file that takes the place of `path` when the block ends without an error.
 
     What stands there keeps its permissions and, where that is allowed, its owner; through a symbolic link its target is
     written. A file that may not be written is refused.
     """
-    problem = unwritable(path)
+    problem = write_problem(path)
     if problem:
         raise FileError(problem)
     path = Path(path)
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
-        with _naming(path):
+        with _errors_naming(path):
             yield path
         return
     path = Path(os.path.realpath(path))
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
-        _create(temporary, 0o600 if before else 0o666, path)
-        with _naming(path):
+        _create_empty(temporary, 0o600 if before else 0o666, path)
+        with _errors_naming(path):
             yield str(temporary)
         if before is not None:
-            _resembling(temporary, before)
+            _copy_permissions(temporary, before)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
 
 
 @contextmanager
-def _naming(path):
+def _errors_naming(path):
     """Errors of the system in writing, which name no file or a temporary one, name the file that is written."""
     try:
         yield
@@ -206,7 +206,7 @@ def _naming(path):
         raise FileError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
-def _create(temporary, mode, path):
+def _create_empty(temporary, mode, path):
     """An empty file that is new, in a folder made if missing; errors name what it is for."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -215,12 +215,12 @@ def _create(temporary, mode, path):
         raise FileError(f"{path} cannot be written: {error.strerror}; give another place") from None
 
 
-def told(error, elsewhere):
+def describe_os_error(error, elsewhere):
     """What the system says of an error, without its number, behind the file that it names or `elsewhere`."""
     return f"{error.filename or elsewhere}: {error.strerror or error}"
 
 
-def _resembling(path, before):
+def _copy_permissions(path, before):
     """Give a file the permissions that another had, and its owner where this process may."""
     own = path.stat()
     if hasattr(os, "chown") and (own.st_uid, own.st_gid) != (before.st_uid, before.st_gid):
@@ -229,7 +229,7 @@ def _resembling(path, before):
     path.chmod(stat.S_IMODE(before.st_mode))
 
 
-def unwritable(path, *, inputs=(), endings=()):
+def write_problem(path, *, inputs=(), endings=()):
     """Why a result cannot be written to this file, as a sentence, or None; to ask before the work that it takes.
 
     Parameters
@@ -257,7 +257,7 @@ def unwritable(path, *, inputs=(), endings=()):
             return f"{path} is a symbolic link that leads in a circle"
         if target.exists() and not (target.stat().st_mode & 0o222 and os.access(target, os.W_OK)):
             return f"{path} is read-only; allow writing, or give another name"
-        return unwritable_folder(target.parent)
+        return folder_write_problem(target.parent)
     except (OSError, ValueError) as error:
         return f"{str(path)!r} is no name of a file here: {getattr(error, 'strerror', None) or error}"
 
@@ -271,7 +271,7 @@ def folder_problem(path):
     return None
 
 
-def unwritable_folder(path):
+def folder_write_problem(path):
     """Why results cannot be written into this folder, as a sentence, or None; it need not exist."""
     path = Path(path)
     try:

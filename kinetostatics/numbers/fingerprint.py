@@ -20,13 +20,15 @@ from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, Modul
 import numpy as np
 
 LIBRARY = __name__.partition(".")[0]
-SETTLED = (LIBRARY, "numpy", "math", "pint", "builtins", "typing", "abc")
+TRUSTED_PACKAGES = (LIBRARY, "numpy", "math", "pint", "builtins", "typing", "abc")
 """Packages whose functions and classes are taken as they are."""
 MISSING = "missing"
-MADE = {f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]}
+GENERATED_METHODS = {
+    f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]
+}
 """Methods that dataclasses are given, and those that only make an item: they compute nothing afterwards."""
 
-CODE = (
+CODE_ATTRIBUTES = (
     "co_code",
     "co_consts",
     "co_names",
@@ -40,7 +42,15 @@ CODE = (
 )
 """What of compiled code decides what it does; not where it was written."""
 
-IDLE = ("__dict__", "__weakref__", "__doc__", "__module__", "__annotations__", "__firstlineno__", "__slots__")
+IGNORED_ATTRIBUTES = (
+    "__dict__",
+    "__weakref__",
+    "__doc__",
+    "__module__",
+    "__annotations__",
+    "__firstlineno__",
+    "__slots__",
+)
 """What stands in a class without deciding what it does."""
 
 
@@ -52,17 +62,17 @@ def key_of(value, names=(), above=()):
         return "again", next(place for place, other in enumerate(above) if value is other)
     above = (*above, value)
     if isinstance(value, ModuleType):
-        return value.__name__, *_used(value, names, above)
+        return value.__name__, *_module_keys(value, names, above)
     if isinstance(value, FunctionType):
-        return value if _is_settled(value) else _of_function(value, above)
+        return value if _is_trusted(value) else _function_key(value, above)
     if isinstance(value, type):
-        return value if _is_settled(value) else of_class(value, above)
+        return value if _is_trusted(value) else class_key(value, above)
     if isinstance(value, staticmethod | classmethod):
-        return _all(type(value), key_of(value.__func__, (), above))
+        return _none_or_all(type(value), key_of(value.__func__, (), above))
     if isinstance(value, property | cached_property):
-        return _all(type(value), key_of(value.fget if isinstance(value, property) else value.func, (), above))
+        return _none_or_all(type(value), key_of(value.fget if isinstance(value, property) else value.func, (), above))
     if isinstance(value, tuple):
-        return _all(type(value), *(key_of(part, (), above) for part in value))
+        return _none_or_all(type(value), *(key_of(part, (), above) for part in value))
     if isinstance(value, BuiltinFunctionType):  # a method of a list, say, is one too
         return value if isinstance(value.__self__, ModuleType | None) else None
     if isinstance(value, np.ufunc | type(np.where)):
@@ -70,28 +80,28 @@ def key_of(value, names=(), above=()):
     return value if type(value).__module__.partition(".")[0] == LIBRARY and callable(value) else None
 
 
-def of_class(kind, above=()):
+def class_key(kind, above=()):
     """Key of all that classes of the user's say, those that a class is derived from among them."""
-    return _all(*(part for base in kind.__mro__ if not _is_settled(base) for part in _said(base, above)))
+    return _none_or_all(*(part for base in kind.__mro__ if not _is_trusted(base) for part in _class_keys(base, above)))
 
 
-def _said(base, above):
+def _class_keys(base, above):
     yield base
     for name, value in vars(base).items():
         if name.startswith("__"):
-            if isinstance(value, FunctionType) and name not in MADE:
+            if isinstance(value, FunctionType) and name not in GENERATED_METHODS:
                 yield key_of(value, (), above)
         elif not (name.startswith("_abc_") or type(value).__name__ in ("member_descriptor", "getset_descriptor")):
             yield name
-            yield _declared(value, above)
+            yield _attribute_key(value, above)
 
 
-def _declared(value, above):
+def _attribute_key(value, above):
     """Key of a class's attribute, which may be a table of declarations."""
     if isinstance(value, dict):
-        return _all(dict, *(_declared(part, above) for pair in value.items() for part in pair))
+        return _none_or_all(dict, *(_attribute_key(part, above) for pair in value.items() for part in pair))
     if isinstance(value, list | tuple | set | frozenset):
-        return _all(type(value), *(_declared(part, above) for part in value))
+        return _none_or_all(type(value), *(_attribute_key(part, above) for part in value))
     if isinstance(value, np.ndarray) and value.dtype != object:
         return value.dtype.str, value.shape, value.tobytes()
     if value is not None and not isinstance(value, type) and type(value).__module__.partition(".")[0] == LIBRARY:
@@ -99,12 +109,12 @@ def _declared(value, above):
     return key_of(value, (), above)
 
 
-def _of_function(function, above):
+def _function_key(function, above):
     code, outer = function.__code__, function.__globals__
     names = _names(code)
     values = [outer.get(name, MISSING) for name in names] + _closed_over(function)
     values += [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values(), *vars(function).values()]
-    return _all(code, *(key_of(value, names, above) for value in values))
+    return _none_or_all(code, *(key_of(value, names, above) for value in values))
 
 
 def _closed_over(function):
@@ -124,9 +134,9 @@ def _names(code):
     return tuple(dict.fromkeys([*code.co_names, *(name for part in inner for name in _names(part))]))
 
 
-def _used(module, names, above):
+def _module_keys(module, names, above):
     """What of a module is used; its functions are taken as they are."""
-    if module.__name__.partition(".")[0] in SETTLED:
+    if module.__name__.partition(".")[0] in TRUSTED_PACKAGES:
         return
     for name in names:
         value = vars(module).get(name, MISSING)
@@ -134,18 +144,18 @@ def _used(module, names, above):
         yield value if isinstance(value, FunctionType) else key_of(value, names, above)
 
 
-def _is_settled(item):
-    return (getattr(item, "__module__", None) or "").partition(".")[0] in SETTLED
+def _is_trusted(item):
+    return (getattr(item, "__module__", None) or "").partition(".")[0] in TRUSTED_PACKAGES
 
 
-def _all(*parts):
+def _none_or_all(*parts):
     """The parts, or None if one of them is."""
     return None if any(part is None for part in parts) else parts
 
 
 def digest(item):
     """Digest of a variant, a scene or a function, the same in every session."""
-    return _digested(item.content) if hasattr(item, "content") else _Digests().digest(item)
+    return _sha256(item.content) if hasattr(item, "content") else _Digests().digest(item)
 
 
 class _Digests:
@@ -156,12 +166,12 @@ class _Digests:
 
     def digest(self, item):
         if isinstance(item, bool | int | float | complex | str | bytes | type(None) | type(Ellipsis)):
-            return _hash(type(item).__name__, repr(item))
+            return _hash_texts(type(item).__name__, repr(item))
         if id(item) in self._above:
-            return _hash("above", str(self._above[id(item)]))
+            return _hash_texts("above", str(self._above[id(item)]))
         if id(item) not in self._done:
             self._above[id(item)] = len(self._above)
-            found = _hash(_named(type(item)), *self._parts(item))
+            found = _hash_texts(_versioned_name(type(item)), *self._parts(item))
             del self._above[id(item)]
             self._done[id(item)] = found, item  # kept, for another would take its id
         return self._done[id(item)][0]
@@ -170,7 +180,7 @@ class _Digests:
         """What tells an object from others of its type."""
         if isinstance(item, np.ndarray | np.generic):
             whole = np.asarray(item)
-            held = self._all(whole.ravel().tolist()) if whole.dtype.hasobject else [_digested(whole.tobytes())]
+            held = self._all(whole.ravel().tolist()) if whole.dtype.hasobject else [_sha256(whole.tobytes())]
             return [str(whole.dtype), str(whole.shape), *held]
         if type(item).__module__.startswith("pandas.") and hasattr(item, "to_numpy"):
             return self._all([item.to_numpy(), *map(np.asarray, getattr(item, "axes", ()))])
@@ -181,7 +191,7 @@ class _Digests:
         if isinstance(item, dict):
             return self._all([part for pair in item.items() for part in pair])
         if isinstance(item, CodeType):
-            return self._all(getattr(item, name) for name in CODE)
+            return self._all(getattr(item, name) for name in CODE_ATTRIBUTES)
         if isinstance(item, partial):
             return self._all([item.func, item.args, dict(sorted(item.keywords.items()))])
         if isinstance(item, property):
@@ -189,26 +199,26 @@ class _Digests:
         if isinstance(item, MethodType):
             return self._all([item.__func__, item.__self__])
         if isinstance(item, FunctionType):
-            return self._all(_held_by(item))
+            return self._all(_function_parts(item))
         if isinstance(item, ModuleType | BuiltinFunctionType | np.ufunc):
-            return [_named(item)]
+            return [_versioned_name(item)]
         if isinstance(item, type):
-            return [_named(item), *self._all(_written_in(item))]
-        return self._all(_of_object(item))
+            return [_versioned_name(item), *self._all(_class_attributes(item))]
+        return self._all(_object_parts(item))
 
     def _all(self, items):
         return [self.digest(item) for item in items]
 
 
-def _hash(*texts):
-    return _digested(repr(texts).encode())
+def _hash_texts(*texts):
+    return _sha256(repr(texts).encode())
 
 
-def _digested(content):
+def _sha256(content):
     return hashlib.sha256(content).hexdigest()
 
 
-def _named(item):
+def _versioned_name(item):
     """Name of a module, class or function, with the version of what it comes from."""
     module = item.__name__ if isinstance(item, ModuleType) else str(getattr(item, "__module__", ""))
     version = getattr(sys.modules.get(_package(module)), "__version__", "")
@@ -219,7 +229,7 @@ def _package(module):
     return module.partition(".")[0]
 
 
-def _library(module):
+def _is_library(module):
     """Whether a module is Python's, ours, or installed, and so told by a version."""
     if module == "__main__":
         return False
@@ -228,34 +238,34 @@ def _library(module):
     return ours or _package(module) in sys.stdlib_module_names or "site-packages" in file or "dist-packages" in file
 
 
-def _held_by(function):
+def _function_parts(function):
     """Code of a function, what it holds and, unless it is a library's, what it names of its own module."""
     code, defaults = function.__code__, (function.__defaults__, function.__kwdefaults__)
-    return code, *defaults, _closed_over(function), vars(function), _named_by(function)
+    return code, *defaults, _closed_over(function), vars(function), _own_globals(function)
 
 
-def _named_by(function):
+def _own_globals(function):
     known, module = function.__globals__, function.__module__
-    if _library(str(module)):
+    if _is_library(str(module)):
         return {}
     names = sorted(name for name in _names(function.__code__) if name in known)
-    return {name: known[name] for name in names if _own(known[name], module)}
+    return {name: known[name] for name in names if _is_own(known[name], module)}
 
 
-def _own(item, module):
+def _is_own(item, module):
     """Whether something is a value, or written in this module."""
     if isinstance(item, ModuleType):
         return False
     return not callable(item) or getattr(item, "__module__", module) == module
 
 
-def _written_in(kind):
+def _class_attributes(kind):
     """What is written in a class and in those it inherits from, but for a library's."""
-    written = [vars(base) for base in kind.__mro__ if not _library(base.__module__)]
-    return [{name: value for name, value in table.items() if name not in IDLE} for table in written]
+    written = [vars(base) for base in kind.__mro__ if not _is_library(base.__module__)]
+    return [{name: value for name, value in table.items() if name not in IGNORED_ATTRIBUTES} for table in written]
 
 
-def _of_object(item):
+def _object_parts(item):
     """Class and state of any other object; its text where it has none, or is one of Python's own."""
     wrapped = getattr(item, "__wrapped__", None)  # of what is cached or compiled
     if is_dataclass(item):

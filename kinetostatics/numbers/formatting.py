@@ -9,20 +9,20 @@ import re
 from decimal import ROUND_CEILING, Context, Decimal
 
 from . import checks
-from .texts import normal
+from .texts import normalise
 from .units import factor
 
 DIGITS = 6
 """Significant digits that are shown, at most."""
-PLAIN = 1e9
+MAX_PLAIN_NUMBER = 1e9
 """Size up to which a number is written without a power of ten."""
 ANGLE_DECIMALS = 3
 """Decimals of a crank angle in degrees: as many as six digits of a turn have."""
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
 """Digits of what no reader takes so exactly, by column or row."""
-SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
+UNIT_SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
 _HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
-_ROUND = re.compile(r"(.*?)\s*\(([^()]*)\)")
+_ROUND_BRACKETS = re.compile(r"(.*?)\s*\(([^()]*)\)")
 """A heading with its unit in brackets that are not meant for it."""
 
 
@@ -56,7 +56,7 @@ def number(value, digits=DIGITS, bound=0.0, infinity="inf"):
         known = power_of(value) - power_of(bound) + 1
         digits, whole = min(digits, known), whole and bound < 10.0
     text = f"{value:.{digits}g}"
-    if "e+" in text and abs(value) < PLAIN:  # else the last figures before the point are zeros
+    if "e+" in text and abs(value) < MAX_PLAIN_NUMBER:  # else the last figures before the point are zeros
         text = f"{value if whole else float(text):.0f}"
     return text
 
@@ -66,14 +66,14 @@ def power_of(value):
     return int(f"{value:e}".partition("e")[2])
 
 
-def at_most(bound):
+def round_bound_up(bound):
     """A bound with two digits, rounded up."""
     return number(float(Decimal(float(bound)).normalize(Context(2, ROUND_CEILING))), 2)
 
 
-def about(uncertainty):
+def round_uncertainty_up(uncertainty):
     """An uncertainty with two digits, rounded up, but not for less than a thousandth of it: 0.1 mm stay 0.1 mm."""
-    return at_most(0.999 * uncertainty)
+    return round_bound_up(0.999 * uncertainty)
 
 
 def angle(degrees):
@@ -81,7 +81,7 @@ def angle(degrees):
     return number(degrees if isinstance(degrees, str) else round(degrees, ANGLE_DECIMALS))
 
 
-def exact(value):
+def shortest_exact(value):
     """A number as short as tells it exactly."""
     return repr(value).removesuffix(".0")
 
@@ -91,16 +91,16 @@ def digits_of(row, column=""):
     return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
 
 
-def pretty(unit):
+def pretty_unit(unit):
     """A unit with raised exponents and dots between its parts: "kg·m²", "m/s²"."""
     if unit in ("", "1"):
         return ""
-    over = [_product(part) for part in unit.replace("**", "^").split("/")]
+    over = [_pretty_product(part) for part in unit.replace("**", "^").split("/")]
     return "/".join(over)
 
 
-def _product(unit):
-    return "·".join(SIGNS.get(part, part) for part in unit.replace("*", " ").split())
+def _pretty_product(unit):
+    return "·".join(UNIT_SIGNS.get(part, part) for part in unit.replace("*", " ").split())
 
 
 def heading(name, unit):
@@ -108,22 +108,22 @@ def heading(name, unit):
     return f"{name} [{unit}]"
 
 
-def parted(text):
+def parse_heading(text):
     """Name and unit of a heading; the unit is empty where there is none."""
     found = _HEADING.fullmatch(str(text).strip())
     return (found[1].strip(), (found[2] or "").strip()) if found else (str(text).strip(), "")
 
 
-def tolerant(text):
+def parse_user_heading(text):
     """Name and unit of a heading of a user's file, as the library writes them.
 
     Capital letters, blanks and hyphens in the name are no difference, and the unit may stand in round brackets:
     "Crank angle (deg)" heads crank_angle.
     """
-    name, unit = parted(text)
-    rounded = None if unit else _ROUND.fullmatch(name)
+    name, unit = parse_heading(text)
+    rounded = None if unit else _ROUND_BRACKETS.fullmatch(name)
     name, unit = rounded.groups() if rounded else (name, unit)
-    return "_".join(normal(name).lower().replace("-", " ").split()), unit.strip()
+    return "_".join(normalise(name).lower().replace("-", " ").split()), unit.strip()
 
 
 def si_columns(columns, known=None, unknown=None):
@@ -146,10 +146,10 @@ def si_columns(columns, known=None, unknown=None):
     found: dict[str, tuple[str, str, float]] = {}
     problems = []
     for column in columns:
-        name, unit = parted(column)
+        name, unit = parse_heading(column)
         problem = None
         if known is not None and name not in known:
-            problem = _in_round_brackets(name, known)
+            problem = _round_bracket_problem(name, known)
             problem = problem or (unknown(name) if unknown else checks.choice("parameter", name, tuple(known)))
         if name in found:
             problem = f"parameter {name!r} has two columns"
@@ -164,9 +164,9 @@ def si_columns(columns, known=None, unknown=None):
     return tuple(found.values()), problems
 
 
-def _in_round_brackets(text, known):
+def _round_bracket_problem(text, known):
     """What is wrong with the heading of a known name that has its unit in round brackets, or None."""
-    found = _ROUND.fullmatch(text)
+    found = _ROUND_BRACKETS.fullmatch(text)
     if not found or found[1] not in known:
         return None
     return f"parameter {text!r} has its unit in round brackets; write {heading(*found.groups())!r}"

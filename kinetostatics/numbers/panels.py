@@ -13,20 +13,20 @@ from numpy.polynomial import chebyshev
 
 from ..errors import ParameterError
 
-DEGREE = 16
-FIRST = 16
+PANEL_DEGREE = 16
+INITIAL_PANELS = 16
 """Panels to begin with."""
-DEPTH = 14
+MAX_HALVINGS = 14
 """How many times one is halved before it is taken to hold a kink."""
-RESOLVED = 1e-12
+COEFFICIENT_TOLERANCE = 1e-12
 """Last coefficients, relative to the largest value, from which on a panel is narrow enough."""
-MOST = 400
+MAX_ROUGH_PANELS = 400
 """Panels at once that may be too wide; a function with more of them is rough everywhere."""
-TAIL = 3
-BESIDE = 0.01
+TAIL_COEFFICIENTS = 3
+CONTINUATION_WIDTH = 0.01
 """Width of the panels, relative to the period, that continue a curve up to a kink."""
-_NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))[::-1]
-_FIT = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
+_NODES = np.cos(np.pi * (np.arange(PANEL_DEGREE + 1) + 0.5) / (PANEL_DEGREE + 1))[::-1]
+_FIT = np.linalg.inv(chebyshev.chebvander(_NODES, PANEL_DEGREE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +45,11 @@ class Panels:
         ParameterError
             It is not smooth between finitely many kinks.
         """
-        edges = np.unique([*np.linspace(0.0, period, FIRST + 1), *np.mod(breaks, period)])
-        found, rough = _refined(function, edges)
-        if rough and len(rough) <= MOST:
-            kinks = [_kink(function, low, high, period) for low, high in rough]
-            found, rough = _refined(function, np.unique([*edges, *np.mod(kinks, period)]), 4 * DEPTH)
+        edges = np.unique([*np.linspace(0.0, period, INITIAL_PANELS + 1), *np.mod(breaks, period)])
+        found, rough = _refine(function, edges)
+        if rough and len(rough) <= MAX_ROUGH_PANELS:
+            kinks = [_find_kink(function, low, high, period) for low, high in rough]
+            found, rough = _refine(function, np.unique([*edges, *np.mod(kinks, period)]), 4 * MAX_HALVINGS)
         if rough:
             low, high = rough[0]
             raise ParameterError(
@@ -75,7 +75,7 @@ class Panels:
         t, found = 2.0 * (angle - start) / width - 1.0, []
         coefficients = self.coefficients
         for power in range(order + 1):
-            found.append(_sum(coefficients[place], t) * (2.0 / width) ** power)
+            found.append(_clenshaw(coefficients[place], t) * (2.0 / width) ** power)
             coefficients = chebyshev.chebder(coefficients, axis=1)
         return tuple(found)
 
@@ -113,7 +113,7 @@ class Panels:
         return places[signs != np.roll(signs, 1)]
 
 
-def _sum(coefficients, t):
+def _clenshaw(coefficients, t):
     """Clenshaw's recurrence with coefficients (N, degree + 1) at N places, of any shape."""
     ahead = after = np.zeros_like(t)
     for order in range(coefficients.shape[-1] - 1, 0, -1):
@@ -121,12 +121,12 @@ def _sum(coefficients, t):
     return coefficients[..., 0] + t * ahead - after
 
 
-def places(low, high):
+def panel_nodes(low, high):
     """Where values of a panel are taken, rising."""
     return low + (_NODES + 1.0) / 2.0 * (high - low)
 
 
-def _refined(function, edges, depth=DEPTH):
+def _refine(function, edges, depth=MAX_HALVINGS):
     """Coefficients by the start of each panel, and those that stay rough, neighbours as one."""
     waiting = list(pairwise(edges))
     found: dict[float, np.ndarray] = {}
@@ -135,13 +135,13 @@ def _refined(function, edges, depth=DEPTH):
         if not waiting:
             break
         low, high = np.array(waiting).T
-        values = function(places(low[:, None], high[:, None]).ravel()).reshape(len(waiting), -1)
+        values = function(panel_nodes(low[:, None], high[:, None]).ravel()).reshape(len(waiting), -1)
         size = max(size, float(np.max(np.abs(values))))
         coefficients = values @ _FIT.T
-        smooth = np.max(np.abs(coefficients[:, -TAIL:]), axis=1) <= RESOLVED * size
+        smooth = np.max(np.abs(coefficients[:, -TAIL_COEFFICIENTS:]), axis=1) <= COEFFICIENT_TOLERANCE * size
         found |= dict(zip(low[smooth], coefficients[smooth], strict=True))
         left = [pair for pair, done in zip(waiting, smooth, strict=True) if not done]
-        if level == depth or len(left) > MOST:
+        if level == depth or len(left) > MAX_ROUGH_PANELS:
             rough = left
             break
         waiting = [half for a, b in left for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
@@ -154,12 +154,12 @@ def _refined(function, edges, depth=DEPTH):
     return found, joined
 
 
-def _kink(function, low, high, period):
+def _find_kink(function, low, high, period):
     """The place between two curves, by halving: which of them continues there."""
-    width = BESIDE * period
+    width = CONTINUATION_WIDTH * period
     sides = []
     for start, stop in ((low - width, low), (high, high + width)):
-        sides.append((start, stop, _FIT @ function(np.mod(places(start, stop), period))))
+        sides.append((start, stop, _FIT @ function(np.mod(panel_nodes(start, stop), period))))
     for _ in range(60):
         middle = (low + high) / 2
         if not low < middle < high:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from .fingerprint import LIBRARY, key_of, of_class
+from .fingerprint import LIBRARY, class_key, key_of
 from .lazy import cached_property
 
 
@@ -41,12 +41,12 @@ class _Mark:
 
 
 NUMBER, TABLE, PART = _Mark("NUMBER"), _Mark("TABLE"), _Mark("PART")
-STRUCTURAL = (bool, int, str)
+STRUCTURAL_TYPES = (bool, int, str)
 """Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
 FLOATS = frozenset((float,))
 
 
-class Kept(float):
+class KeptZero(float):
     """A zero that stays a leaf, so that it can be given another value."""
 
 
@@ -97,7 +97,7 @@ class Leaves:
         return other
 
 
-def put_together(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
+def unflatten(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
     """The item of a structure, with leaves from functions that are called in order; nothing is checked anew."""
     if structure is NUMBER:
         return number()
@@ -111,7 +111,7 @@ def put_together(structure, number: Callable[[], Any], table: Callable[[], Any],
         return structure
     kind: Any = structure[0].item if isinstance(structure[0], Opaque) else structure[0]
     parts = structure[1:]
-    made = [put_together(item, number, table, part) for item in parts]
+    made = [unflatten(item, number, table, part) for item in parts]
     if kind is tuple:
         return tuple(made)
     return _filled(kind, made) if is_dataclass(kind) else kind(*made)
@@ -119,7 +119,7 @@ def put_together(structure, number: Callable[[], Any], table: Callable[[], Any],
 
 def _filled(kind: Any, values):
     """Item of a dataclass with values in its fields, nothing checked."""
-    return made(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
+    return construct_unchecked(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
 
 
 class Opaque:
@@ -137,7 +137,7 @@ class Opaque:
         return hash(self._key)
 
 
-def mapped(item, number, special=None):
+def map_numbers(item, number, special=None):
     """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew.
 
     `special` holds by type functions that copy an item in their own way.
@@ -146,36 +146,38 @@ def mapped(item, number, special=None):
         if isinstance(item, kind):
             return copied(item)
     if is_dataclass(item) and not getattr(item, "TABULATED", False):
-        return with_fields(
+        return replace_unchecked(
             item,
             **{
-                name: mapped(getattr(item, name), number, special)
+                name: map_numbers(getattr(item, name), number, special)
                 for name, structural in field_kinds(item)
                 if not structural
             },
         )
     if isinstance(item, tuple | list):
-        return tuple(mapped(part, number, special) for part in item)
+        return tuple(map_numbers(part, number, special) for part in item)
     if isinstance(item, int | float | np.number) and item == 0:
         return item
     return number(item) if isinstance(item, int | float | np.number | np.ndarray) else item
 
 
-def made(kind: Any, /, **values):
+def construct_unchecked(kind: Any, /, **values):
     """Item of a dataclass with values in its fields, nothing checked."""
     whole = object.__new__(kind)
     whole.__dict__.update(values)
     return whole
 
 
-def with_fields(item, **changes):
+def replace_unchecked(item, **changes):
     """Copy of a dataclass with some fields changed and nothing checked."""
-    return made(type(item), **{field.name: getattr(item, field.name) for field in fields(item)} | changes)
+    return construct_unchecked(
+        type(item), **{field.name: getattr(item, field.name) for field in fields(item)} | changes
+    )
 
 
 def is_structural(field):
     """Whether a field of a dataclass belongs to the structure, and is no number."""
-    return field.type in STRUCTURAL or bool(field.metadata.get("structural"))
+    return field.type in STRUCTURAL_TYPES or bool(field.metadata.get("structural"))
 
 
 def field_kinds(kind):
@@ -184,7 +186,7 @@ def field_kinds(kind):
         yield field.name, is_structural(field)
 
 
-def wider(shape, *parts):
+def broadcast_shape(shape, *parts):
     """Shape of results that depend on these parts too: numbers, arrays, or parameters with a `batch`."""
     more = [found for part in parts if (found := getattr(part, "batch", None) or getattr(part, "shape", ()))]
     return np.broadcast_shapes(shape, *more) if more else shape
@@ -193,7 +195,7 @@ def wider(shape, *parts):
 # How each type is taken apart
 
 
-def taken_apart(item, leaves: Leaves):
+def flatten(item, leaves: Leaves):
     """Structure of an item; its leaves are appended to `leaves`."""
     kind = type(item)
     if kind is float:
@@ -201,15 +203,15 @@ def taken_apart(item, leaves: Leaves):
             return 0.0
         leaves.numbers.append(item)
         return NUMBER
-    return (_TAKERS.get(kind) or _taker(kind))(item, leaves)
+    return (_FLATTENERS.get(kind) or _new_flattener(kind))(item, leaves)
 
 
-def _array(item, leaves):
+def _flatten_array(item, leaves):
     shape = item.shape
     if item.dtype != float:
-        return _passing(item, leaves)
+        return _flatten_by_identity(item, leaves)
     if not shape:
-        return taken_apart(float(item), leaves)
+        return flatten(float(item), leaves)
     if shape[-1] == 1:
         leaves.numbers.append(item)
         return NUMBER
@@ -221,24 +223,24 @@ def _table(item, leaves):
     return TABLE
 
 
-def _constants(item, leaves):
+def _flatten_constants(item, leaves):
     """Array of one axis that has nothing to do with crank angles: what it holds belongs to the structure."""
     if item.ndim == 1 and item.size > 1:
         return Opaque(item, (item.shape, item.tobytes()))
-    return taken_apart(item, leaves)
+    return flatten(item, leaves)
 
 
-def _part(item, leaves):
+def _flatten_tabulated(item, leaves):
     leaves.parts.append(item)
     return PART
 
 
-def _tuple(item, leaves):
+def _flatten_tuple(item, leaves):
     found: list[Any] = [tuple]
     for part in item:
         kind = type(part)
         if kind is not float:
-            found.append((_TAKERS.get(kind) or _taker(kind))(part, leaves))
+            found.append((_FLATTENERS.get(kind) or _new_flattener(kind))(part, leaves))
         elif part != 0.0:
             leaves.numbers.append(part)
             found.append(NUMBER)
@@ -247,60 +249,60 @@ def _tuple(item, leaves):
     return tuple(found)
 
 
-def _as_it_is(item, leaves):
+def _unchanged(item, leaves):
     return item
 
 
-def _number(item, leaves):
-    return taken_apart(float(item), leaves)
+def _flatten_number(item, leaves):
+    return flatten(float(item), leaves)
 
 
-def _kept(item, leaves):
+def _flatten_kept_zero(item, leaves):
     leaves.numbers.append(float(item))
     return NUMBER
 
 
-def _by_content(item, leaves):
+def _flatten_by_content(item, leaves):
     """What is compared by what it is made of, or taken apart each time where that may change unseen."""
     key = key_of(item)
-    return _passing(item, leaves) if key is None else Opaque(item, key)
+    return _flatten_by_identity(item, leaves) if key is None else Opaque(item, key)
 
 
-def _passing(item, leaves):
+def _flatten_by_identity(item, leaves):
     leaves.lasting = False
     return Opaque(item, (id(item),))
 
 
-_TAKERS: dict[type, Callable] = {
-    int: _number,
-    bool: _as_it_is,
-    str: _as_it_is,
-    type(None): _as_it_is,
-    Axis: _as_it_is,
-    tuple: _tuple,
-    list: _tuple,
-    np.ndarray: _array,
-    Kept: _kept,
-    FunctionType: _by_content,
+_FLATTENERS: dict[type, Callable] = {
+    int: _flatten_number,
+    bool: _unchanged,
+    str: _unchanged,
+    type(None): _unchanged,
+    Axis: _unchanged,
+    tuple: _flatten_tuple,
+    list: _flatten_tuple,
+    np.ndarray: _flatten_array,
+    KeptZero: _flatten_kept_zero,
+    FunctionType: _flatten_by_content,
 }
-_AS_THEY_ARE = frozenset((bool, int, float, str, type(None)))
+_CONSTANT_TYPES = frozenset((bool, int, float, str, type(None)))
 
 
-def _taker(kind):
+def _new_flattener(kind):
     """How items of a type are taken apart, found once: dataclasses and named tuples field by field."""
     if getattr(kind, "TABULATED", False):
-        taker = _part
+        taker = _flatten_tabulated
     elif is_dataclass(kind):
-        taker = _of_dataclass(kind)
+        taker = _dataclass_flattener(kind)
     elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
         taker = _of_named_tuple(kind)
     else:
-        taker = _number if issubclass(kind, np.floating | np.integer) else _passing
-    _TAKERS[kind] = taker
+        taker = _flatten_number if issubclass(kind, np.floating | np.integer) else _flatten_by_identity
+    _FLATTENERS[kind] = taker
     return taker
 
 
-def _of_dataclass(kind):
+def _dataclass_flattener(kind):
     """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
     over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
@@ -312,12 +314,12 @@ def _of_dataclass(kind):
         else:
             lines += [
                 f"    if {value}.__class__ is float:",
-                *_of_float(value, 8),
+                *_float_lines(value, 8),
                 f"    elif {value}.__class__ is pair and len({value}) == 2:",
                 f"        first, second = {value}",
                 "        if first.__class__ is second.__class__ is float:",
-                *_of_float("first", 12),
-                *_of_float("second", 12),
+                *_float_lines("first", 12),
+                *_float_lines("second", 12),
                 f"            {value} = pair, first, second",
                 f"        else: {value} = taken_apart({value}, leaves)",
                 f"    elif {value} is not None:",
@@ -326,24 +328,24 @@ def _of_dataclass(kind):
                 f"        else: {value} = (takers.get(kind) or taker_of(kind))({value}, leaves)",
             ]
     lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "pair": tuple}
-    scope |= {"structural": _by_content, "as_they_are": _AS_THEY_ARE, "array": np.ndarray}
-    scope |= {"takers": _TAKERS, "taker_of": _taker}
+    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": flatten, "constants": _flatten_constants, "pair": tuple}
+    scope |= {"structural": _flatten_by_content, "as_they_are": _CONSTANT_TYPES, "array": np.ndarray}
+    scope |= {"takers": _FLATTENERS, "taker_of": _new_flattener}
     exec("\n".join(lines), scope)
-    return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
+    return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_class_key(kind, scope["taker"])
 
 
-def _of_float(value, indent):
+def _float_lines(value, indent):
     """Lines that take a float."""
     lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
     return [" " * indent + line for line in lines]
 
 
-def _with_its_class(kind, taker):
+def _with_class_key(kind, taker):
     """The same for a class of the user's: what its methods and constants are belongs to the structure."""
 
     def whole(item, leaves):
-        key = of_class(kind, (kind,))
+        key = class_key(kind, (kind,))
         if key is None:
             leaves.lasting = False
             key = (id(kind),)
@@ -353,18 +355,18 @@ def _with_its_class(kind, taker):
 
 
 def _of_named_tuple(kind):
-    return lambda item, leaves: (kind, *[taken_apart(part, leaves) for part in item])
+    return lambda item, leaves: (kind, *[flatten(part, leaves) for part in item])
 
 
-MOST = 256
+MAX_STRUCTURES = 256
 """Structures that are known at a time; the longest unused goes first."""
 
 
-class Numbered(int):
+class LeafIndex(int):
     """Place of a number among the leaves of an item."""
 
 
-class Kind:
+class StructureCache:
     """A structure, as `structures.taken_apart` gives it, and what is known of all items that have it.
 
     Attributes
@@ -380,13 +382,13 @@ class Kind:
         self.structure, self.known, self.used = structure, {}, 0
 
     def __reduce__(self):
-        return Kind, (self.structure,)
+        return StructureCache, (self.structure,)
 
     @cached_property
     def numbered(self) -> Any:
         """The item with the place of each number among its leaves, a `Numbered`, instead of it."""
         places = itertools.count()
-        return put_together(self.structure, lambda: Numbered(next(places)), lambda: None, lambda: None)
+        return unflatten(self.structure, lambda: LeafIndex(next(places)), lambda: None, lambda: None)
 
     def answer(self, question):
         """What ``question(kind)`` found, asked once."""
@@ -395,36 +397,36 @@ class Kind:
         return self.known[question]
 
 
-_kinds: dict[Any, Kind] = {}
+_caches: dict[Any, StructureCache] = {}
 _lock = threading.Lock()
 _uses = itertools.count()
 
 
-def of(structure) -> Kind:
+def structure_cache(structure) -> StructureCache:
     """Kind of a structure that tells all."""
-    found = _kinds.get(structure) or _added(structure)
+    found = _caches.get(structure) or _new_cache(structure)
     found.used = next(_uses)
     return found
 
 
-def _added(structure):
+def _new_cache(structure):
     """A new kind, or that which another thread has added meanwhile."""
     with _lock:
-        found = _kinds.setdefault(structure, Kind(structure))
+        found = _caches.setdefault(structure, StructureCache(structure))
         found.used = next(_uses)
-        while len(_kinds) > MOST:
-            idle = min((kind for kind in _kinds.values() if kind is not found), key=lambda kind: kind.used)
-            del _kinds[idle.structure]
+        while len(_caches) > MAX_STRUCTURES:
+            idle = min((kind for kind in _caches.values() if kind is not found), key=lambda kind: kind.used)
+            del _caches[idle.structure]
     return found
 
 
 def forget():
     """Find all anew."""
     with _lock:
-        _kinds.clear()
+        _caches.clear()
 
 
-def say_together(kind, name, *others):
+def come_from_one_class(kind, name, *others):
     """Whether the class that last gives one of `others` to a kind gives `name` beside them.
 
     One that is derived from it, and gives only the others anew, makes what `name` says of them untrue.

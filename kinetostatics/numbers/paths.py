@@ -15,7 +15,7 @@ from ..errors import ParameterError
 from . import checks
 from .checks import fitting
 from .lazy import cached_property
-from .parameter_tree import Leaves, is_structural, taken_apart, wider
+from .parameter_tree import Leaves, broadcast_shape, flatten, is_structural
 
 
 class Place(NamedTuple):
@@ -30,7 +30,7 @@ class Place(NamedTuple):
         return item
 
 
-def places(item, prefix="", label="", absent=False) -> dict[str, Place]:
+def places_by_path(item, prefix="", label="", absent=False) -> dict[str, Place]:
     """Place by path of every number of a part, zeros among them; a label goes behind the first name.
 
     If wanted, those `absent` too: numbers that might stand where there is None.
@@ -67,13 +67,13 @@ def _of_value(value, rule, path, label, absent):
             named = getattr(part, "PATH", "")
             counts[named] = counts.get(named, 0) + 1
             again = str(counts[named]) if named and counts[named] > 1 else ""
-            inner = places(part, f"{named}{again}." if named else "", getattr(part, "label", ""), absent)
+            inner = places_by_path(part, f"{named}{again}." if named else "", getattr(part, "label", ""), absent)
             found |= {name: place._replace(steps=(number, *place.steps)) for name, place in inner.items()}
         return found
-    return places(value, f"{path}." if path else "", label, absent)
+    return places_by_path(value, f"{path}." if path else "", label, absent)
 
 
-def changed(item, **values):
+def replace_checked(item, **values):
     """Copy of a dataclass with other values in some fields, checked as its constructor does."""
     made = object.__new__(type(item))
     for field in fields(item):
@@ -85,7 +85,7 @@ def changed(item, **values):
     return made
 
 
-def with_values(item, values: dict, changed=changed):
+def with_values(item, values: dict, changed=replace_checked):
     """Copy of a tree with other values, by steps; ``changed(part, **fields)`` copies a part: checked anew, unless told.
 
     A tree is made of tuples, mappings, and parts with fields.
@@ -121,15 +121,15 @@ class Batched:
         An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
         """
         leaves = Leaves()
-        taken_apart(self, leaves)
+        flatten(self, leaves)
         try:
-            return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
+            return broadcast_shape((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
         except ValueError:
-            raise _unfitting(self) from None
+            raise _shape_error(self) from None
 
 
-def _unfitting(item):
+def _shape_error(item):
     """Error that names the arrays of designs in an item, which do not fit together."""
-    shapes = {path: np.shape(place.value(item)) for path, place in places(item).items()}
+    shapes = {path: np.shape(place.value(item)) for path, place in places_by_path(item).items()}
     problem = fitting(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
     return ParameterError(f"{getattr(item, 'name', type(item).__name__)}: {problem}")

@@ -6,10 +6,10 @@ is left out of sums. All functions are kernels: no branching on values, no writi
 A zero that absorbs what it is multiplied by, and is left out of sums: arithmetic finds where there is nothing.
 """
 
-from .arithmetic import UNSEEN, apart, rest, sqrt
+from .arithmetic import NEGLIGIBLE_LENGTH, length_error, offset_from_zero, sqrt
 
 
-class Nothing:
+class SymbolicZero:
     """The zero; only `NOTHING` is made of it."""
 
     __slots__ = ()
@@ -40,12 +40,12 @@ class Nothing:
         return "NOTHING"
 
 
-NOTHING = Nothing()
+SYMBOLIC_ZERO = SymbolicZero()
 
 
-def absent(value):
+def none_if_zero(value):
     """None for nothing, and for a plain number that is zero; the value else."""
-    return None if value is NOTHING or (isinstance(value, int | float) and value == 0) else value
+    return None if value is SYMBOLIC_ZERO or (isinstance(value, int | float) and value == 0) else value
 
 
 def dot(a, b):
@@ -61,13 +61,13 @@ def length(a):
     return sqrt(dot(a, a))
 
 
-def length_and_rest(a):
+def length_with_error(a):
     """Length of a vector, never zero, and what rounding took off it; along an axis nothing, and as it is."""
-    x, y = map(absent, a)
+    x, y = map(none_if_zero, a)
     if x is None or y is None:
-        return abs(number(y if x is None else x)), None
-    whole = length((apart(x, UNSEEN), y))
-    return whole, rest(whole, x, y)
+        return abs(number_or_zero(y if x is None else x)), None
+    whole = length((offset_from_zero(x, NEGLIGIBLE_LENGTH), y))
+    return whole, length_error(whole, x, y)
 
 
 def curvature(first, second):
@@ -89,21 +89,21 @@ def left(a):
     return (-a[1], a[0])
 
 
-def turned(a, direction):
+def rotate(a, direction):
     """Vector a turned by the angle of a unit vector; None turns nothing."""
     if direction is None:
         return a
     return (direction[0] * a[0] - direction[1] * a[1], direction[1] * a[0] + direction[0] * a[1])
 
 
-def unturned(a, direction):
+def rotate_back(a, direction):
     """Components of a along a unit vector and across it, to the left; None: of a as it is."""
     if direction is None:
         return a
     return (dot(direction, a), cross(direction, a))
 
 
-def stretched(factor, a):
+def scale_vector(factor, a):
     """Vector times number, absent if either is."""
     if factor is None or a is None:
         return None
@@ -128,7 +128,7 @@ def minus(a, b):
     return a - b
 
 
-def added(a, b):
+def add_vectors(a, b):
     """Sum of two vectors, either of which may be absent."""
     if a is None:
         return b
@@ -137,7 +137,7 @@ def added(a, b):
     return (a[0] + b[0], a[1] + b[1])
 
 
-def subtracted(a, b):
+def subtract_vectors(a, b):
     """Difference of two vectors, either of which may be absent."""
     if b is None:
         return a
@@ -174,11 +174,11 @@ def work(force, displacement):
     return dot(force, displacement)
 
 
-def number(a):
+def number_or_zero(a):
     """An absent number as zero."""
     return 0.0 if a is None else a
 
 
-def vector(a):
+def vector_or_zero(a):
     """An absent vector as zero."""
     return (0.0, 0.0) if a is None else a

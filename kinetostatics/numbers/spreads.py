@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import checks
-from .units import LONGEST, NUMBER, base_factor, factor, of_quantity, quoted, respelled
+from .units import MAX_TEXT_LENGTH, NUMBER, base_factor, factor, quoted, respelling_advice, unit_of_quantity
 
-LARGEST = 50_000_000
+MAX_TABLE_VALUES = 50_000_000
 """Values that a table of designs may hold."""
 _NUMBER = f"({NUMBER})"
 _TO = r"\s*\.\.\s*"
@@ -62,10 +62,10 @@ def distributions(spreads):
     >>> float(found.mean()), float(found.std()), unit
     (712.0, 5.0, 'kN/m')
     """
-    return {name: (found.distribution, found.unit) for name, found in read(spreads, spread_of).items()}
+    return {name: (found.distribution, found.unit) for name, found in read_spreads(spreads, parse_spread).items()}
 
 
-def read(spreads, reader):
+def read_spreads(spreads, reader):
     """What the reader, which raises `ValueError`, makes of the spread of each parameter."""
     require_mapping(spreads)
     found, problems = {}, [] if spreads else ["there are no parameters"]
@@ -88,21 +88,21 @@ def require_mapping(spreads):
 
 
 def _text(text):
-    if len(text) > LONGEST:
-        raise ValueError(f"it is longer than {LONGEST} letters")
+    if len(text) > MAX_TEXT_LENGTH:
+        raise ValueError(f"it is longer than {MAX_TEXT_LENGTH} letters")
     if "..." in text:  # 0...1 may mean 0 to 1 or 0 to 0.1
         raise ValueError(f"{_OTHER}; write two dots between numbers, and a 0 before a decimal point")
     return text.strip()
 
 
-def _measured(given):
+def _quantity_numbers(given):
     """Numbers of quantities of pint, of one or several, and their unit: that of the first."""
     parts = given if isinstance(given, list | tuple) else [given]
     if not parts or not all(map(checks.is_quantity, parts)):
         raise ValueError(_BARE)
-    unit = of_quantity(parts[0])
+    unit = unit_of_quantity(parts[0])
     try:
-        numbers = np.asarray(checks.plain(given, unit))
+        numbers = np.asarray(checks.to_plain(given, unit))
     except checks.DimensionError as fault:
         raise ValueError(f"it {fault}") from None
     if numbers.dtype.kind not in "iuf":
@@ -112,19 +112,19 @@ def _measured(given):
     return _finite(np.ravel(numbers).astype(float).tolist()), unit
 
 
-def axis(given):
+def parse_grid(given):
     """Evenly spaced values as a text says, or those given as quantities, and their unit."""
     if not isinstance(given, str):
-        values, unit = _measured(given)
+        values, unit = _quantity_numbers(given)
         return np.array(values), unit
     text = _text(given)
     match = _FORMS["grid"].fullmatch(text)
     if not match or not int(match[4]):
-        raise ValueError(_other(text))
+        raise ValueError(_form_problem(text))
     low, high = _numbers(match[1], match[2])
-    if int(match[4]) > LARGEST:
-        raise ValueError(f"{match[4]} values are too many, at most {LARGEST}")
-    return np.linspace(low, high, int(match[4])), _known(match[3])
+    if int(match[4]) > MAX_TABLE_VALUES:
+        raise ValueError(f"{match[4]} values are too many, at most {MAX_TABLE_VALUES}")
+    return np.linspace(low, high, int(match[4])), _checked_unit(match[3])
 
 
 class Spread(NamedTuple):
@@ -176,11 +176,11 @@ class Spread(NamedTuple):
         return math.sqrt(((high - low) ** 2 - (middle[0] - low) * (high - middle[0])) / 18.0)
 
 
-def spread_of(given):
+def parse_spread(given):
     """`Spread` of a text or of quantities; `ValueError` if it is none."""
     spread = Spread(*_parts(given))
     if spread.kind != "normal":
-        _rising(spread.numbers)
+        _require_rising(spread.numbers)
     elif spread.numbers[1] <= 0:
         raise ValueError("the standard deviation must be greater than 0")
     return spread
@@ -193,7 +193,7 @@ def _parts(given):
         name, quantities = (given[0], given[1:]) if named else ("uniform", given)
         if name not in _COUNTS:
             raise ValueError(checks.choice("its kind", name, tuple(_COUNTS)))
-        numbers, unit = _measured(quantities)
+        numbers, unit = _quantity_numbers(quantities)
         if len(numbers) != _COUNTS[name]:
             raise ValueError(f"{name} takes {_COUNTS[name]} quantities, got {len(numbers)}")
         return name, numbers, unit
@@ -201,27 +201,27 @@ def _parts(given):
     forms = ((name, _FORMS[name].fullmatch(text)) for name in _COUNTS)
     name, match = next(((name, match) for name, match in forms if match), ("", None))
     if match is None:
-        raise ValueError(_other(text))
+        raise ValueError(_form_problem(text))
     if name != "normal":
         *texts, unit = match.groups()
-        return name, _numbers(*texts), _known(unit)
+        return name, _numbers(*texts), _checked_unit(unit)
     mean, deviation = _numbers(match[1], match[3])
-    return name, [mean, deviation * factor(match[4], _known(match[2])) / base_factor(match[2])], match[2]
+    return name, [mean, deviation * factor(match[4], _checked_unit(match[2])) / base_factor(match[2])], match[2]
 
 
-def _other(text):
+def _form_problem(text):
     if _NO_UNIT.fullmatch(text):
         return _UNITLESS
-    return _OTHER + respelled(text, lambda reading: any(form.fullmatch(reading) for form in _FORMS.values()))
+    return _OTHER + respelling_advice(text, lambda reading: any(form.fullmatch(reading) for form in _FORMS.values()))
 
 
-def _known(unit):
+def _checked_unit(unit):
     """The unit, if it is one."""
     base_factor(unit)
     return unit
 
 
-def _rising(values):
+def _require_rising(values):
     if values[0] >= values[-1] or sorted(values) != values:
         raise ValueError("the values must rise")
     return values

@@ -17,7 +17,7 @@ import numpy as np
 
 NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
 """A number, as a regular expression: the only form that case files, tables and spreads take."""
-LONGEST = 200
+MAX_TEXT_LENGTH = 200
 """Characters that a text with a unit may have."""
 _NUMBER_AND_UNIT = re.compile(
     rf"\s*({NUMBER})(?:\s*(?![eE][-+]?[0-9])((?:[^\W\d_]|[°%]).*?)|\s+(1(?:\s*(?:/|per\b).*?)?))?\s*", re.DOTALL
@@ -88,26 +88,26 @@ def to_si(text, unit):
     ValueError
         No number, no unit, an unknown unit or one of another dimension; the message says which.
     """
-    readable = isinstance(text, str) and len(text) <= LONGEST
+    readable = isinstance(text, str) and len(text) <= MAX_TEXT_LENGTH
     found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None
     if found is None:
-        advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
+        advice = respelling_advice(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
         is_number = type(text) in (int, float) and math.isfinite(text)
-        example = _either(text, unit) if is_number else f'"{" ".join(_USUAL.get(unit, ("1.5", unit)))}"'
+        example = _spelling_examples(text, unit) if is_number else f'"{" ".join(_USUAL.get(unit, ("1.5", unit)))}"'
         raise ValueError(
             f"must be text of a number and a unit that converts to {unit}, found {quoted(text)}"
             + (advice or f"; write for example {example}")
         )
     number, given = found[1], found[2] or found[3]
     if given is None:
-        raise ValueError(f"has no unit; write for example {_either(number, unit)}")
+        raise ValueError(f"has no unit; write for example {_spelling_examples(number, unit)}")
     value = float(number) * factor(given, unit)
     if not math.isfinite(value) or (value == 0.0 and re.search("[1-9]", re.split("[eE]", number)[0])):
         raise ValueError(f"is too {'small' if value == 0.0 else 'large'} for double precision, found {text!r}")
     return value
 
 
-def _either(number, unit):
+def _spelling_examples(number, unit):
     """A number in the unit that engineers write, or in that of SI."""
     return " or ".join(f'"{number} {one}"' for one in dict.fromkeys((_USUAL.get(unit, ("", unit))[1], unit)))
 
@@ -121,7 +121,7 @@ def factor(given, unit):
     return scale
 
 
-def of_quantity(quantity):
+def unit_of_quantity(quantity):
     """Unit of a quantity of pint as texts spell it; `ValueError` if in its registry it is another than here."""
     unit = f"{quantity.units:~C}" or "1"
     base_factor(unit)
@@ -186,7 +186,7 @@ def _spelled_for_pint(parts):
 
 def _parts(text):
     """Names and powers that a unit is the product of; `ValueError` unless it is one of names with small powers."""
-    if len(text) > LONGEST:
+    if len(text) > MAX_TEXT_LENGTH:
         raise ValueError("too long")
     reciprocal = re.match(r"\s*1\s*(?=/|per\b|$)", text)
     parts: list[tuple[str, int]] = []
@@ -220,7 +220,7 @@ def quoted(value, most=80):
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
 
-def respelled(text, readable):
+def respelling_advice(text, readable):
     """Advice how to write the numbers of a text that cannot be read; empty if no `readable` text comes of it.
 
     A comma, or a plain space, is taken for the decimal point; what stands before three digits also for nothing.
@@ -259,8 +259,8 @@ def _readings(text):
     return readings
 
 
-NONE = (0.0, 0.0, 0.0)
-BASES = {
+DIMENSIONLESS = (0.0, 0.0, 0.0)
+BASE_DIMENSIONS = {
     "m": (1, 0, 0),
     "kg": (0, 1, 0),
     "s": (0, 0, 1),
@@ -270,7 +270,7 @@ BASES = {
     "W": (2, 1, -3),
 }
 """Powers of m, kg and s of units that others are made of."""
-SPELLED = {
+UNIT_NAMES = {
     (0, 0, 0): "1",
     (1, 0, 0): "m",
     (2, 0, 0): "m2",
@@ -303,13 +303,13 @@ def dimension(unit):
     found = np.zeros(3)
     for over, part in enumerate(unit.split("/")):
         for base, power in _POWER.findall(part):
-            found += (-1 if over else 1) * int(power or 1) * np.array(BASES.get(base, NONE))
+            found += (-1 if over else 1) * int(power or 1) * np.array(BASE_DIMENSIONS.get(base, DIMENSIONLESS))
     return tuple(found.tolist())
 
 
-def spelled(dimension):
+def unit_name(dimension):
     """A unit of these powers."""
-    if dimension in SPELLED:
-        return SPELLED[dimension]
+    if dimension in UNIT_NAMES:
+        return UNIT_NAMES[dimension]
     named = zip(("m", "kg", "s"), dimension, strict=True)
     return " ".join(base + (f"{count:g}" if count != 1 else "") for base, count in named if count)

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..errors import ConditionWarning, NotGivenError, ParameterError
 from ..mechanics import jamming, quantities
-from ..mechanics.quantities import scale, unit_of, values
+from ..mechanics.quantities import largest_term, unit_of, values
 from ..numbers import checks
-from ..numbers.arithmetic import UNIT
+from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, told
 from .turn import require_single
@@ -244,9 +244,9 @@ def _sizes(turn, quantity, samples, good, position):
     calm = good & (turn.condition < CALM)
     calm = calm if calm.any() else good
     size = float(np.max(np.abs(samples[calm]), initial=0.0))
-    terms = scale(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
+    terms = largest_term(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
     floor = np.full(samples.shape, FLOOR * max(terms, size))
     if calm.all():
         return size, floor
-    condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT)) if position else turn.condition
-    return size, np.fmax(floor, UNIT * condition * np.maximum(np.abs(samples), size))
+    condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT_ROUNDOFF)) if position else turn.condition
+    return size, np.fmax(floor, UNIT_ROUNDOFF * condition * np.maximum(np.abs(samples), size))

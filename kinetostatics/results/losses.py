@@ -24,7 +24,7 @@ from ..machine.loads import TURN
 from ..mechanics.energy_contact import work_of
 from ..mechanics.load_values import title_of
 from ..numbers.lazy import cached_property
-from ..numbers.planar import number
+from ..numbers.planar import number_or_zero
 from .extremes import extrema
 from .means import PRECISE, ROUNDED, closed_turn, means
 from .rounding import PLACED, zeroed
@@ -213,7 +213,7 @@ def _friction_loss(joint, at):
 
 def _taken(item, at):
     """Power that a load takes of the machine."""
-    return np.broadcast_to(-at.crank_speed * number(work_of(item, at)), at.crank_angle.shape)
+    return np.broadcast_to(-at.crank_speed * number_or_zero(work_of(item, at)), at.crank_angle.shape)
 
 
 def _named(items):

@@ -10,7 +10,7 @@ from ..engines.error_bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics import jamming
-from ..numbers.arithmetic import UNIT
+from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.brackets import find_roots
 from .extremes import extrema, warning
 from .turn import USABLE, require_single
@@ -106,7 +106,7 @@ def mean_absolute_torque_errors(solution):
         return turn.at.at(turn.clear(angle)).error_bound("balancing_torque")[None]
 
     bound = _sum(_integrals(bounds, *panels)) / turn.period  # of a value with a sign, or of the absolute one
-    return MeanErrors(SAFE * float(bound[0] + SUMMED * UNIT * mean), error)
+    return MeanErrors(SAFE * float(bound[0] + SUMMED * UNIT_ROUNDOFF * mean), error)
 
 
 def _torque(turn, angle):
@@ -177,7 +177,7 @@ def _summed(function, turn, floor, edges):
     edges = np.unique(np.concatenate([_grid(turn), edges]))
     floor = np.reshape(floor, (-1, 1))
     profile = np.fmin(turn.condition, USABLE) * (turn.limits.size > 0)
-    noise = np.abs(function(edges)).max(axis=-1, keepdims=True) * UNIT * profile
+    noise = np.abs(function(edges)).max(axis=-1, keepdims=True) * UNIT_ROUNDOFF * profile
     start, width = edges[:-1], np.diff(edges)
     whole, parts, panels = _integrals(function, start, width), [], []
     size, wrong, room = 0.0, 0.0, WORK

@@ -11,7 +11,7 @@ import numpy as np
 from ..engines import numba_backend
 from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
 from ..engines.scanning import COLUMNS, edition
-from ..numbers.arithmetic import ROUNDING
+from ..numbers.arithmetic import SQUARE_TOLERANCE
 from . import peaks
 from .peaks import REACH
 from .reductions import MEAN, PEAK
@@ -256,7 +256,7 @@ def closed(results, first, angle, gaps, nearest, start):
             closes = True
             for row in range(first, results.shape[1]):
                 value = results[design, row, i]
-                closes &= value >= {-ROUNDING!r}
+                closes &= value >= {-SQUARE_TOLERANCE!r}
                 if value < least:
                     least = value
                     nearest[start + design] = angle[i]

@@ -9,7 +9,7 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..engines.error_bounds import of_magnitude
 from ..errors import NotGivenError
-from ..mechanics.quantities import of_scene, scale, unit_of
+from ..mechanics.quantities import largest_term, of_scene, unit_of
 from ..numbers.formatting import number
 from ..numbers.lazy import cached_property
 
@@ -94,7 +94,7 @@ def without_rounding(solution, name, values, bound=0.0):
 
     Numbers by which a machine is balanced are rounded themselves, so what is 0 by them may be more than its bound.
     """
-    terms = np.append(np.abs(values), scale(solution, name))
+    terms = np.append(np.abs(values), largest_term(solution, name))
     # a pressure is a root of a force
     floor = np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
     floor = floor * np.max(terms, where=np.isfinite(terms), initial=0.0)

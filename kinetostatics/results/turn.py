@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.loads import TURN, is_given, kinked, kinks_of, period_of, period_on, refusals
 from ..mechanics import assembly, energy_contact
-from ..mechanics.load_values import given, title_of
+from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .changes import sign_changes
@@ -96,8 +96,8 @@ class Turn:
         first = solution.at(grid)
         require_repeating(solution)
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
-        near = assembly.near_limits(solution.mechanism, NEAR)
-        gaps = assembly.gaps(solution.mechanism) if near.size else ()
+        near = assembly.limit_angles(solution.mechanism, NEAR)
+        gaps = assembly.gap_intervals(solution.mechanism) if near.size else ()
         own = TURN * solution.mechanism.turns
         near = np.concatenate([near, *gaps])
         near = np.unique(np.mod(near + SAME, own) - SAME)
@@ -308,7 +308,7 @@ def repeating_problem(solution):
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
 
         def push(turns, item=item, angle=angle, period=period):
-            return np.broadcast_to(given(item, solution.at(angle + turns * period)), angle.shape)
+            return np.broadcast_to(user_value(item, solution.at(angle + turns * period)), angle.shape)
 
         first, other = push(0), push(1)
         if _alike(first, other):

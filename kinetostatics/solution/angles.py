@@ -10,43 +10,43 @@ from ..machine import plausibility
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 
-ANGLE = checks.Number("rad", "crank_angle", table=True)
-PLAIN = int, float, list, tuple
-PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
-BYTES = 8
+ANGLE_RULE = checks.Number("rad", "crank_angle", table=True)
+PLAIN_TYPES = int, float, list, tuple
+FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
+BYTES_PER_VALUE = 8
 """Of a crank angle, and of one value there."""
-MOST = checks.MEMORY // BYTES
+MAX_ANGLES = checks.MAX_TABLE_MEMORY // BYTES_PER_VALUE
 """Crank angles, from which on not even these have room in memory."""
 
 
 def crank_angles(given, owner="solve"):
     """Crank angles of any kind: a locked copy of plain ones, those of another array library as they are."""
-    if type(given) is np.ndarray and given.dtype in PRECISIONS and given.size <= MOST:
+    if type(given) is np.ndarray and given.dtype in FLOAT_TYPES and given.size <= MAX_ANGLES:
         return read_only(given.copy())
-    if ANGLE.quick(given) is not checks.UNSURE:
+    if ANGLE_RULE.quick(given) is not checks.UNDECIDED:
         return read_only(np.array(float(given)))
     if isinstance(given, list | tuple) and not given:
         checks.require(owner, "there are no crank angles")
     if isinstance(given, np.ndarray) and given.size:
-        checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES))
-    angle, problem = ANGLE.taken(given)
+        checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES_PER_VALUE))
+    angle, problem = ANGLE_RULE.taken(given)
     checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 
 
-def hint_at(owner, given):
+def hint_at_angles(owner, given):
     """Warn whoever called the caller of valid crank angles that look like degrees, or like a count of them."""
     if type(given) is float and abs(given) < plausibility.TWO_TURNS:
         return
     if type(given) is np.ndarray:
-        texts = plausibility.of_angles(given)
+        texts = plausibility.angle_hints(given)
     else:
-        texts = plausibility.of_given_angles(given, np.asarray(given) if isinstance(given, PLAIN) else given)
+        texts = plausibility.given_angle_hints(given, np.asarray(given) if isinstance(given, PLAIN_TYPES) else given)
     for text in texts:
         warnings.warn(HintWarning(owner, text), stacklevel=3)
 
 
-def problems(angle):
+def angle_problem(angle):
     """What is wrong with crank angles, as far as they can be looked at."""
     if not (angle.size if isinstance(angle, np.ndarray) else math.prod(angle.shape)):
         return "there are no crank angles"

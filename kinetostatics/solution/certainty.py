@@ -26,17 +26,24 @@ from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from .parameters import Parameters, fixed, keeping, leaves_of, require_free, unknown
+from .parameters import (
+    Parameters,
+    keep_numbers,
+    leaf_by_path,
+    path_problem,
+    paths_without_derivative,
+    require_derivatives,
+)
 
-SMALL = 0.1
+MAX_SECOND_ORDER_SHARE = 0.1
 """Part of an uncertainty to first order that the second order may be."""
-TYPICAL = 0.01
+MEDIAN_SHARE = 0.01
 """Part of the median over the crank angles that is not small beside a first order that vanishes at some."""
-FEW = 3
+MAX_PAIRWISE_INPUTS = 3
 """Inputs up to which each product of two is looked at by itself."""
 
 
-class Beyond(NamedTuple):
+class LargeSecondOrder(NamedTuple):
     """Where the second order is not small beside the first.
 
     Attributes
@@ -79,7 +86,7 @@ class Doubt(NamedTuple):
     share: float = np.inf
 
 
-def told(doubts):
+def doubt_text(doubts):
     """What must be said of some quantities, as one sentence."""
     if len(doubts) == 1:
         (doubt,) = doubts
@@ -92,7 +99,7 @@ def told(doubts):
     )
 
 
-class Terms:
+class SecondOrderTerms:
     """Terms of second order, as differences have them, of values (components, *shape); zero where there are none.
 
     Parameters
@@ -157,16 +164,16 @@ def _codes(count):
             known |= differences
 
 
-def second_order_effects(terms, count, angle, first, rounding) -> Beyond | None:
+def find_second_order(terms, count, angle, first, rounding) -> LargeSecondOrder | None:
     """Where second order is not small; products of so many inputs are looked at in few sums if these are small."""
     with np.errstate(all="ignore"):
         squares = terms.of_one()
-        if count > FEW and beyond(angle, first, squares | terms.of_all(), rounding) is None:
+        if count > MAX_PAIRWISE_INPUTS and large_second_order(angle, first, squares | terms.of_all(), rounding) is None:
             return None
-        return beyond(angle, first, squares | terms.of_two(), rounding)
+        return large_second_order(angle, first, squares | terms.of_two(), rounding)
 
 
-def beyond(angle, first, second, rounding) -> Beyond | None:
+def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | None:
     """Where the second order of some inputs is not small beside the first, or rounding; None if it is nowhere.
 
     Parameters
@@ -180,27 +187,29 @@ def beyond(angle, first, second, rounding) -> Beyond | None:
     """
     terms = np.array(list(second.values()))
     squares = np.array([len(paths) == 1 for paths in second])
-    own, parts = _size(np.array(list(first.values())), (0, 1)), _size(terms, 1)
+    own, parts = _root_sum_square(np.array(list(first.values())), (0, 1)), _root_sum_square(terms, 1)
     parts[squares] *= np.sqrt(2.0)  # of its mean, squared, the variance of a square is twice that
-    more = _size(np.array([*parts, _size(terms[squares].sum(axis=0))]))
-    scale = np.fmax(own, TYPICAL * np.nanmedian(own)) if np.isfinite(own).any() else own
+    more = _root_sum_square(np.array([*parts, _root_sum_square(terms[squares].sum(axis=0))]))
+    scale = np.fmax(own, MEDIAN_SHARE * np.nanmedian(own)) if np.isfinite(own).any() else own
     gap = np.isnan(more)
-    too_much = gap | (more > SMALL * scale + 4.0 * len(second) * _size(rounding))
+    too_much = gap | (more > MAX_SECOND_ORDER_SHARE * scale + 4.0 * len(second) * _root_sum_square(rounding))
     if not too_much.any():
         return None
     worst = int(np.argmax(np.where(too_much, np.where(gap, np.inf, more / scale), -1.0)))
     most = int(np.argmax(np.nan_to_num(parts.reshape(len(parts), -1)[:, worst], nan=np.inf)))
     at = float(np.broadcast_to(angle, more.shape).flat[worst])
     paths = list(second)[most]
-    return Beyond(int(too_much.sum()), too_much.size, at, paths, float(own.flat[worst]), float(more.flat[worst]))
+    return LargeSecondOrder(
+        int(too_much.sum()), too_much.size, at, paths, float(own.flat[worst]), float(more.flat[worst])
+    )
 
 
-def _size(part: Any, axis: Any = 0):
+def _root_sum_square(part: Any, axis: Any = 0):
     """Root of the sum of squares over axes."""
     return np.sqrt(np.sum(np.square(part), axis=axis))
 
 
-def slopes(program, by, state, leaves, backend):
+def sensitivities(program, by, state, leaves, backend):
     """Derivatives by quantity and by path, shaped as the quantities; NaN where these are.
 
     Parameters
@@ -322,7 +331,7 @@ class Certainty(Parameters):
         checks.require("error_bound", checks.quantity(quantity), checks.truth("tight", tight))
         name = quantities.without_bars(self, quantity)
         values, bounds = self._with_bounds(name, tight)
-        return _rounding(values, bounds, name != quantity)
+        return _rounding_bound(values, bounds, name != quantity)
 
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
@@ -368,41 +377,43 @@ class Certainty(Parameters):
         """
         found, doubt = self.with_doubt(quantity, inputs)
         if doubt is not None:
-            warnings.warn(f"{self.mechanism.name}: {told([doubt])}", ConditionWarning, stacklevel=2)
+            warnings.warn(f"{self.mechanism.name}: {doubt_text([doubt])}", ConditionWarning, stacklevel=2)
         return found
 
     def with_doubt(self, quantity, inputs):
         """The same, and the `second_order.Doubt` that it says too little, or None."""
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
-        checks.require("uncertainty", *(unknown(self, path) for path in inputs if path not in self.places))
-        require_free("uncertainty", self.mechanism, inputs, fixed(self.places, self.mechanism))
+        checks.require("uncertainty", *(path_problem(self, path) for path in inputs if path not in self.places))
+        require_derivatives(
+            "uncertainty", self.mechanism, inputs, paths_without_derivative(self.places, self.mechanism)
+        )
         given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
-        inputs = checks.singles("uncertainty", **given)
+        inputs = checks.single_numbers("uncertainty", **given)
         checks.require("uncertainty", checks.quantity(quantity))
         name = quantities.without_bars(self, quantity)
         values, bounds = self._with_bounds(name)
-        rounding = _rounding(values, bounds, name != quantity)
+        rounding = _rounding_bound(values, bounds, name != quantity)
         found, doubt = self._slopes(name, inputs, values, rounding) if inputs else ({}, None)
         if name != quantity:
             vector = quantities.components(self, name)
-            found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
+            found = {path: _magnitude_slope(vector, slope) for path, slope in found.items()}
         parts = {path: np.abs(slope) * inputs[path] for path, slope in found.items()}
         return Uncertainty(parts, rounding, quantities.unit_of(self, name)), doubt
 
     def _slopes(self, name, inputs, values, rounding):
         """Derivatives of a quantity by numbers of the scene, by path; and a doubt where they change with the inputs."""
-        state = keeping(self, self.places, inputs).dynamics
+        state = keep_numbers(self, self.places, inputs).dynamics
         program, leaves = program_of(state, (name,))
-        known = leaves_of(self.places, state)
+        known = leaf_by_path(self.places, state)
         by = {path: known[path] for path in inputs}
         backend = Backend("compiled" if self.engine.compiled else "numpy")
-        found = slopes(program, by, state, leaves, backend)[name]
+        found = sensitivities(program, by, state, leaves, backend)[name]
         first = {path: np.reshape(found[path] * inputs[path], (-1, *self.shape)) for path in by}
         values, rounding = (np.reshape(part, (-1, *self.shape)) for part in (values, rounding))
         try:
-            terms = Terms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
-            beyond = second_order_effects(terms, len(by), self.crank_angle, first, rounding)
+            terms = SecondOrderTerms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
+            beyond = find_second_order(terms, len(by), self.crank_angle, first, rounding)
             doubt = None if beyond is None else beyond.doubt(name, quantities.unit_of(self, name), inputs)
         except ParameterError as why:  # a slider beyond its table, for one
             doubt = Doubt(name, "and may be more", f"with them moved, {why}")
@@ -413,14 +424,14 @@ class Certainty(Parameters):
         return [found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight)]
 
 
-def _rounding(values, bounds, of_its_magnitude):
+def _rounding_bound(values, bounds, of_its_magnitude):
     """Bound on the error of a quantity, or of the magnitude of a vector."""
     if of_its_magnitude:
         values, bounds = np.hypot(*values), of_magnitude(values, bounds)
     return read_only(where_known(values, bounds))[()]
 
 
-def _of_magnitude(vector, slope):
+def _magnitude_slope(vector, slope):
     """Derivative of the magnitude of a vector from that of the vector; of one that vanishes the magnitude of that."""
     (x, y), size = vector, np.hypot(*vector)
     with np.errstate(invalid="ignore", divide="ignore"):

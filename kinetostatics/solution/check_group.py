@@ -17,15 +17,25 @@ from ..machine.kinematic_state import Course, Placement, margin, place, require_
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..machine.mechanism import output_problems
 from ..numbers import checks
-from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
+from ..numbers.planar import (
+    add_vectors,
+    length,
+    number_or_zero,
+    product,
+    rotate,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+    work,
+)
 from . import link_states
 
-TOLERANCE = 1e-6
+MAX_RELATIVE_ERROR = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
-STEP = 2.0**-8
+ANGLE_STEP = 2.0**-8
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 """Of a central difference of the eighth order, with steps of so many rad."""
-PLACES = 24
+MAX_PLACES = 24
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,7 +55,7 @@ class GroupReport:
     @property
     def problems(self):
         """A sentence for each thing that is wrong."""
-        return tuple(f"{what}: off by {error:.2g} of its size" for what, error in self.errors.items() if _wrong(error))
+        return tuple(f"{what}: off by {error:.2g} of its size" for what, error in self.errors.items() if _fails(error))
 
     @property
     def ok(self):
@@ -59,13 +69,13 @@ class GroupReport:
         count, wrong = len(self.errors), len(self.problems)
         verdict = f"{wrong} of {count} checks fail" if wrong else f"all {count} checks pass"
         rows = [
-            f"  {'WRONG' if _wrong(error) else 'right'}  {error:7.1e}  {what}" for what, error in self.errors.items()
+            f"  {'WRONG' if _fails(error) else 'right'}  {error:7.1e}  {what}" for what, error in self.errors.items()
         ]
         return "\n".join([f"<GroupReport: {self.group}, {verdict}>", *rows])
 
 
-def _wrong(error):
-    return not error <= TOLERANCE
+def _fails(error):
+    return not error <= MAX_RELATIVE_ERROR
 
 
 def check(group):
@@ -95,7 +105,7 @@ def check(group):
     >>> report.ok
     True
     """
-    _, problem = checks.Own(MEMBERS, "a group").taken(group, "group")
+    _, problem = checks.HasMembers(MEMBERS, "a group").taken(group, "group")
     checks.require("check", problem)
     if getattr(group, "passes", False):
         group = replace(group)  # its joint is moved by hand, and on no crank it has no change points
@@ -135,7 +145,7 @@ class _Stage(NamedTuple):
             links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
         for name in self.hung:
-            departure = added(joints[name].second, joints[name].position)
+            departure = add_vectors(joints[name].second, joints[name].position)
             placement.courses[name] = Course(departure=departure)
         with np.errstate(all="ignore"):
             place(self.group, placement)
@@ -144,7 +154,7 @@ class _Stage(NamedTuple):
     def _joint(self, order, turn, way):
         """One of the joints it hangs on: the first at the places, others near O."""
         sine, cosine = np.sin(turn), np.cos(turn)
-        way, bend = (turned(part, ray(float(order))) for part in (way, (0.2, -0.4)))
+        way, bend = (rotate(part, ray(float(order))) for part in (way, (0.2, -0.4)))
         along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
         still = 0.0 * self.angle
         place = self.position if order == 0 else (0.4 * order * self.size + still, -0.25 * order * self.size + still)
@@ -174,7 +184,7 @@ def _stage(group):
         raise ParameterError(
             f"check: {name} closes nowhere within {farthest:g} m of O, closure is at most {margins.max()}"
         )
-    chosen = closing[np.linspace(0, closing.size - 1, min(PLACES, closing.size)).astype(int)]
+    chosen = closing[np.linspace(0, closing.size - 1, min(MAX_PLACES, closing.size)).astype(int)]
     return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
 
 
@@ -183,8 +193,8 @@ def _of_shape(stage):
     group, placement = stage.group, stage.placed()
     errors = {}
     for bar in group.bars:
-        ends = (vector(placement.joints[name].position) for name in (bar.end, bar.start))
-        errors[f"length of {bar.link}"] = _error(length(subtracted(*ends)), bar.length, stage.size)
+        ends = (vector_or_zero(placement.joints[name].position) for name in (bar.end, bar.start))
+        errors[f"length of {bar.link}"] = _error(length(subtract_vectors(*ends)), bar.length, stage.size)
     for name, joint in group.references.items():
         motion = placement.links[name]
         errors[f"direction of {name}"] = _error(length(motion.direction), 1.0, 1.0)
@@ -203,20 +213,20 @@ def _of_shape(stage):
     for name in group.joints:
         joint, course = placement.joints[name], placement.course(name)
         if course.orbit is not None:
-            reached = stretched(sum(course.orbit), placement.ray)
+            reached = scale_vector(sum(course.orbit), placement.ray)
             errors[f"orbit of {name}"] = _error(reached, joint.position, stage.size)
         if course.departure is not None:
-            departure = added(vector(joint.second), joint.position)
+            departure = add_vectors(vector_or_zero(joint.second), joint.position)
             errors[f"departure of {name}"] = _error(course.departure, departure, stage.size)
         if course.swing is not None:
-            reached = added(course.swing.centre, stretched(course.swing.radius, course.swing.direction))
+            reached = add_vectors(course.swing.centre, scale_vector(course.swing.radius, course.swing.direction))
             errors[f"swing of {name}"] = _error(reached, joint.position, stage.size)
     return errors
 
 
 def _of_links(stage):
     """Errors of states of links against those of joints, guides and slots."""
-    compared = link_states.pairs(stage.group, stage.placed(), stage.size)
+    compared = link_states.link_comparisons(stage.group, stage.placed(), stage.size)
     return {
         what: max(_error(*both, unit) for both in zip(_parts(found), _parts(expected), strict=False))
         for what, (found, expected, unit) in compared.items()
@@ -226,12 +236,12 @@ def _of_links(stage):
 def _of_derivatives(stage):
     """Errors of derivatives by crank angle against differences of what they are derivatives of."""
     steps = range(1, len(WEIGHTS) + 1)
-    beside = {k: _rates(stage.placed(k * STEP), stage) for step in steps for k in (step, -step)}
+    beside = {k: _rates(stage.placed(k * ANGLE_STEP), stage) for step in steps for k in (step, -step)}
     here, again = (_rates(stage.placed(), stage) for _ in range(2))
     errors = {"place called twice": max(_error(again[what][0], values[0], values[2]) for what, values in here.items())}
     for what, (_, claimed, unit) in here.items():
         slope = sum(
-            weight * (beside[step][what][0] - beside[-step][what][0]) / STEP
+            weight * (beside[step][what][0] - beside[-step][what][0]) / ANGLE_STEP
             for step, weight in zip(steps, WEIGHTS, strict=True)
         )
         errors[what] = _error(claimed, slope, unit)
@@ -255,7 +265,7 @@ def _rates(placement, stage):
         motion = placement.links[name]
         add(f"reference joint of {name}", motion.joint)
         x, y = motion.direction
-        ratio, slope = number(motion.ratio), number(motion.ratio_slope)
+        ratio, slope = number_or_zero(motion.ratio), number_or_zero(motion.ratio_slope)
         found[f"ratio of {name}"] = (x, y), (-ratio * y, ratio * x), 1.0
         found[f"ratio_slope of {name}"] = ratio, slope, 1.0
     shape = np.shape(placement.angle)
@@ -287,7 +297,7 @@ def _of_forces(stage):
         for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
     }
     errors = {
-        f"work of the forces along {name}": _work_missing(stage, stage.placed(**way), wrenches, pushes)
+        f"work of the forces along {name}": _work_error(stage, stage.placed(**way), wrenches, pushes)
         for name, way in (ways or {"the turn": {}}).items()
     }
     inertia = {
@@ -295,11 +305,11 @@ def _of_forces(stage):
         for name, link in stage.group.links.items()
     }
     if any(wrench.force is not None or wrench.moment is not None for wrench in inertia.values()):
-        errors["power of weight and inertia"] = _work_missing(stage, still, inertia, {})
+        errors["power of weight and inertia"] = _work_error(stage, still, inertia, {})
     return errors
 
 
-def _work_missing(stage, placement, wrenches, pushes):
+def _work_error(stage, placement, wrenches, pushes):
     """Work that is left over, relative to the largest part of it."""
     resolved = stage.group.resolve(placement, wrenches, pushes)
     if not stage.group.trusted:
@@ -311,8 +321,8 @@ def _work_missing(stage, placement, wrenches, pushes):
         parts.append(
             virtual_work(placement.links[name], demand) if of_link else work(demand.force, placement.joints[name].first)
         )
-    sizes = [np.max(np.abs(number(part))) for part in parts]
-    return _error(sum(number(part) for part in parts), 0.0, max(sizes) or 1.0)
+    sizes = [np.max(np.abs(number_or_zero(part))) for part in parts]
+    return _error(sum(number_or_zero(part) for part in parts), 0.0, max(sizes) or 1.0)
 
 
 def _error(found, expected, unit):

@@ -6,7 +6,7 @@ from ..mechanics.load_values import require_pure
 from ..numbers import checks
 
 
-def checked(solution, on_gap="raise"):
+def check_solution(solution, on_gap="raise"):
     """The solution, its friction found, if nothing stands against it; `on_gap` as for `solve`."""
     (solution.check if on_gap == "raise" else solution.warn)()
     if solution.friction.acting:

@@ -29,11 +29,11 @@ from ..machine.crank import ray
 from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
 from ..machine.loads import TURN, Load, value_of
-from ..mechanics.assembly import HALF
+from ..mechanics.assembly import HALF_DIGITS_CONDITION
 from ..mechanics.dynamics import Dynamics
-from ..numbers.arithmetic import ROUNDING, UNIT, is_foreign_array
-from ..numbers.parameter_tree import Opaque, mapped, put_together
-from ..numbers.planar import product, subtracted
+from ..numbers.arithmetic import SQUARE_TOLERANCE, UNIT_ROUNDOFF, is_foreign_array
+from ..numbers.parameter_tree import Opaque, map_numbers, unflatten
+from ..numbers.planar import product, subtract_vectors
 
 MARGIN_FACTOR = 100.0
 """Upper limit of the condition times margin^2 / (proportion^2 times crank angle)."""
@@ -100,7 +100,7 @@ def _in_double_precision(solution):
     angle = solution.crank_angle
     if type(angle) is not np.ndarray or angle.dtype != float:
         scene = (solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction, solution.sense)
-        mechanism, *others = mapped((solution.mechanism, *scene), lambda value: np.asarray(value, dtype=float)[()])
+        mechanism, *others = map_numbers((solution.mechanism, *scene), lambda value: np.asarray(value, dtype=float)[()])
         try:
             solution = Dynamics(mechanism, np.asarray(angle, dtype=float), *others)
         except TypeError as error:
@@ -136,7 +136,7 @@ class _Size:
         self.is_positive = np.asarray(values[0]) > 0.0
         self.size = reduce(np.hypot, map(np.abs, values))
         self.change = np.abs(reduce(np.hypot, map(np.atleast_2d, slopes))).sum(axis=0)
-        self.certain = np.fmax(self.size - UNCERTAIN_ROUNDINGS * UNIT * self.change, 0.0)
+        self.certain = np.fmax(self.size - UNCERTAIN_ROUNDINGS * UNIT_ROUNDOFF * self.change, 0.0)
 
 
 class _Terms(NamedTuple):
@@ -217,7 +217,7 @@ def _terms(scene, size_of):
             link, body = placement.links[name], bodies[name]
             length = lengths.get(name, np.inf)  # a link that does not turn has none
             if name not in lengths and link.ratio is not None:  # a lever is as long as its block is far
-                gaps = [size_of(subtracted, joint.position, link.joint.position).size for joint in joints]
+                gaps = [size_of(subtract_vectors, joint.position, link.joint.position).size for joint in joints]
                 length = reduce(np.maximum, gaps, 0.0)
                 length = np.where(length > 0.0, length, np.inf)
             firsts = [size_of(_first_of_centre, link, body), *(size_of(joint.first) for joint in joints)]
@@ -268,16 +268,16 @@ def _of_forces(scene, size_of, links, largest_pushes, reactions):
 def _lengths(structure):
     """Places of the lengths among the leaves of a structure, and its loads with a number for each leaf."""
     places = itertools.count(1.0)  # from 1 on, for a zero is absent
-    scene = put_together(structure, places.__next__, lambda: None, lambda: None)
+    scene = unflatten(structure, places.__next__, lambda: None, lambda: None)
     found: list[float] = []
     special = {
-        Link: lambda link: mapped(link.centre, found.append),
-        Guide: lambda guide: mapped(guide.guide_offset, found.append),
+        Link: lambda link: map_numbers(link.centre, found.append),
+        Guide: lambda guide: map_numbers(guide.guide_offset, found.append),
     }
-    mapped(scene.mechanism, found.append, special)
+    map_numbers(scene.mechanism, found.append, special)
     for item in scene.loads:
         for name in item.LENGTHS if isinstance(item, Load) else ():
-            mapped(getattr(item, name), found.append)
+            map_numbers(getattr(item, name), found.append)
     return [int(place) - 1 for place in found], scene.loads
 
 
@@ -404,7 +404,7 @@ def _by_differences(solution):
 def _scene(structure, leaves, angle):
     """Plain scene of a structure at crank angles."""
     parts = (iter(part) for part in (leaves.numbers, leaves.tables, leaves.parts))
-    mechanism, *others = put_together(structure, *(part.__next__ for part in parts))
+    mechanism, *others = unflatten(structure, *(part.__next__ for part in parts))
     return Dynamics(mechanism, angle, *others)
 
 
@@ -430,7 +430,7 @@ def _sufficient_margin(solution, farthest=None):
     A bound of the crank angles will do in place of the farthest of them.
     """
     farthest = float(np.abs(np.asarray(solution.crank_angle)).max()) if farthest is None else farthest
-    return solution.proportion * math.sqrt(MARGIN_FACTOR * max(1.0, farthest) / HALF)
+    return solution.proportion * math.sqrt(MARGIN_FACTOR * max(1.0, farthest) / HALF_DIGITS_CONDITION)
 
 
 def ill_conditioned(solution, margins):
@@ -450,10 +450,10 @@ def ill_conditioned(solution, margins):
         Above `HALF`, infinite where no rounding is small enough.
     """
     least = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
-    closed = reduce(np.minimum, margins, np.ones(())) >= -ROUNDING
+    closed = reduce(np.minimum, margins, np.ones(())) >= -SQUARE_TOLERANCE
     points = np.flatnonzero(np.broadcast_to(closed & (least < _sufficient_margin(solution)), solution.shape))
     found = condition(solution, points) if points.size else np.zeros(0)
-    return points[found > HALF], found[found > HALF]
+    return points[found > HALF_DIGITS_CONDITION], found[found > HALF_DIGITS_CONDITION]
 
 
 def warn_of_lost_digits(solution, margins):
@@ -471,7 +471,7 @@ def warn_of_lost_digits(solution, margins):
     worst = int(np.argmax(found))
     angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
     cause = "it is near a limit position or change point: errors of its lengths, rounding among them, are"
-    if found[worst] * TURN < HALF * abs(angle):
+    if found[worst] * TURN < HALF_DIGITS_CONDITION * abs(angle):
         cause = "it is many turns from 0 (angles within one turn would do): rounding of the crank angle is"
     kinks = (text for group in solution.mechanism.groups if (text := group.kink(solution.mechanism.throws)))
     warnings.warn(

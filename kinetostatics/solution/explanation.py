@@ -17,20 +17,20 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..explain import pages
-from ..explain.formats import LATEX, MATHML, TEXT, in_digits, written
-from ..explain.named_recording import node_of, result, told
+from ..explain.formats import LATEX, MATHML, TEXT, format_number, write_formula
+from ..explain.named_recording import name_result, node_of, record_with_names
 from ..explain.steps import lines
 from ..machine import plausibility
 from ..mechanics import quantities
 from ..mechanics.motion import SceneParts
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import mapped
+from ..numbers.parameter_tree import map_numbers
 from ..results.rounding import without_rounding
 from .angles import crank_angles
-from .checked import checked
-from .drive_and_loads import over_the_angles
-from .parameters import leaves_of
+from .checked import check_solution
+from .drive_and_loads import tables_over_angles
+from .parameters import leaf_by_path
 
 
 class Step(NamedTuple):
@@ -103,18 +103,18 @@ class Explanation:
     @property
     def title(self):
         """Mechanism, quantity and crank angle."""
-        angle = f"{in_digits(self.angle)} rad = {in_digits(degrees(self.angle))} deg"
+        angle = f"{format_number(self.angle)} rad = {format_number(degrees(self.angle))} deg"
         return f"{self.mechanism}: {self.label} at crank angle {angle}"
 
     @property
     def conclusion(self):
         """The quantity and its value, of a vector the magnitude too."""
-        values = [step.shown for step in self.results] or [in_digits(float(part)) for part in np.ravel(self.value)]
+        values = [step.shown for step in self.results] or [format_number(float(part)) for part in np.ravel(self.value)]
         unit = "" if self.unit == "1" else f" {self.unit}"
         if np.ndim(self.value):
-            size = in_digits(hypot(*self.value))
+            size = format_number(hypot(*self.value))
             return f"{self.quantity} = ({', '.join(values)}){unit}, magnitude {size}{unit}"
-        angle = f" = {in_digits(degrees(self.value))} deg" if self.unit == "rad" else ""
+        angle = f" = {format_number(degrees(self.value))} deg" if self.unit == "rad" else ""
         return f"{self.quantity} = {values[-1]}{unit}{angle}"
 
     @cached_property
@@ -135,7 +135,7 @@ class Explanation:
     @property
     def page(self):
         """The same as a whole page of HTML."""
-        return pages.page(self)
+        return pages.whole_page(self)
 
     def __str__(self):
         return self.text
@@ -155,12 +155,12 @@ def explain(solution, quantity, angle, design=None):
     found, inner = _quantity(solution, quantity)
     sized = inner != quantity
     state = _alone(solution, angle, design)
-    numbered = {int(number): path for path, number in leaves_of(state.places, state.dynamics).items()}
+    numbered = {int(number): path for path, number in leaf_by_path(state.places, state.dynamics).items()}
     units = {path: place.rule.unit for path, place in state.places.items()}
-    made, recorder = told(state.dynamics, numbered, units)
-    nodes = list(map(node_of, result(made, inner, found, sized)))
+    made, recorder = record_with_names(state.dynamics, numbered, units)
+    nodes = list(map(node_of, name_result(made, inner, found, sized)))
     with np.errstate(all="ignore"):
-        read = quantities.sizes if sized else quantities.components
+        read = quantities.component_sizes if sized else quantities.components
         parts = np.array(read(state.dynamics, inner), dtype=float)
     rounded = zip(nodes, _without_rounding(state, quantity, inner, parts), strict=True)
     zeros, nodes = {node for node, part in rounded if part == 0.0}, [node for node in nodes if node is not None]
@@ -198,8 +198,8 @@ def _steps(names, found, zeros):
         symbol, value = symbols[line.node.index], values[line.node.index]
         ways = []
         for style in (TEXT, LATEX, MATHML):
-            formula = written(line.tree, style, symbols.__getitem__) if line.tree else ""
-            numbers = written(line.tree, style, values.__getitem__) if line.tree else ""
+            formula = write_formula(line.tree, style, symbols.__getitem__) if line.tree else ""
+            numbers = write_formula(line.tree, style, values.__getitem__) if line.tree else ""
             ways.append((style.symbol(symbol), formula, numbers, style.number(value)))
         (spelled, formula, numbers, text), *rest = ways
         named = line.named
@@ -213,7 +213,7 @@ def _alone(solution, angle, design):
     asked = crank_angles(angle, "explain")
     checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
     asked = float(asked.reshape(()))
-    for hint in plausibility.of_one(asked):
+    for hint in plausibility.single_angle_hints(asked):
         warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
     batch = solution.shape[:-1]
     place = _design(batch, design)
@@ -227,8 +227,8 @@ def _alone(solution, angle, design):
         fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
         return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
 
-    parts = {name: mapped(getattr(solution, name), number) for name in SceneParts._fields}
-    return checked(replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY))
+    parts = {name: map_numbers(getattr(solution, name), number) for name in SceneParts._fields}
+    return check_solution(replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY))
 
 
 def _design(batch, design):
@@ -247,7 +247,7 @@ def _design(batch, design):
 
 def _index(solution, angle, place):
     """Which of the crank angles given is meant; None where nothing has a value for each."""
-    if not over_the_angles(solution):
+    if not tables_over_angles(solution):
         return None
     known = np.broadcast_to(solution.crank_angle, solution.shape)[place]
     fits = np.flatnonzero(known == angle)

@@ -5,11 +5,11 @@ import warnings
 import numpy as np
 
 from ..errors import ConditionWarning
-from ..mechanics.assembly import NO_DIGIT
-from ..mechanics.quantities import of_scene, still
+from ..mechanics.assembly import NO_DIGITS_CONDITION
+from ..mechanics.quantities import is_still, of_scene
 from ..results.turn import NEAR
 
-ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
+COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
 """Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
 
 
@@ -27,9 +27,9 @@ def solution_frame(solution):
     columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
     for joint in solution.placement.joints:
         columns |= _components(joint, "m", solution.position(joint))
-    quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in ORDER)
-    for name, quantity in sorted(quantities, key=lambda pair: ORDER.index(pair[1].kind)):
-        if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio):
+    quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in COLUMN_ORDER)
+    for name, quantity in sorted(quantities, key=lambda pair: COLUMN_ORDER.index(pair[1].kind)):
+        if quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio):
             continue
         values = quantity.read(solution)
         if quantity.vector:
@@ -48,7 +48,7 @@ def _warn_of_rows_without_digits(solution):
     with np.errstate(invalid="ignore"):
         if not any(np.any(margin < NEAR) for margin in solution.closure):
             return
-        lost = solution.condition >= NO_DIGIT
+        lost = solution.condition >= NO_DIGITS_CONDITION
     if lost.any():
         angle = np.unique(np.broadcast_to(solution.crank_angle, solution.shape)[lost])
         places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3])) + (" ..." if angle.size > 3 else "")

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.group import FRAME
-from ..machine.links import Sliding, Spot, Turning, arm
-from ..numbers.planar import cross, dot, number, subtracted, turned, unturned, vector
+from ..machine.links import PointMotion, Sliding, Turning, arm
+from ..numbers.planar import cross, dot, number_or_zero, rotate, rotate_back, subtract_vectors, vector_or_zero
 
-STATES = ("position", "velocity", "acceleration")
+STATE_NAMES = ("position", "velocity", "acceleration")
 
 
-class Pair(NamedTuple):
+class Comparison(NamedTuple):
     """Two values that must agree, and a size below which neither counts."""
 
     found: object
@@ -23,7 +23,7 @@ class Pair(NamedTuple):
     unit: float
 
 
-def pairs(group, placement, size):
+def link_comparisons(group, placement, size):
     """By what is compared, a `Pair`: numbers, or vectors by component."""
     return {
         **_points(group, placement, size),
@@ -41,19 +41,21 @@ def _points(group, placement, size):
     for name, (link, along, across) in group.joints.items():
         joint = placement.joints[name]
         if link == FRAME:
-            for what, part, fixed in zip(STATES, joint, ((along, across), (0.0, 0.0), (0.0, 0.0)), strict=True):
-                found[f"{what} of {name} as a point of the frame"] = Pair(vector(part), fixed, size)
+            for what, part, fixed in zip(STATE_NAMES, joint, ((along, across), (0.0, 0.0), (0.0, 0.0)), strict=True):
+                found[f"{what} of {name} as a point of the frame"] = Comparison(vector_or_zero(part), fixed, size)
             continue
         motion = placement.links[link]
-        spot = Spot(motion.joint, arm(motion.direction, along, across), motion)
-        for what, part, by_link in zip(STATES, joint, _states(spot), strict=True):
-            found[f"{what} of {name} as a point of {link}"] = Pair(vector(by_link), vector(part), size)
+        spot = PointMotion(motion.joint, arm(motion.direction, along, across), motion)
+        for what, part, by_link in zip(STATE_NAMES, joint, _states(spot), strict=True):
+            found[f"{what} of {name} as a point of {link}"] = Comparison(
+                vector_or_zero(by_link), vector_or_zero(part), size
+            )
     return found
 
 
 def _fixed_joints(group, placement, size):
     """Joints that a link keeps at one place in its own axes: the end of a bar at its length, other pins anywhere."""
-    places = {(pair.link, pair.joint): None for pair in _of(group, "pairs").values() if type(pair) is Turning}
+    places = {(pair.link, pair.joint): None for pair in _declared(group, "pairs").values() if type(pair) is Turning}
     for bar in group.bars:
         places |= {(bar.link, bar.start): (0.0, 0.0), (bar.link, bar.end): (bar.length, 0.0)}
     found = {}
@@ -61,57 +63,67 @@ def _fixed_joints(group, placement, size):
         if link not in group.links:
             continue
         motion, joint = placement.links[link], placement.joints[name]
-        to_joint = subtracted(joint.position, motion.joint.position)
-        seen = unturned(to_joint, motion.direction)
+        to_joint = subtract_vectors(joint.position, motion.joint.position)
+        seen = rotate_back(to_joint, motion.direction)
         expected = tuple(np.mean(part) for part in seen) if place is None else place
-        found[f"place of {name} in the axes of {link}"] = Pair(seen, expected, size)
-        _, first, second = _states(Spot(motion.joint, to_joint, motion))
-        found[f"velocity of {name} by {link}"] = Pair(vector(first), vector(joint.first), size)
-        found[f"acceleration of {name} by {link}"] = Pair(vector(second), vector(joint.second), size)
+        found[f"place of {name} in the axes of {link}"] = Comparison(seen, expected, size)
+        _, first, second = _states(PointMotion(motion.joint, to_joint, motion))
+        found[f"velocity of {name} by {link}"] = Comparison(vector_or_zero(first), vector_or_zero(joint.first), size)
+        found[f"acceleration of {name} by {link}"] = Comparison(
+            vector_or_zero(second), vector_or_zero(joint.second), size
+        )
     return found
 
 
 def _guides(group, placement, size):
     """Sliders: the pin on the guide, the direction of the guide, and the travel as the pin's coordinate along it."""
     found = {}
-    for link, guide in _of(group, "guides").items():
+    for link, guide in _declared(group, "guides").items():
         motion, direction = placement.links[link], guide.direction
         position = motion.joint.position
-        found[f"distance of {link} from its guide"] = Pair(cross(direction, position), guide.guide_offset, size)
-        found[f"direction of {link} along its guide"] = Pair(motion.direction, direction, 1.0)
+        found[f"distance of {link} from its guide"] = Comparison(cross(direction, position), guide.guide_offset, size)
+        found[f"direction of {link} along its guide"] = Comparison(motion.direction, direction, 1.0)
         travel = placement.travels.get(link)
-        for what, claimed, part in zip(STATES, travel, motion.joint, strict=True) if travel else ():
-            found[f"{what} of the travel of {link}"] = Pair(number(claimed), dot(direction, vector(part)), size)
+        for what, claimed, part in zip(STATE_NAMES, travel, motion.joint, strict=True) if travel else ():
+            found[f"{what} of the travel of {link}"] = Comparison(
+                number_or_zero(claimed), dot(direction, vector_or_zero(part)), size
+            )
     return found
 
 
 def _slots(group, placement, size):
     """Joints that slide in the slot of a link: on the line of the slot."""
     found = {}
-    for slot in _of(group, "slots"):
+    for slot in _declared(group, "slots"):
         motion = placement.links[slot.link]
-        axis = turned((np.cos(slot.angle), np.sin(slot.angle)), motion.direction)
-        away = subtracted(placement.joints[slot.joint].position, motion.joint.position)
-        found[f"distance of {slot.joint} from the slot of {slot.link}"] = Pair(cross(axis, away), slot.offset, size)
+        axis = rotate((np.cos(slot.angle), np.sin(slot.angle)), motion.direction)
+        away = subtract_vectors(placement.joints[slot.joint].position, motion.joint.position)
+        found[f"distance of {slot.joint} from the slot of {slot.link}"] = Comparison(
+            cross(axis, away), slot.offset, size
+        )
         if slot.rod:
             aside = cross(axis, placement.links[slot.rod].direction)
-            found[f"direction of {slot.rod} along {slot.link}"] = Pair(aside, 0.0, 1.0)
+            found[f"direction of {slot.rod} along {slot.link}"] = Comparison(aside, 0.0, 1.0)
     return found
 
 
 def _slidings(group, placement, size):
     """Rates of sliding pairs, on which the sense of friction depends, as velocities of one link against the other."""
     found = {}
-    for name, pair in _of(group, "pairs").items():
+    for name, pair in _declared(group, "pairs").items():
         if type(pair) is not Sliding:
             continue
         slide, joint = group.sliding(name, placement), placement.joints[pair.joint]
         direction = (1.0, 0.0) if slide.direction is None else slide.direction
-        first = subtracted(_velocity(placement, pair.link, joint), _velocity(placement, pair.against, joint))
-        found[f"rate of sliding of {name}"] = Pair(number(slide.rate), dot(direction, vector(first)), size)
+        first = subtract_vectors(_velocity(placement, pair.link, joint), _velocity(placement, pair.against, joint))
+        found[f"rate of sliding of {name}"] = Comparison(
+            number_or_zero(slide.rate), dot(direction, vector_or_zero(first)), size
+        )
         if pair.against != FRAME:
-            away = subtracted(joint.position, placement.links[pair.against].joint.position)
-            found[f"moment of sliding of {name}"] = Pair(number(slide.moment), cross(away, direction), size)
+            away = subtract_vectors(joint.position, placement.links[pair.against].joint.position)
+            found[f"moment of sliding of {name}"] = Comparison(
+                number_or_zero(slide.moment), cross(away, direction), size
+            )
     return found
 
 
@@ -122,11 +134,11 @@ def _courses(group, placement, size):
         swing = placement.course(name).swing
         if swing is not None:
             parts = (*swing.centre, swing.radius)
-            found[f"centre and radius of the swing of {name}"] = Pair(parts, tuple(map(np.mean, parts)), size)
+            found[f"centre and radius of the swing of {name}"] = Comparison(parts, tuple(map(np.mean, parts)), size)
     return found
 
 
-def _of(group, name):
+def _declared(group, name):
     """What a group declares; a group that is not derived from `Group` may lack it."""
     return getattr(group, name, {})
 
@@ -140,4 +152,4 @@ def _velocity(placement, link, joint):
     if link == FRAME:
         return None
     motion = placement.links[link]
-    return Spot(motion.joint, subtracted(joint.position, motion.joint.position), motion).first
+    return PointMotion(motion.joint, subtract_vectors(joint.position, motion.joint.position), motion).first

@@ -5,7 +5,7 @@ from typing import ClassVar
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import Axis, Kept, Numbered, with_fields
+from ..numbers.parameter_tree import Axis, KeptZero, LeafIndex, replace_unchecked
 
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
@@ -19,24 +19,24 @@ class Parameters:
     PATHS: ClassVar = {"mechanism": "", "loads": "", "friction": ""}
     RULES = checks.Rules(
         "scene",
-        mechanism=checks.Made(Mechanism, "a Mechanism"),
+        mechanism=checks.InstanceOf(Mechanism, "a Mechanism"),
         **DRIVE.rules,
-        loads=checks.Own((), "loads"),
-        friction=checks.Own((), "friction"),
+        loads=checks.HasMembers((), "loads"),
+        friction=checks.HasMembers((), "friction"),
         sense=SENSE,
     )
 
     @cached_property
     def places(self):
         """Where each number stands, by path, with its unit and rule."""
-        return paths.places(self)
+        return paths.places_by_path(self)
 
 
-def unknown(scene, path, known=None):
+def path_problem(scene, path, known=None):
     """What is wrong with a path that is none of the known ones of a scene, all unless told; or None."""
     problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
     is_other = problem and isinstance(path, str) and path not in scene.places
-    place = paths.places(scene, absent=True).get(path) if is_other else None
+    place = paths.places_by_path(scene, absent=True).get(path) if is_other else None
     if place is None:
         return problem
     within = place.steps[:-1]
@@ -46,20 +46,20 @@ def unknown(scene, path, known=None):
     return f"parameter {path} has no number here{told}{beside}"
 
 
-def leaves_of(places, state):
+def leaf_by_path(places, state):
     """Which leaf of a `Dynamics` each number is, by path; of what is zero, and so absent, none."""
     numbered = state.kind.numbered
     found = {path: place.value(numbered) for path, place in places.items()}
-    return {path: number for path, number in found.items() if isinstance(number, Numbered)}
+    return {path: number for path, number in found.items() if isinstance(number, LeafIndex)}
 
 
-def keeping(scene, places, wanted):
+def keep_numbers(scene, places, wanted):
     """The scene with the wanted numbers that are zero or of an axis, and so absent from programs, kept as numbers."""
     for path in wanted:
         place = places[path]
         owner = place._replace(steps=place.steps[:-1])
         if isinstance(owner.value(scene), Axis) or is_zero(place.value(scene)):
-            scene = _with_kept(scene, place.steps)
+            scene = _keep_number(scene, place.steps)
     return scene
 
 
@@ -68,17 +68,17 @@ def is_zero(value):
     return isinstance(value, int | float) and value == 0
 
 
-def _with_kept(item, steps):
+def _keep_number(item, steps):
     """Copy of a tree in which a number, though it is zero or of an axis, is kept as one; nothing is checked."""
     if not steps:
-        return Kept(0.0) if item == 0 else item
+        return KeptZero(0.0) if item == 0 else item
     step, *rest = steps
     if isinstance(step, int):
-        return tuple(_with_kept(part, rest) if place == step else part for place, part in enumerate(item))
-    return with_fields(item, **{step: _with_kept(getattr(item, step), rest)})
+        return tuple(_keep_number(part, rest) if place == step else part for place, part in enumerate(item))
+    return replace_unchecked(item, **{step: _keep_number(getattr(item, step), rest)})
 
 
-def is_judged_together(item, steps):
+def has_joint_rule(item, steps):
     """Whether a number stands in a part that has rules for several of its numbers together."""
     for step in steps:
         rules = getattr(item, "RULES", None)
@@ -88,12 +88,12 @@ def is_judged_together(item, steps):
     return False
 
 
-def fixed(places, mechanism):
+def paths_without_derivative(places, mechanism):
     """Paths by which there is no derivative: the sense, and lengths of which any other makes another kind."""
-    return shaping(places, mechanism, [group for group in mechanism.groups if group.passes]) | {"sense"}
+    return passage_paths(places, mechanism, [group for group in mechanism.groups if group.passes]) | {"sense"}
 
 
-def require_free(owner, mechanism, paths, fixed):
+def require_derivatives(owner, mechanism, paths, fixed):
     """Refuse to derive by a length that decides which change points are passed, and by the sense of rotation."""
     checks.require(
         owner,
@@ -110,7 +110,7 @@ def require_free(owner, mechanism, paths, fixed):
     )
 
 
-def shaping(places, mechanism, groups):
+def passage_paths(places, mechanism, groups):
     """Paths of what decides which change points some groups pass: pins of the crank, their own lengths and lines."""
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
     pins = {group.on for group in groups}

@@ -9,31 +9,31 @@ from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import STRAIGHT
 from ..mechanics.jamming import solve_friction
-from ..mechanics.quantities import quantity, sizes
-from ..numbers.parameter_tree import Leaves, put_together, taken_apart
+from ..mechanics.quantities import component_sizes, quantity
+from ..numbers.parameter_tree import Leaves, flatten, unflatten
 from ..results.bends import bends
 from ..results.pieces import Pieces
 from ..results.refining import GOAL, refined
-from .scene import unchecked
+from .scene import unchecked_solution
 
-PARTED = 192
+START_ANGLES = 192
 """Crank angles a turn to begin with that tell most outputs of a turn that is parted."""
-VALUES = 100_000
+BLOCK_VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
 
 
-def solution_of(scene, angles):
+def unchecked_turn(scene, angles):
     """Solution at so many crank angles over the period, or at these."""
     if scene.friction.acting:
         scene = solve_friction(scene)
-    return unchecked(scene, scene.turn(angles), "numpy")
+    return unchecked_solution(scene, scene.turn(angles), "numpy")
 
 
-def quantities(outputs):
+def quantity_names(outputs):
     return list(dict.fromkeys(item.quantity for item in outputs))
 
 
-class Parted(NamedTuple):
+class PiecewiseTurns(NamedTuple):
     """The turn of designs, parted where they bend.
 
     Attributes
@@ -57,7 +57,7 @@ class Parted(NamedTuple):
     @classmethod
     def of(cls, scene, outputs, angles, straight=STRAIGHT, engine="numpy"):
         """For some outputs, of at least so many crank angles, with loads taken as straight where they bend by less."""
-        solution = solution_of(scene, 1)
+        solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
         found, jumps, rest = bends(solution, straight)
         found = np.broadcast_to(found, (count, found.shape[1]))
@@ -68,20 +68,20 @@ class Parted(NamedTuple):
         scene, count, own = self._of(designs)
         values, everywhere = {name: np.empty(angle.shape) for name in names}, np.repeat(angle[:1], count, axis=0)
         everywhere[own] = angle
-        step = max(1, VALUES // count)
+        step = max(1, BLOCK_VALUES // count)
         for start in range(0, angle.shape[1], step):
             some = slice(start, start + step)
-            found = _sizes(solution_of(scene, everywhere[:, some]), names, self.engine)
+            found = _magnitudes(unchecked_turn(scene, everywhere[:, some]), names, self.engine)
             for name, part in zip(names, found, strict=True):
                 values[name][:, some] = np.broadcast_to(part, everywhere[:, some].shape)[own]
         return values
 
     def refined(self, outputs):
         """Parts of the designs: which, their pieces, and values by quantity, so fine that they tell if any do."""
-        names = quantities(outputs)
+        names = quantity_names(outputs)
         known = {name: quantity(self.scene, name).vector for name in names}
         wanted = [(item, known[item.quantity]) for item in outputs]
-        step = max(1, VALUES // self.pieces.angle.shape[1])
+        step = max(1, BLOCK_VALUES // self.pieces.angle.shape[1])
         for start in range(0, self.designs, step):
             some = np.arange(start, min(start + step, self.designs))
             first = self.pieces.some(some)
@@ -109,20 +109,20 @@ class Parted(NamedTuple):
         All, where something in it, as a function does, may hold numbers of designs that nobody can take apart.
         """
         leaves = Leaves()
-        structure = taken_apart(self.scene, leaves)
+        structure = flatten(self.scene, leaves)
         if len(designs) == self.designs or not leaves.lasting:
             return self.scene, self.designs, designs
         numbers = (part[designs] if np.shape(part)[:1] == (self.designs,) else part for part in leaves.numbers)
-        scene = put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
+        scene = unflatten(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
         return scene, len(designs), np.arange(len(designs))
 
 
-def _sizes(solution, names, engine):
+def _magnitudes(solution, names, engine):
     """Values of quantities, of vectors their magnitudes."""
     state, compiled = solution.dynamics, engine == "compiled"
     try:
         program, leaves = program_of(state, tuple(names), sizes=True, lasting=not compiled)
     except NotGivenError:
         with np.errstate(all="ignore"):
-            return [sizes(solution, name)[0] for name in names]
+            return [component_sizes(solution, name)[0] for name in names]
     return program.run(state, leaves, compiled)

@@ -20,18 +20,28 @@ from ..machine.loads import by_sense, is_given, may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
-from ..mechanics.quantities import CHECKS
+from ..mechanics.quantities import FRICTION_CHECKS
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from ..numbers.parameter_tree import made
-from .angles import crank_angles, hint_at, problems
-from .certainty import slopes
-from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
-from .scene import scene_problem, unchecked
+from ..numbers.parameter_tree import construct_unchecked
+from .angles import angle_problem, crank_angles, hint_at_angles
+from .certainty import sensitivities
+from .parameters import (
+    DRIVE,
+    has_joint_rule,
+    is_zero,
+    keep_numbers,
+    leaf_by_path,
+    passage_paths,
+    path_problem,
+    paths_without_derivative,
+    require_derivatives,
+)
+from .scene import scene_problem, unchecked_solution
 
-MAPPINGS = (dict, MappingProxyType)
+MAPPING_TYPES = (dict, MappingProxyType)
 """Types that are mappings for sure: asking for the protocol takes longer."""
-FEW = 180
+FRICTION_ANGLES = 180
 """Crank angles around the turn at which friction is looked at."""
 
 
@@ -60,25 +70,26 @@ class Program:
         self.scene, self.quantities, self._backend, self._kept = scene, quantities, backend, kept
         self._compiled, self._is_own = backend.engine == "compiled", backend.is_own
         places = scene.places
-        checks.require("compile", *(unknown(scene, path) for path in kept if path not in places))
+        checks.require("compile", *(path_problem(scene, path) for path in kept if path not in places))
         if scene.friction.acting:
-            scene = _with_enough_passes(scene)
-        scene = keeping(scene, places, kept)
+            scene = _solve_friction(scene)
+        scene = keep_numbers(scene, places, kept)
         state = scene.dynamics(np.zeros(1))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = program_of(state, quantities)
-        self._friction: Any = program_of(state, CHECKS)[0] if scene.friction.acting else None
+        self._friction: Any = program_of(state, FRICTION_CHECKS)[0] if scene.friction.acting else None
         self._numbers = {
-            path: (number, _of_designs(places[path].rule)) for path, number in leaves_of(places, state).items()
+            path: (number, _rule_without_table(places[path].rule))
+            for path, number in leaf_by_path(places, state).items()
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
-        self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
+        self._doors = {path for path in self._numbers if has_joint_rule(scene, places[path].steps)}
         if scene.sense is not None:  # it must not contradict the speed
             self._doors |= {"crank_speed", "sense"} & self._numbers.keys()
         self._passages = scene.mechanism.passages
         groups = scene.mechanism.groups
-        self._lengths = shaping(places, scene.mechanism, [group for group in groups if group.through])
-        self._fixed = fixed(places, scene.mechanism)
+        self._lengths = passage_paths(places, scene.mechanism, [group for group in groups if group.through])
+        self._fixed = paths_without_derivative(places, scene.mechanism)
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -119,7 +130,7 @@ class Program:
             With these values friction is not found to rounding: compile a scene that has them.
         """
         found = self.evaluated(angle, values)
-        hint_at(self.scene.mechanism.name, angle)
+        hint_at_angles(self.scene.mechanism.name, angle)
         return found
 
     def evaluated(self, angle, values=MappingProxyType({})):
@@ -188,7 +199,7 @@ class Program:
                 f"by {self.engine} in {self.precision} precision, so leave tight out, or compile one of those"
             )
         state, leaves = self._at(angle, values)
-        hint_at(self.scene.mechanism.name, angle)
+        hint_at_angles(self.scene.mechanism.name, angle)
         return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
@@ -225,16 +236,18 @@ class Program:
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
-        by, values = _parted(by, values)
+        by, values = _names_and_values(by, values)
         checks.require("program", None if by is None else checks.names("by", by))
         every = tuple(path for path in self.parameters if path not in self._fixed)
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
-        require_free("program", self.scene.mechanism, names, self._fixed)
+        require_derivatives("program", self.scene.mechanism, names, self._fixed)
         state, leaves = self._at(angle, values)
-        hint_at(self.scene.mechanism.name, angle)
-        return slopes(self._program, {path: self._numbers[path][0] for path in names}, state, leaves, self._backend)
+        hint_at_angles(self.scene.mechanism.name, angle)
+        return sensitivities(
+            self._program, {path: self._numbers[path][0] for path in names}, state, leaves, self._backend
+        )
 
     def _look_at_friction(self, state, leaves, values):
         """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
@@ -258,10 +271,10 @@ class Program:
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""
         angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
-        wrong = problems(angle)
+        wrong = angle_problem(angle)
         if wrong:
             checks.require("program", wrong)
-        if type(values) not in MAPPINGS and not isinstance(values, Mapping):
+        if type(values) not in MAPPING_TYPES and not isinstance(values, Mapping):
             checks.require("program", checks.mapping("values", values))
         return self._state(
             angle, values, self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
@@ -270,10 +283,10 @@ class Program:
     def _state(self, angle, values, leaves):
         fields, shape = self._fields, _shape(angle, leaves)
         if not (self._refuses or self._program.recording.tables):
-            return made(Dynamics, **{**fields, "crank_angle": angle, "shape": shape}), leaves
+            return construct_unchecked(Dynamics, **{**fields, "crank_angle": angle, "shape": shape}), leaves
         drive = values.keys() <= DRIVE.rules.keys() | {"sense"}
         fields = {**fields, **values} if drive else vars(self.scene.varied(values).dynamics(angle))
-        state = made(Dynamics, **{**fields, "crank_angle": angle, "shape": shape})
+        state = construct_unchecked(Dynamics, **{**fields, "crank_angle": angle, "shape": shape})
         checks.require("program", *refusals(state))
         return state, leaves
 
@@ -284,7 +297,7 @@ class Program:
         for path, value in values.items():
             number, rule = self._numbers[path]
             found = rule.quick(value)
-            if found is checks.UNSURE:
+            if found is checks.UNDECIDED:
                 found, problem = rule.taken(value, path)
                 wrong.append(problem)
             numbers[number] = found
@@ -315,10 +328,10 @@ class Program:
                 raise ParameterError(
                     f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'
                 )
-        checks.require("program", *(unknown(self.scene, path, self._numbers) for path in names))
+        checks.require("program", *(path_problem(self.scene, path, self._numbers) for path in names))
 
 
-def _parted(by, values):
+def _names_and_values(by, values):
     """Names to derive by, and other numbers, in whichever order they stand: only numbers are a mapping."""
     if not isinstance(by, Mapping):
         return by, values
@@ -330,18 +343,20 @@ def _parted(by, values):
     return None if isinstance(values, Mapping) else values, by
 
 
-def _of_designs(rule):
+def _rule_without_table(rule):
     """The rule of a number that is one for all crank angles of a design, as it was recorded."""
     return replace(rule, table=False) if getattr(rule, "table", False) else rule
 
 
-def _with_enough_passes(scene):
+def _solve_friction(scene):
     """The scene with as many passes over its friction as it takes around the turn."""
     if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
         return jamming.solve_friction(scene)
-    angles = np.linspace(0.0, scene.period, FEW, endpoint=False)
+    angles = np.linspace(0.0, scene.period, FRICTION_ANGLES, endpoint=False)
     with np.errstate(all="ignore"):
-        return jamming.solve_friction(scene, lambda scene: jamming.checks_of(unchecked(scene, angles, "numpy")))
+        return jamming.solve_friction(
+            scene, lambda scene: jamming.checks_of(unchecked_solution(scene, angles, "numpy"))
+        )
 
 
 def _shape(angle, leaves):
@@ -351,11 +366,11 @@ def _shape(angle, leaves):
     except ValueError:
         arrays = (leaf for leaf in (*leaves.numbers, *leaves.tables) if type(leaf) is not float)
         given = {f"array {number} of the scene": array.shape for number, array in enumerate(arrays, 1)}
-        checks.require("program", checks.fitting(crank_angle=angle.shape, **given))
+        checks.require("program", checks.broadcast_problem(crank_angle=angle.shape, **given))
         raise
 
 
-ANGLES = np.array([0.3, 2.0])
+TRIAL_ANGLES = np.array([0.3, 2.0])
 """Crank angles at which functions of loads are called before they are recorded."""
 
 
@@ -421,7 +436,7 @@ def compile(  # noqa: A001 - the contract's name
     if engine == "compiled":
         require_numba()
     if not all(map(is_given, scene.loads)) and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1:
-        require_pure(unchecked(scene, ANGLES))
+        require_pure(unchecked_solution(scene, TRIAL_ANGLES))
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     backend = Backend(engine or ("compiled" if numba_available() else "numpy"), precision, device)
     backend.device  # noqa: B018  refuses one that is not there

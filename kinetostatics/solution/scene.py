@@ -18,17 +18,17 @@ from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
-from ..numbers.arithmetic import looked_at
-from ..numbers.parameter_tree import made
+from ..numbers.arithmetic import concrete_array
+from ..numbers.parameter_tree import construct_unchecked
 from . import slips
-from .angles import BYTES, crank_angles, problems
-from .checked import checked
-from .drive_and_loads import in_a_line
-from .parameters import DRIVE, SENSE, Parameters, unknown
+from .angles import BYTES_PER_VALUE, angle_problem, crank_angles
+from .checked import check_solution
+from .drive_and_loads import drive_and_loads_text
+from .parameters import DRIVE, SENSE, Parameters, path_problem
 from .solution import Solution
 
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
-WORTH_COMPILING = 1_000_000
+MIN_VALUES_COMPILED = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
 
@@ -84,14 +84,14 @@ class Scene(Parameters):
             values.update(sense=_sense(owner, self.sense, values["crank_speed"]))
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
-        if self.friction is not None and self.friction is not rubbing.NONE:
-            wrong += rubbing.problems(self.mechanism, self.friction)
+        if self.friction is not None and self.friction is not rubbing.NO_FRICTION:
+            wrong += rubbing.friction_problems(self.mechanism, self.friction)
         checks.require(owner, *wrong, _period_problem(loads))
-        loads = tuple(item if type(item) in KINDS else checks.kept(item) for item in loads)
-        values.update(loads=loads, friction=rubbing.taken(self.friction))
+        loads = tuple(item if type(item) in KINDS else checks.snapshot(item) for item in loads)
+        values.update(loads=loads, friction=rubbing.frictions_by_joint(self.friction))
 
     def __repr__(self):
-        return f"<Scene: {self.mechanism.name}, {in_a_line(self)}>"
+        return f"<Scene: {self.mechanism.name}, {drive_and_loads_text(self)}>"
 
     @classmethod
     def of(cls, solution):
@@ -136,7 +136,7 @@ class Scene(Parameters):
         """
         known = self.places
         checks.require("scene", checks.mapping("values", values))
-        checks.require("scene", *(unknown(self, path) for path in values if path not in known))
+        checks.require("scene", *(path_problem(self, path) for path in values if path not in known))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
     def solve(self, angles=720, *, on_gap="raise", engine=None) -> Solution:
@@ -149,7 +149,7 @@ class Scene(Parameters):
         on_gap, engine
             As for `solve`.
         """
-        return checked(_begun(self, self.turn(angles), on_gap, engine), on_gap)
+        return check_solution(_start(self, self.turn(angles), on_gap, engine), on_gap)
 
     def unsolved(self, angle):
         """Motion and forces at crank angles, an array, nothing checked."""
@@ -168,7 +168,7 @@ class Scene(Parameters):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
         if not isinstance(angles, int | np.integer) or isinstance(angles, bool):
             return angles
-        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
+        checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
         return np.linspace(0.0, self.period, angles, endpoint=False)
 
 
@@ -265,7 +265,7 @@ def solve(
     >>> bool(s.power_residual < 1e-14)  # two ways to the torque agree
     True
     """
-    scene = made(
+    scene = construct_unchecked(
         Scene,
         mechanism=mechanism,
         crank_speed=crank_speed,
@@ -275,31 +275,31 @@ def solve(
         sense=sense,
     )
     scene._admit("solve")
-    return checked(_begun(scene, crank_angle, on_gap, engine), on_gap)
+    return check_solution(_start(scene, crank_angle, on_gap, engine), on_gap)
 
 
-def _begun(scene, crank_angle, on_gap, engine):
+def _start(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
-    solution = unchecked(scene, crank_angle, engine)
-    for text in (*odd(solution), *plausibility.of_given_angles(crank_angle, solution.crank_angle)):
+    solution = unchecked_solution(scene, crank_angle, engine)
+    for text in (*scene_hints(solution), *plausibility.given_angle_hints(crank_angle, solution.crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         program_of(solution.dynamics)  # refuses what cannot be recorded
     return solution
 
 
-def odd(solution):
+def scene_hints(solution):
     """Sentences on what looks like a slip in the scene of a solution, looked for only where there may be one."""
     _, may_be = solution.first_look or (None, True)
-    return slips.of_scene(solution) if may_be else ()
+    return slips.plausibility_hints(solution) if may_be else ()
 
 
-def unchecked(scene, crank_angle, engine=None):
+def unchecked_solution(scene, crank_angle, engine=None):
     """What `solve` returns, before a look at slips, at where the mechanism closes and at where digits are lost."""
     angle = crank_angles(crank_angle)
-    solution = made(Solution, crank_angle=angle, **scene._parts)
-    wrong = None if 0.0 < solution.farthest < math.inf else problems(angle)
+    solution = construct_unchecked(Solution, crank_angle=angle, **scene._parts)
+    wrong = None if 0.0 < solution.farthest < math.inf else angle_problem(angle)
     checks.require("solve", wrong, None if engine is None else checks.choice("engine", engine, ENGINES))
     if angle.dtype == "float32":
         warnings.warn(
@@ -309,9 +309,9 @@ def unchecked(scene, crank_angle, engine=None):
         )
     _, leaves = solution.apart
     if not leaves.are_plain:
-        checks.require("solve", checks.fitting(**_shapes(scene, angle)))
+        checks.require("solve", checks.broadcast_problem(**_shapes(scene, angle)))
         values = math.prod(solution.shape)
-        checks.require("solve", values and checks.count("designs times crank angles", values, size=BYTES))
+        checks.require("solve", values and checks.count("designs times crank angles", values, size=BYTES_PER_VALUE))
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 
@@ -323,7 +323,7 @@ def _engine(name, angle, solution):
             raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
         require_numba()
         return COMPILED
-    if name is None and is_plain(angle) and math.prod(solution.shape) >= WORTH_COMPILING and numba_available():
+    if name is None and is_plain(angle) and math.prod(solution.shape) >= MIN_VALUES_COMPILED and numba_available():
         return FASTEST
     return NUMPY
 
@@ -331,7 +331,7 @@ def _engine(name, angle, solution):
 def _sense(owner, given, speed):
     """The sense of rotation, checked: +1 or -1, and that of the speed where the crank turns."""
     sense, problem = SENSE.taken(given, "sense")
-    ways, rates = None if problem else looked_at(sense), looked_at(speed)
+    ways, rates = None if problem else concrete_array(sense), concrete_array(speed)
     if ways is not None and np.any(np.abs(ways) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
     elif ways is not None and rates is not None and np.any(rates * ways < 0.0):

@@ -14,21 +14,21 @@ from ..machine.loads import period_of
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import all_found, scale, values, without_bars
+from ..mechanics.quantities import largest_term, resolved_names, values, without_bars
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import made
+from ..numbers.parameter_tree import construct_unchecked
 from ..results.turn import Turn
 from . import contents, slips
-from .angles import crank_angles, hint_at
+from .angles import crank_angles, hint_at_angles
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .contacts import Contacts
-from .drive_and_loads import in_a_line, over_the_angles
+from .drive_and_loads import drive_and_loads_text, tables_over_angles
 from .energies import Energies
 from .explained import Explained
 
-SHARE = 100_000
+MAX_VALUES_TOGETHER = 100_000
 """Values over designs and angles up to which all forces are computed together."""
 
 
@@ -48,7 +48,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def first_look(self):
         """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
         _, leaves = self.apart
-        look = self.kind.answer(slips.look) if leaves.are_plain and not leaves.parts else None
+        look = self.kind.answer(slips.scene_plausibility_test) if leaves.are_plain and not leaves.parts else None
         return look and look(leaves.numbers)
 
     @property
@@ -65,7 +65,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         warn_of_lost_digits(self.dynamics, self.dynamics.closure)
 
     def __repr__(self):
-        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {in_a_line(self)}>"
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads_text(self)}>"
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles.
@@ -78,14 +78,14 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         >>> print(f"{s.at(0.5).balancing_torque:.1f} N m")
         37051.3 N m
         """
-        varying = over_the_angles(self)
+        varying = tables_over_angles(self)
         if varying:
             raise ParameterError(
                 f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
                 "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
             )
         angle = crank_angles(crank_angle)
-        hint_at(self.mechanism.name, crank_angle)
+        hint_at_angles(self.mechanism.name, crank_angle)
         return replace(self, crank_angle=angle)
 
     @property
@@ -265,7 +265,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         """
         quantity = quantity if callable(quantity) else without_bars(self, quantity)
         largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
-        terms = np.broadcast_to(scale(self, quantity), largest.shape)
+        terms = np.broadcast_to(largest_term(self, quantity), largest.shape)
         cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
         found = self.condition
         if not callable(quantity) and self.mechanism.grows(quantity):
@@ -281,7 +281,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        return made(
+        return construct_unchecked(
             Dynamics,
             mechanism=self.mechanism,
             crank_angle=self.crank_angle,
@@ -322,7 +322,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
             return
         if not isinstance(values, np.ndarray) or values.dtype != float:
             return
-        text = assembly.growth(self, name, values)
+        text = assembly.unbounded_force_problem(self, name, values)
         if text:
             object.__setattr__(self, "silent", True)
             warnings.warn(text, ConditionWarning, stacklevel=3)
@@ -338,7 +338,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         if name not in self._values:
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            of_all = self.is_given if name == "closure" else name in all_found(self)
-            together = of_all and math.prod(self.shape) <= SHARE
+            of_all = self.is_given if name == "closure" else name in resolved_names(self)
+            together = of_all and math.prod(self.shape) <= MAX_VALUES_TOGETHER
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]

@@ -7,19 +7,19 @@ import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
-from ..numbers.formatting import about, number
+from ..numbers.formatting import number, round_uncertainty_up
 from ..results.bends import SMOOTH
 from ..results.extremes import extrema
 from ..results.rounding import AT_JUMP, Known
-from .certainty import Doubt, told
+from .certainty import Doubt, doubt_text
 from .scene import Scene
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
-KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
+TABLE_KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
 """Of quantities that the table tells."""
-UNBENT = (*SMOOTH, "whole")
+SMOOTH_KINDS = (*SMOOTH, "whole")
 """Of those that no load or friction bends: motion, and the inertia forces of the whole machine."""
-AGAIN = "balancing_torque_by_power"
+SECOND_TORQUE = "balancing_torque_by_power"
 """Says what the torque says."""
 
 
@@ -56,15 +56,17 @@ def largest_with_uncertainty(solution, inputs):
     """
     import pandas as pd
 
-    quantities = {name: item for name, item in of_scene(solution).items() if item.kind in KINDS and name != AGAIN}
+    quantities = {
+        name: item for name, item in of_scene(solution).items() if item.kind in TABLE_KINDS and name != SECOND_TORQUE
+    }
     known = Known(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
-    moved, rows, doubts = _Moved(solution, inputs), [], []
+    moved, rows, doubts = _ShiftedScenes(solution, inputs), [], []
     for name in known.found:
         row, doubt = _row(known, name, quantities[name], moved)
         rows.append(row)
         doubts += [] if doubt is None else [doubt]
     if doubts:
-        warnings.warn(f"{solution.mechanism.name}: {told(doubts)}", ConditionWarning, stacklevel=2)
+        warnings.warn(f"{solution.mechanism.name}: {doubt_text(doubts)}", ConditionWarning, stacklevel=2)
     return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
 
 
@@ -72,7 +74,7 @@ def _row(known, name, quantity, moved):
     """A row of the table, and the doubt that it says too little, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
     at_kink = np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP)
-    if at_kink and quantity.kind not in UNBENT:
+    if at_kink and quantity.kind not in SMOOTH_KINDS:
         parts, doubt = moved.parts(name, rounding)
     else:
         sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, moved.inputs)
@@ -83,7 +85,7 @@ def _row(known, name, quantity, moved):
     return (quantity.label, quantity.unit, value, np.degrees(angle), tolerance, rounding, most, share), doubt
 
 
-class _Moved:
+class _ShiftedScenes:
     """The machine with each input smaller and larger by its uncertainty."""
 
     def __init__(self, solution, inputs):
@@ -115,6 +117,6 @@ def _largest(solution, name):
     return float(np.max(np.abs(found.value))) if len(found) else abs(float(found.constant))
 
 
-def with_uncertainty(value, uncertainty):
+def format_with_uncertainty(value, uncertainty):
     """A number to the second digit of its uncertainty, and that: "40578.9 +- 3.1"."""
-    return f"{number(value, bound=0.1 * uncertainty)} +- {about(uncertainty)}"
+    return f"{number(value, bound=0.1 * uncertainty)} +- {round_uncertainty_up(uncertainty)}"

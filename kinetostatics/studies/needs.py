@@ -19,9 +19,9 @@ from ..numbers import checks
 from ..solution.solution import Solution
 from .simplifications import ingredients
 
-MOST_MODELS = 2_000
+MAX_MODELS = 2_000
 """Combinations that `needs` is ready to run: a minute of work."""
-SHOWN_AFTER = 10.0
+PROGRESS_DELAY = 10.0
 """Seconds after which a bar shows how far it has come."""
 
 
@@ -160,23 +160,23 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
     'no gravity, two-mass coupler'
     """
-    solution, within = _asked(scene, quantity, within, variant)
-    runs = _Runs(solution, quantity)
+    solution, within = _check_arguments(scene, quantity, within, variant)
+    runs = _ModelRunner(solution, quantity)
     parts = ingredients(solution.mechanism).values()
     alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
-    options = _options(parts, alone, runs.left_out)
+    options = _choices_by_ingredient(parts, alone, runs.left_out)
     combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
-    models = [made for choices in _shown(combinations, options, progress) if (made := runs.of(choices))]
+    models = [made for choices in _with_progress(combinations, options, progress) if (made := runs.of(choices))]
     allowed = [made for made in models if made.error <= within]
     smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
-    ladder, left_out = tuple(_front(models)), runs.left_out
+    ladder, left_out = tuple(_cheapest_by_error(models)), runs.left_out
     return Needs(quantity, within, models[0], tuple(alone.values()), ladder, smallest, len(models), left_out)
 
 
-def _asked(scene, quantity, within, variant):
+def _check_arguments(scene, quantity, within, variant):
     """The solution of one design that is asked about, and the change that is allowed."""
     known = isinstance(scene, Solution) or hasattr(scene, "variants")
-    within = checks.singles(
+    within = checks.single_numbers(
         "needs",
         None if known else f"scene must be a Solution or a Case, got {scene!r}",
         checks.quantity(quantity),
@@ -189,7 +189,7 @@ def _asked(scene, quantity, within, variant):
     return solution, within
 
 
-class _Runs:
+class _ModelRunner:
     """Runs simpler models of a solution.
 
     Attributes
@@ -240,31 +240,29 @@ class _Runs:
         return simplified
 
 
-def _shown(combinations, options, progress):
+def _with_progress(combinations, options, progress):
     """The combinations, with a bar of how many of them have been taken."""
     from tqdm import tqdm
 
     total = math.prod(map(len, options))
-    return tqdm(combinations, total=total, unit=" models", delay=SHOWN_AFTER, leave=False, disable=not progress)
+    return tqdm(combinations, total=total, unit=" models", delay=PROGRESS_DELAY, leave=False, disable=not progress)
 
 
-def _options(parts, alone, left_out):
+def _choices_by_ingredient(parts, alone, left_out):
     """By ingredient: None and its simplifications; those that change most are left out if there are too many models."""
     kept = set(alone)
 
     def options():
         return [(None, *(item for item in choices if item in kept)) for choices in parts]
 
-    while math.prod(map(len, options())) > MOST_MODELS:
+    while math.prod(map(len, options())) > MAX_MODELS:
         worst = max(kept, key=lambda choice: alone[choice].error)
         kept.remove(worst)
-        left_out[worst.name] = (
-            f"alone it changes {alone[worst].error:.2g}, and there are more than {MOST_MODELS} models"
-        )
+        left_out[worst.name] = f"alone it changes {alone[worst].error:.2g}, and there are more than {MAX_MODELS} models"
     return options()
 
 
-def _front(models):
+def _cheapest_by_error(models):
     """Models that no other beats in both error and operations, from the full scene down."""
     front: list[Model] = []
     for made in sorted(models, key=lambda made: (made.error, made.operations, len(made.simplifications))):
@@ -276,9 +274,9 @@ def _front(models):
 def _frame(models, quantity, full):
     import pandas as pd
 
-    from .timing import seconds
+    from .methods.method import seconds
 
-    times = seconds(*(partial(_afresh, made.solution, quantity) for made in models))
+    times = seconds(*(partial(_recompute, made.solution, quantity) for made in models))
     rows = [
         {
             "model": made.name,
@@ -292,5 +290,5 @@ def _frame(models, quantity, full):
     return pd.DataFrame(rows).set_index("model")
 
 
-def _afresh(solution, quantity):
+def _recompute(solution, quantity):
     return components(replace(solution), quantity)

@@ -11,11 +11,8 @@ from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from .methods import METHODS, Method
 from .methods.high_precision.certified import Enclosure, certified, enclosure, relative_errors
-from .methods.motion import BENCHMARKS
-from .methods.motion import METHODS as MOTION_METHODS
-from .methods.running import METHODS as RUNNING_METHODS
-from .methods.running import study_motion, study_running
-from .timing import circumstances, seconds
+from .methods.method import circumstances, seconds
+from .methods.running import BENCHMARKS, MOTION_METHODS, RUNNING_METHODS, study_motion, study_running
 
 __all__ = [
     "BENCHMARKS",
@@ -37,7 +34,7 @@ __all__ = [
 ]
 
 QUANTITY = "balancing_torque"
-BETTER_THAN = 1e-6
+FRONT_ACCURACY = 1e-6
 """Accuracy from which on no method may be both faster and nearer than the library's own."""
 
 
@@ -158,34 +155,34 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     """
     import pandas as pd
 
-    from ..numbers.files import unwritable, written_whole
+    from ..numbers.files import write_atomically, write_problem
 
     checks.require("precision", checks.case("case", case))
     path = Path(folder) / f"{case.path.stem}_precision.csv"
     written = [path, *(path.with_suffix(ending) for ending in (".png", ".svg"))]
-    checks.require("precision", *dict.fromkeys(unwritable(item, inputs=case.files) for item in written))
-    names = list(variants or kinds(case))
+    checks.require("precision", *dict.fromkeys(write_problem(item, inputs=case.files) for item in written))
+    names = list(variants or variant_of_each_kind(case))
     for name in names:
         for quantity in quantities:
             components(case.solve(name, 8), quantity)
     tables = [
-        study(_turn(case, name, angles), quantity, progress=progress).assign(case=case.path.stem, variant=name)
+        study(_solve_turn(case, name, angles), quantity, progress=progress).assign(case=case.path.stem, variant=name)
         for name in names
         for quantity in quantities
     ]
     table = pd.concat(tables, ignore_index=True).assign(**circumstances())
-    with written_whole(path) as temporary:
+    with write_atomically(path) as temporary:
         table.to_csv(temporary, index=False)
     return [path, *(page(table, path.with_suffix("")) if page else ())]
 
 
-def _turn(case, name, angles):
+def _solve_turn(case, name, angles):
     """Solution over the turn; with friction half a step on, off the dead centres, at which it jumps."""
     solution = case.solve(name, angles)
     return solution.at(solution.crank_angle + math.pi / angles) if solution.friction else solution
 
 
-def kinds(case):
+def variant_of_each_kind(case):
     """First variant of each kind of mechanism and cam in a case."""
     found: dict[tuple, str] = {}
     for name, variant in case.variants.items():

@@ -1,23 +1,119 @@
-"""What a scene is made of, and how each part of it can be left out or put more simply, read off what groups declare."""
+"""Motion found in other ways: joints by any method, links and forces as in the library; harmonic series among them.
+
+What a scene is made of, and how each part of it can be left out or put more simply, read off what groups declare.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ..engines.engines import Kernels
 from ..errors import NotGivenError
+from ..machine.crank import ray
 from ..machine.friction import KINDS as FRICTIONS
-from ..machine.friction import kind_for
-from ..machine.friction import taken as friction_of
+from ..machine.friction import friction_kind
+from ..machine.friction import frictions_by_joint as friction_of
 from ..machine.group import FRAME
 from ..machine.guide import Guide
-from ..machine.links import Link
+from ..machine.kinematic_state import Placement
+from ..machine.links import Joint, Link
 from ..machine.loads import KINDS
 from ..numbers import checks
-from ..numbers.parameter_tree import mapped
+from ..numbers.parameter_tree import map_numbers
+from ..numbers.planar import rotate
 from ..solution.solution import Solution
-from .series import harmonic_series
+
+SERIES_SAMPLES = 512
+"""Positions over the turn from which the coefficients of harmonic series are found."""
+
+
+def placement_from_joints(mechanism, angle, joints) -> Placement:
+    """Placement of a mechanism whose moving joints are known, by name, with their derivatives."""
+    placement = mechanism.crank.place(angle)
+    for group in mechanism.groups:
+        if not group.follows:
+            raise NotGivenError(f"{type(group).__name__} has no `follow`, to be placed at joints known in another way")
+        group.follow(placement, joints)
+    return placement
+
+
+def moving_joints(mechanism):
+    """Names of the joints that groups place and that move; the crank pin is known exactly."""
+    return [name for group in mechanism.groups for name, point in group.joints.items() if point.link != FRAME]
+
+
+def joint_positions(mechanism, angle):
+    """Positions of the moving joints, (joints, 2, ...)."""
+    names, shape = moving_joints(mechanism), np.shape(angle)
+    joints = mechanism.place(angle).joints
+    found = [[np.broadcast_to(part, shape) for part in joints[name].position] for name in names]
+    return np.array(found, dtype=float).reshape(len(names), 2, *shape)
+
+
+def paths_over_turn(mechanism, angle):
+    """The same over a whole turn; refused where no joint moves but the crank pin, and where one cannot be found."""
+    found = joint_positions(mechanism, angle)
+    if not found.size:
+        what = "moves no joint but the crank pin" if mechanism.groups else "is a crank alone"
+        raise NotGivenError(f"{mechanism.name} {what}: it has no joint whose path is to be found as a series")
+    if mechanism.turns > 1:
+        raise NotGivenError(f"{mechanism.name} takes {mechanism.turns} turns to repeat, a Fourier series one")
+    if not np.all(np.isfinite(found)):
+        raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
+    return found
+
+
+def joint_motions(mechanism, position, first, second):
+    return {
+        name: Joint(tuple(position[k]), tuple(first[k]), tuple(second[k]))
+        for k, name in enumerate(moving_joints(mechanism))
+    }
+
+
+def harmonic_series(solution, order):
+    """Way to a placement from Fourier series of the joints' paths, cut off after a harmonic of the crank angle.
+
+    Of the plain crank-slider these are the series of engine theory (Biezeno and Grammel, *Technische Dynamik*), with
+    coefficients to all powers of crank over coupler length.
+    """
+    mechanism = solution.mechanism
+    path = paths_over_turn(mechanism, np.linspace(0.0, 2 * np.pi, SERIES_SAMPLES, endpoint=False))
+    spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
+    spectrum[..., 0] /= 2.0
+    spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
+    return partial(
+        _evaluate_series, order=order, series=dict(zip(moving_joints(mechanism), spectrum.tolist(), strict=True))
+    )
+
+
+def _evaluate_series(mechanism, angle, order, series):
+    turns = list(_multiples(ray(angle), order))
+    joints = {
+        name: Joint(*(tuple(_sum_series(row, turns, k) for row in rows) for k in range(3)))
+        for name, rows in series.items()
+    }
+    return placement_from_joints(mechanism, angle, joints)
+
+
+def _multiples(ray, order):
+    """Unit vectors at 1, 2 ... times the crank angle."""
+    multiple = ray
+    for _ in range(order):
+        yield multiple
+        multiple = rotate(multiple, ray)
+
+
+def _sum_series(coefficients, turns, derivative):
+    """Derivative of the real part of the series, sum of a conj(turn), over its harmonics; absent terms left out."""
+    total = coefficients[0].real if derivative == 0 else 0.0
+    for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], turns, strict=True), 1):
+        factor = coefficient * (1j * k) ** derivative
+        for part, function in ((factor.real, cosine), (-factor.imag, sine)):
+            if part != 0.0:
+                total = total + part * function
+    return total
 
 
 @dataclass(frozen=True)
@@ -139,11 +235,11 @@ def _without_inertia(kind):
     return _with_links(changed)
 
 
-def _centred(mechanism, name, link):
+def _centre_on_axis(mechanism, name, link):
     return None if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
 
 
-def _as_two_masses(kind):
+def _two_mass(kind):
     def simplified(solution):
         mechanism = two_mass_coupler(solution.mechanism, kind)
         return None if mechanism is None else replace(solution, mechanism=mechanism)
@@ -156,20 +252,20 @@ def _guides_through_crank_centre(solution):
     if all(_is_zero(guide.guide_offset) for guide in mechanism.guides.values()):
         return None
     through = {Guide: lambda guide: replace(guide, guide_offset=0.0)}
-    return replace(solution, mechanism=mapped(mechanism, lambda number: number, through))
+    return replace(solution, mechanism=map_numbers(mechanism, lambda number: number, through))
 
 
 def _up_to_harmonic(order):
     return lambda solution: replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
-BEFORE = {
+CHOICES_BEFORE_LINKS = {
     **{name: (Choice(f"no {name}", _without_load(kind)),) for kind in KINDS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
-    "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),
+    "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centre_on_axis)),),
 }
-AFTER = {
+CHOICES_AFTER_LINKS = {
     "kinematics": (
         Choice("two harmonics", _up_to_harmonic(2)),
         Choice("one harmonic", _up_to_harmonic(1)),
@@ -189,9 +285,9 @@ def ingredients(mechanism):
     links = {}
     for kind in sorted(dict.fromkeys(kinds.values()), key=lambda kind: kind in couplers):
         choices = [Choice(f"no {kind} inertia", _without_inertia(kind))] if kind in hung else []
-        choices += [Choice(f"two-mass {kind}", _as_two_masses(kind))] if kind in couplers else []
+        choices += [Choice(f"two-mass {kind}", _two_mass(kind))] if kind in couplers else []
         links[kind] = (*choices, Choice(f"massless {kind}", _massless(kind)))
-    rubs = {kind_for(pair) for pair in mechanism.pairs.values()}
+    rubs = {friction_kind(pair) for pair in mechanism.pairs.values()}
     names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
     friction = {name: (Choice(f"no {name}", _without_friction(kind)),) for name, kind in names.items()}
-    return BEFORE | friction | links | AFTER
+    return CHOICES_BEFORE_LINKS | friction | links | CHOICES_AFTER_LINKS

@@ -23,35 +23,35 @@ from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
 from ..machine.loads import STRAIGHT, TURN, refusals
 from ..mechanics import energy_contact
-from ..mechanics.assembly import NO_DIGIT
-from ..mechanics.quantities import components, quantity, scale, sizes
+from ..mechanics.assembly import NO_DIGITS_CONDITION
+from ..mechanics.quantities import component_sizes, components, largest_term, quantity
 from ..numbers import checks
-from ..numbers.arithmetic import ROUNDING
+from ..numbers.arithmetic import SQUARE_TOLERANCE
 from ..results.bends import bent
 from ..results.passes import Passes
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR, repeating_problem
-from ..solution.drive_and_loads import over_the_angles
-from ..solution.parted import PARTED, VALUES, Parted, quantities, solution_of
-from ..solution.scene import Scene, odd
+from ..solution.drive_and_loads import tables_over_angles
+from ..solution.parted import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
+from ..solution.scene import Scene, scene_hints
 
-DESIGNS = 128
+MAX_SPLIT_DESIGNS = 128
 """Designs whose turns are parted at a time: so many that the calls count little, and memory is no concern."""
-BLOCK = 40_000
+BLOCK_VALUES = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
-SHARES = 8
+PARTS_PER_THREAD = 8
 """Parts of a chunk that each thread gets, so that none waits long for another."""
 
 
-def run(scene, job, count, outputs):
+def compute_batch(scene, job, count, outputs):
     """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
 
     That is which numbers so many crank angles do not tell (outputs, designs); the crank angle at which a design is
     nearest to a limit position (designs,), NaN if it is not near; and of which outputs the turn is parted (outputs,).
     """
-    solution = solution_of(scene, job.angles)
+    solution = unchecked_turn(scene, job.angles)
     checks.require("solve", *refusals(solution), *energy_contact.refusals(solution))
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
@@ -59,13 +59,15 @@ def run(scene, job, count, outputs):
             f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
-    if count == solution.shape[-1] > 1 and over_the_angles(scene):  # fewer designs at a time tell which of both it is
+    if count == solution.shape[-1] > 1 and tables_over_angles(
+        scene
+    ):  # fewer designs at a time tell which of both it is
         raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
     parted = np.array([bent(solution, item.quantity, job.straight) for item in outputs])
     even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
     numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    way = _by_loop if job.engine == "compiled" else _by_numpy
+    way = _compiled_filler if job.engine == "compiled" else _numpy_filler
     fill, step = way(solution, even, made, (numbers, rough, gaps, nearest), job.threads)
     starts = range(0, made, step)
     if job.threads == 1 or len(starts) == 1:
@@ -81,19 +83,19 @@ def run(scene, job, count, outputs):
     if parted.any():
         apart = [item for item in outputs if item not in even]
         found = np.empty((2, len(outputs), made))
-        found[:, ~parted], found[:, parted] = (numbers, rough), _parted(scene, job, apart).estimated(apart)
+        found[:, ~parted], found[:, parted] = (numbers, rough), _split_turn(scene, job, apart).estimated(apart)
         numbers, rough = found[0], found[1] > 0
     shape = len(outputs), count
     rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
     return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest, parted
 
 
-def _by_loop(solution, outputs, count, found, threads):
+def _compiled_filler(solution, outputs, count, found, threads):
     """Function that fills in what is found of some designs, from one on, and how many these are.
 
     Values are computed and reduced by machine code, block by block in the same memory.
     """
-    state, names = solution.dynamics, quantities(outputs)
+    state, names = solution.dynamics, quantity_names(outputs)
     program, leaves = program_of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
     tables = numba_backend.row_table(program.rows(state, leaves), solution.shape)
@@ -104,8 +106,8 @@ def _by_loop(solution, outputs, count, found, threads):
     rows = [first[names.index(item.quantity)] for item in outputs]
     passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
     size = len(program.outputs), angle.shape[1]
-    block = max(1, BLOCK // math.prod(size))
-    step = max(block, -(-count // (SHARES * threads)))
+    block = max(1, BLOCK_VALUES // math.prod(size))
+    step = max(block, -(-count // (PARTS_PER_THREAD * threads)))
 
     def fill(start):
         passes(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
@@ -113,17 +115,17 @@ def _by_loop(solution, outputs, count, found, threads):
     return fill, step
 
 
-def _by_numpy(solution, outputs, count, found, threads):
+def _numpy_filler(solution, outputs, count, found, threads):
     """The same by NumPy, all designs at a time."""
     numbers, rough, gaps, nearest = found
     with np.errstate(all="ignore"):
         values = {
             name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
-            for name in (*quantities(outputs), "closure")
-            for parts in [sizes(solution, name)]
+            for name in (*quantity_names(outputs), "closure")
+            for parts in [component_sizes(solution, name)]
         }
     turns = round(solution.period / TURN)
-    step = max(1, VALUES // solution.shape[-1])
+    step = max(1, BLOCK_VALUES // solution.shape[-1])
 
     def fill(start):
         block = slice(start, start + step)
@@ -132,8 +134,8 @@ def _by_numpy(solution, outputs, count, found, threads):
                 numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
             closure = values["closure"][:, block]
             margin = closure.min(axis=-1)
-            gaping = ~(margin >= -ROUNDING).all(axis=0)
-            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            gaping = ~(margin >= -SQUARE_TOLERANCE).all(axis=0)
+            gaps[block][gaping] = (~(closure[:, gaping] >= -SQUARE_TOLERANCE)).any(axis=0).sum(axis=-1)
             near = ~gaping & (margin < NEAR).any(axis=0)
             if near.any():
                 nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
@@ -141,31 +143,31 @@ def _by_numpy(solution, outputs, count, found, threads):
     return fill, step
 
 
-def _parted(scene, job, outputs):
-    return Parted.of(scene, outputs, job.angles, job.straight, job.engine)
+def _split_turn(scene, job, outputs):
+    return PiecewiseTurns.of(scene, outputs, job.angles, job.straight, job.engine)
 
 
-def noise(scene, job, outputs):
+def rounding_noise(scene, job, outputs):
     """Whether outputs are of what changes over the turn by rounding of its terms only: (outputs, designs or 1)."""
-    solution = solution_of(scene, job.angles)
+    solution = unchecked_turn(scene, job.angles)
     if any(bent(solution, item.quantity, job.straight) for item in outputs):
-        solution = solution_of(scene, _parted(scene, job, outputs).pieces.angle)
+        solution = unchecked_turn(scene, _split_turn(scene, job, outputs).pieces.angle)
     with np.errstate(all="ignore"):
         found = [_is_noise(solution, item.quantity) for item in outputs]
     return np.array(found)
 
 
 def _is_noise(solution, name):
-    values = sizes(solution, name)[0]
-    size = np.maximum(scale(solution, name), np.abs(values).max(axis=-1))
+    values = component_sizes(solution, name)[0]
+    size = np.maximum(largest_term(solution, name), np.abs(values).max(axis=-1))
     return np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
 
 
-PROBED = 64
+MAX_PROBED_DESIGNS = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
-FEWEST = 12
+MIN_ANGLES = 12
 """Crank angles below which a sweep is refused."""
-LEAST = 180
+MIN_ANGLES_PER_TURN = 180
 """Crank angles a turn that are taken at least: fewer may agree with twice as many, and both be wrong."""
 
 
@@ -230,7 +232,7 @@ class _NoSceneError(ParameterError):
     """A function makes something else than a scene."""
 
 
-def tried(job, designs, engines):
+def dry_run(job, designs, engines):
     """The job with the first of the engines that takes the mechanism, and units of its outputs.
 
     Tried on the first design that can be built; None if none can. Raises what would otherwise be the reason of every
@@ -238,7 +240,11 @@ def tried(job, designs, engines):
     something else than a scene, `NotGivenError` if no engine takes it. The same for fewer crank angles than tell
     anything, and loads that do not repeat after their period.
     """
-    few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
+    few = (
+        None
+        if job.angles >= MIN_ANGLES
+        else f"angles must be at least {MIN_ANGLES}, got {job.angles}: they miss every peak"
+    )
     checks.require("sweep", few)
     for row in range(len(designs)):
         *_, plain = job.values(job.given(designs.iloc[row : row + 1]))
@@ -249,10 +255,10 @@ def tried(job, designs, engines):
         except Exception:
             continue
         try:
-            solutions = [solution_of(scene, job.angles) for scene in scenes]
+            solutions = [unchecked_turn(scene, job.angles) for scene in scenes]
             pairs = list(zip(solutions, job.sides, strict=True))
             for solution, (_, outputs) in pairs:
-                for name in quantities(outputs):
+                for name in quantity_names(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
         except QuantityError:
@@ -260,12 +266,12 @@ def tried(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
-        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in odd(solutions[0]))
+        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in scene_hints(solutions[0]))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
-        engine = _engine(job, solutions, engines)
+        engine = _first_engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
         parted = any(bent(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
-        angles = max(job.angles, (PARTED if parted else LEAST) * round(scenes[0].period / TURN))
+        angles = max(job.angles, (START_ANGLES if parted else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
         return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles, hints=hints)
     return None
 
@@ -279,7 +285,7 @@ def scene_of(make, values):
     return scene
 
 
-def _engine(job, solutions, engines):
+def _first_engine(job, solutions, engines):
     first, *others = engines
     if first == "numpy":
         return first
@@ -288,25 +294,25 @@ def _engine(job, solutions, engines):
     except NotGivenError:
         if not others:
             raise
-        return _engine(job, solutions, others)
+        return _first_engine(job, solutions, others)
     return first
 
 
 def _programs(job, solutions):
     """What a compiled loop of each side computes."""
     return [
-        program_of(solution.dynamics, (*quantities(outputs), "closure"), sizes=True)[0]
+        program_of(solution.dynamics, (*quantity_names(outputs), "closure"), sizes=True)[0]
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True)
     ]
 
 
-NEGLIGIBLE = 1e-12
+NEGLIGIBLE_SHARE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
-MOST = 5760
+MAX_ANGLES = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
-SETTLED = 1e-3
+ANGLES_TOLERANCE = 1e-3
 """Relative change of an output of even crank angles, when these are doubled, that is none."""
-CLOSER = 16
+KINK_REFINEMENT = 16
 """By how much closer tables are followed when the crank angles are doubled."""
 FAILED = "failed"
 """Column with the reason why a design has no numbers; empty for the others."""
@@ -315,16 +321,16 @@ FAILED = "failed"
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
-    step = max(1, VALUES // job.angles if job.engine == "numpy" else len(frame))
-    step = min(step, DESIGNS) if job.bent else step
+    step = max(1, BLOCK_VALUES // job.angles if job.engine == "numpy" else len(frame))
+    step = min(step, MAX_SPLIT_DESIGNS) if job.bent else step
     given = job.given(frame)
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
-        numbers[:, part], reasons[part] = _compared(job, given[part])
-    return rows(job, frame, numbers, reasons)
+        numbers[:, part], reasons[part] = _with_ratios(job, given[part])
+    return result_table(job, frame, numbers, reasons)
 
 
-def rows(job, frame, numbers, reasons):
+def result_table(job, frame, numbers, reasons):
     """Table of outputs (outputs, designs) and reasons; no numbers where there is a reason."""
     failing = reasons != ""
     numbers[:, failing] = np.nan
@@ -336,14 +342,14 @@ def rows(job, frame, numbers, reasons):
 # Designs set apart
 
 
-def _compared(job, given):
+def _with_ratios(job, given):
     """Numbers (outputs, designs), ratios among them, and reasons (designs,), empty for designs that have numbers."""
-    (own, reasons), *reference = (_reduced(make, job, given, outputs) for make, outputs in job.sides)
+    (own, reasons), *reference = (_compute_designs(make, job, given, outputs) for make, outputs in job.sides)
     numbers, reasons = np.array(own), np.array(reasons)
     for above, failing in reference:
         below = numbers[job.ratios]
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = np.where(abs(below) <= NEGLIGIBLE * abs(above), np.inf, above / below)
+            ratios = np.where(abs(below) <= NEGLIGIBLE_SHARE * abs(above), np.inf, above / below)
         unknown = ((above == 0) & (below == 0)) | (np.isinf(above) & np.isinf(below))
         numbers[job.ratios] = np.where(unknown, np.nan, ratios)
         reasons = np.where((reasons == "") & (failing != ""), "reference: " + failing, reasons)
@@ -353,30 +359,30 @@ def _compared(job, given):
     return numbers, reasons
 
 
-def _reduced(make, job, given, outputs, earlier=None, wrong=False):
+def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
     """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
 
     `earlier` are the numbers from half as many crank angles; `wrong` tells that arrays of a single design are refused.
     """
     count = len(given)
     if count == 1:
-        return _alone(make, job, given, outputs, earlier, wrong)
+        return _compute_one(make, job, given, outputs, earlier, wrong)
     (values,) = job.values(given)
     try:
         scene = scene_of(make, values)
     except Exception as error:
-        wrong = _told(error, count)
+        wrong = _designs_at_fault(error, count)
         if wrong is None:
-            wrong = _unbuildable(make, job, given)
+            wrong = _find_unbuildable(make, job, given)
         apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # all that can be built by themselves only
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _settled(make, job, given, outputs, run(scene, job, count, outputs), earlier)
+            return _refine_angles(make, job, given, outputs, compute_batch(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
-            wrong = _told(error, count)
+            wrong = _designs_at_fault(error, count)
             halves = np.array_split(np.arange(count), 2)
             parts = halves if wrong is None else [np.flatnonzero(~wrong), *np.flatnonzero(wrong)[:, None]]
     numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
@@ -384,15 +390,17 @@ def _reduced(make, job, given, outputs, earlier=None, wrong=False):
         if part.size:
             known = None if earlier is None else earlier[:, part]
             refused = part.size == 1 and wrong is not None and bool(wrong[part[0]])
-            numbers[:, part], reasons[part] = _reduced(make, job, given[part], outputs, known, refused)
+            numbers[:, part], reasons[part] = _compute_designs(make, job, given[part], outputs, known, refused)
     return numbers, reasons
 
 
-def _alone(make, job, given, outputs, earlier, wrong):
+def _compute_one(make, job, given, outputs, earlier, wrong):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
     for values in job.values(given)[wrong:]:
         try:
-            return _settled(make, job, given, outputs, run(scene_of(make, values), job, 1, outputs), earlier)
+            return _refine_angles(
+                make, job, given, outputs, compute_batch(scene_of(make, values), job, 1, outputs), earlier
+            )
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -400,27 +408,27 @@ def _alone(make, job, given, outputs, earlier, wrong):
     return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
 
 
-def _settled(make, job, given, outputs, found, earlier):
+def _refine_angles(make, job, given, outputs, found, earlier):
     """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
     numbers, reasons, rough, nearest, parted = found
     numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
     near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
     narrow = np.zeros(len(given), dtype=bool)
     if near.size:
-        reasons[near], narrow[near] = _near_limits(make, job, given[near], nearest[near], outputs)
+        reasons[near], narrow[near] = _check_near_limits(make, job, given[near], nearest[near], outputs)
     if earlier is not None:  # pieces end up the same from twice as many, so that these agree says nothing
         with np.errstate(invalid="ignore"):
-            rough &= parted[:, None] | (abs(numbers - earlier) > SETTLED * abs(numbers))
+            rough &= parted[:, None] | (abs(numbers - earlier) > ANGLES_TOLERANCE * abs(numbers))
     rough &= (reasons == "") & ~narrow
     if rough.any():
-        rough &= ~_noise(make, job, given, outputs, rough)
+        rough &= ~_noise_by_design(make, job, given, outputs, rough)
     again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
-    if again.size and (earlier is None or 2 * job.angles <= MOST):
-        finer = replace(job, angles=2 * job.angles, straight=job.straight / CLOSER)
-        step = DESIGNS if job.bent else again.size
+    if again.size and (earlier is None or 2 * job.angles <= MAX_ANGLES):
+        finer = replace(job, angles=2 * job.angles, straight=job.straight / KINK_REFINEMENT)
+        step = MAX_SPLIT_DESIGNS if job.bent else again.size
         for start in range(0, again.size, step):
             some = again[start : start + step]
-            numbers[:, some], reasons[some] = _reduced(make, finer, given[some], outputs, numbers[:, some])
+            numbers[:, some], reasons[some] = _compute_designs(make, finer, given[some], outputs, numbers[:, some])
     else:
         for row in again:
             wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
@@ -432,19 +440,19 @@ def _settled(make, job, given, outputs, found, earlier):
     return numbers, reasons
 
 
-def _noise(make, job, given, outputs, asked):
+def _noise_by_design(make, job, given, outputs, asked):
     """Which outputs (outputs, designs) of those asked for are of what changes by rounding of its terms only."""
     found = np.zeros(asked.shape, dtype=bool)
     rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
     wanted = [outputs[row] for row in rows]
-    for start in range(0, designs.size, DESIGNS):
-        some = designs[start : start + DESIGNS]
+    for start in range(0, designs.size, MAX_SPLIT_DESIGNS):
+        some = designs[start : start + MAX_SPLIT_DESIGNS]
         scene = scene_of(make, job.values(given[some])[-1])
-        found[np.ix_(rows, some)] = noise(scene, job, wanted)
+        found[np.ix_(rows, some)] = rounding_noise(scene, job, wanted)
     return found
 
 
-def _near_limits(make, job, given, nearest, outputs):
+def _check_near_limits(make, job, given, nearest, outputs):
     """Reasons of designs that do not close, or lose all digits, between crank angles, and whether peaks hide there.
 
     Looked at anew around the crank angle at which each is nearest to a limit position.
@@ -452,30 +460,30 @@ def _near_limits(make, job, given, nearest, outputs):
     scene = scene_of(make, job.values(given)[-1])
     step = scene.period / job.angles
     angle = nearest[:, None] + step * np.linspace(-1.5, 1.5, 25)
-    around = np.broadcast_arrays(*solution_of(scene, angle).closure)
+    around = np.broadcast_arrays(*unchecked_turn(scene, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
     place = np.round(angle[:, 12] + place, 9) % scene.period
     reasons = np.full(len(given), "", dtype=object)
-    for row in np.flatnonzero(margin < -ROUNDING):
+    for row in np.flatnonzero(margin < -SQUARE_TOLERANCE):
         where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
         reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
     if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
         return reasons, np.zeros(len(given), dtype=bool)
     with np.errstate(all="ignore"):
-        lost = solution_of(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        lost = unchecked_turn(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGITS_CONDITION
         narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
     for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
         reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
     return reasons, narrow
 
 
-def _told(error, count):
+def _designs_at_fault(error, count):
     """Which designs an error is about, as a mask; None if it does not tell."""
     wrong: Any = getattr(error, "designs", None)
     return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 
 
-def _unbuildable(make, job, given):
+def _find_unbuildable(make, job, given):
     """Which designs cannot be made, found by halves."""
     for values in job.values(given):
         try:
@@ -486,4 +494,4 @@ def _unbuildable(make, job, given):
     if len(given) == 1:
         return np.ones(1, dtype=bool)
     halves = np.array_split(np.arange(len(given)), 2)
-    return np.concatenate([_unbuildable(make, job, given[half]) for half in halves])
+    return np.concatenate([_find_unbuildable(make, job, given[half]) for half in halves])

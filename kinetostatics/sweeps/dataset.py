@@ -10,19 +10,19 @@ from uuid import uuid4
 import pandas as pd
 
 from ..errors import CacheWarning, KinetostaticsError, ParameterError
-from ..numbers.files import written_whole
+from ..numbers.files import write_atomically
 
 MANIFEST = "_sweep.json"
 """What sweep a folder holds; readers of datasets pass files by whose names begin so."""
-LARGEST = 10**7
+MAX_MANIFEST_BYTES = 10**7
 """Bytes that it may have."""
-KEY = "kinetostatics"
+METADATA_KEY = "kinetostatics"
 """Where a part tells of itself, among the metadata of its schema."""
-LISTED = 5
+MAX_LISTED_FILES = 5
 """Files that a warning names."""
 
 
-class Parts:
+class ChunkResults:
     """Designs and results by number of chunk, in memory."""
 
     def __init__(self, designs, chunk):
@@ -53,7 +53,7 @@ class Parts:
         return self._kept[number]
 
 
-class Dataset(Parts):
+class Dataset(ChunkResults):
     """The same as a folder of Parquet files, each written whole or not at all.
 
     Each tells of what sweep it is, which chunk, and a digest of what it holds; one that does not is computed anew, with
@@ -78,7 +78,9 @@ class Dataset(Parts):
         self._sound = {path for path, problem in problems.items() if problem is None}
         unsound = [f"{path.name} ({problem})" for path, problem in problems.items() if problem]
         if unsound:
-            listed = ", ".join(unsound[:LISTED]) + f" and {len(unsound) - LISTED} more" * (len(unsound) > LISTED)
+            listed = ", ".join(unsound[:MAX_LISTED_FILES]) + f" and {len(unsound) - MAX_LISTED_FILES} more" * (
+                len(unsound) > MAX_LISTED_FILES
+            )
             warnings.warn(
                 f"sweep: in {self._folder} these are no parts of it as it wrote them, and are made anew or left out: "
                 f"{listed}",
@@ -100,8 +102,8 @@ class Dataset(Parts):
                     f"sweep: {self._folder} holds {strange[0].name}, but no {MANIFEST} that tells of what sweep; give "
                     "another folder"
                 )
-            _create(manifest, json.dumps(identity, indent=1))
-        before = _record(manifest)
+            _write_new(manifest, json.dumps(identity, indent=1))
+        before = _read_manifest(manifest)
         differing = [name for name, value in identity.items() if before.get(name) != value]
         if differing:
             raise ParameterError(
@@ -116,10 +118,10 @@ class Dataset(Parts):
         import pyarrow as pa
         from pyarrow import parquet
 
-        path, told = self._path(number), {KEY: json.dumps(self._told(number, whole))}
+        path, told = self._path(number), {METADATA_KEY: json.dumps(self._told(number, whole))}
         try:
             table = pa.Table.from_pandas(whole)
-            with written_whole(path) as temporary:
+            with write_atomically(path) as temporary:
                 parquet.write_table(table.replace_schema_metadata({**table.schema.metadata, **told}), temporary)
         except (OSError, pa.ArrowException) as error:
             raise KinetostaticsError(
@@ -129,7 +131,7 @@ class Dataset(Parts):
     def _get(self, number):
         try:
             return self._read(number)
-        except _UnsoundError as error:
+        except _DamagedPartError as error:
             raise KinetostaticsError(f"sweep: {self._path(number)} was changed while the sweep ran: {error}") from error
 
     def _problem(self, path):
@@ -141,7 +143,7 @@ class Dataset(Parts):
             return "the sweep has no such chunk"
         try:
             self._read(int(number))
-        except _UnsoundError as error:
+        except _DamagedPartError as error:
             return str(error)
         return None
 
@@ -151,16 +153,16 @@ class Dataset(Parts):
 
         try:
             with self._path(number).open("rb") as file:
-                told = json.loads((parquet.read_metadata(file).metadata or {})[KEY.encode()])
+                told = json.loads((parquet.read_metadata(file).metadata or {})[METADATA_KEY.encode()])
                 file.seek(0)
                 frame = pd.read_parquet(file)
         except KeyError as error:
-            raise _UnsoundError("it does not tell of what sweep it is") from error
+            raise _DamagedPartError("it does not tell of what sweep it is") from error
         except Exception as error:  # whatever a damaged file leads to
-            raise _UnsoundError(f"it cannot be read: {error}") from error
+            raise _DamagedPartError(f"it cannot be read: {error}") from error
         for name, value in self._told(number, frame).items():
             if not isinstance(told, dict) or told.get(name) != value:
-                raise _UnsoundError(f"another {name} than was written")
+                raise _DamagedPartError(f"another {name} than was written")
         return frame
 
     def _told(self, number, frame):
@@ -171,11 +173,11 @@ class Dataset(Parts):
         return {"sweep": self._sweep, "chunk": number, "content": content}
 
 
-class _UnsoundError(Exception):
+class _DamagedPartError(Exception):
     """A file is not as the sweep wrote it."""
 
 
-def _create(path, text):
+def _write_new(path, text):
     """Write a file whole that is not there, unless another process has just done so."""
     temporary = path.with_name(f".{path.name}-{uuid4().hex}")
     try:
@@ -190,10 +192,10 @@ def _create(path, text):
         temporary.unlink(missing_ok=True)
 
 
-def _record(manifest):
+def _read_manifest(manifest):
     """Identity that a manifest tells."""
     try:
-        if not manifest.is_file() or manifest.stat().st_size > LARGEST:
+        if not manifest.is_file() or manifest.stat().st_size > MAX_MANIFEST_BYTES:
             raise ValueError("it is no such file")
         found = json.loads(manifest.read_text(encoding="utf-8"))
         if not isinstance(found, dict):

@@ -18,7 +18,7 @@ from ..machine.builders import crank_slider, four_bar, slotted_lever
 from ..machine.loads import Gravity, Spring, TorsionDamper, TorsionSpring
 from ..numbers import checks
 from ..numbers.formatting import heading
-from ..numbers.spreads import LARGEST, axis, distributions, read, require_mapping
+from ..numbers.spreads import MAX_TABLE_VALUES, distributions, parse_grid, read_spreads, require_mapping
 from ..numbers.units import factor
 from ..solution.scene import Scene
 
@@ -57,10 +57,10 @@ def grid(spreads) -> pd.DataFrame:
     >>> ks.designs.grid({"slider.mass": "500..700 kg:3", "crank_length": "0.2..0.4 m:2"}).shape
     (6, 2)
     """
-    axes = read(spreads, axis)
-    _require_room(math.prod(axis.size for axis, _ in axes.values()), len(axes))
+    axes = read_spreads(spreads, parse_grid)
+    _require_table_size(math.prod(axis.size for axis, _ in axes.values()), len(axes))
     values = np.stack(np.meshgrid(*(axis for axis, _ in axes.values()), indexing="ij"), axis=-1)
-    return _table(values.reshape(-1, len(axes)), axes)
+    return _design_table(values.reshape(-1, len(axes)), axes)
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
@@ -96,7 +96,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     from scipy.stats import qmc
 
     require_mapping(spreads)
-    _require_room(count, len(spreads), checks.seed("seed", seed))
+    _require_table_size(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
 
@@ -133,7 +133,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     from scipy.stats import qmc
 
     require_mapping(spreads)
-    _require_room(count, len(spreads), checks.seed("seed", seed))
+    _require_table_size(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
 
@@ -168,7 +168,7 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     True
     """
     require_mapping(spreads)
-    _require_room(count, len(spreads), checks.seed("seed", seed))
+    _require_table_size(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 
 
@@ -205,7 +205,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     found = distributions(spreads)
     given = uniform(len(found)) if callable(uniform) else uniform
     if isinstance(given, np.ndarray) and given.size:
-        _require_room(given.size, 1)
+        _require_table_size(given.size, 1)
     try:
         numbers = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
@@ -215,16 +215,16 @@ def sample(spreads, uniform) -> pd.DataFrame:
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
     inside = (numbers >= 0.0) & (numbers <= 1.0)
-    checks.require("designs", None if inside.all() else _outside(numbers[~inside], numbers.size))
+    checks.require("designs", None if inside.all() else _range_problem(numbers[~inside], numbers.size))
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
     unbounded = [name for name, column in zip(found, values, strict=True) if not np.isfinite(column).all()]
     checks.require(
         "designs", *(f"{name} is infinite where its number is 0 or 1; keep the numbers between" for name in unbounded)
     )
-    return _table(np.transpose(values), found)
+    return _design_table(np.transpose(values), found)
 
 
-def _outside(wrong, count):
+def _range_problem(wrong, count):
     """What is said of numbers that are no shares."""
     return (
         f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of {count} "
@@ -232,21 +232,21 @@ def _outside(wrong, count):
     )
 
 
-def _require_room(count, parameters, *problems):
+def _require_table_size(count, parameters, *problems):
     """Raise an error unless a table of so many designs can be held, with what else is wrong."""
     whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
     checks.require(
         "designs",
         None if whole and count > 0 else f"how many must be a whole number of at least 1, got {count!r}",
-        f"{count} designs of {parameters} parameters are too many for one table, which holds {LARGEST} values; sweep "
+        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} values; sweep "
         "them in parts"
-        if whole and count * parameters > LARGEST
+        if whole and count * parameters > MAX_TABLE_VALUES
         else None,
         *problems,
     )
 
 
-def _table(values, found):
+def _design_table(values, found):
     """Table of designs; refused if a number that every machine's parts call so is told in what measures another."""
     checks.require(
         "designs",
@@ -254,17 +254,17 @@ def _table(values, found):
     )
     problems = []
     for name, (_, unit) in found.items():
-        usual = _usual_units().get(re.sub(r"[0-9]+(?=\.|$)", "", name))
+        usual = _known_units().get(re.sub(r"[0-9]+(?=\.|$)", "", name))
         try:
             factor(unit, usual or unit)
         except ValueError as error:
             problems.append(f"parameter {heading(name, unit)!r}: {error}")
     checks.require("designs", *problems)
-    return pd.DataFrame(values, columns=columns(found))
+    return pd.DataFrame(values, columns=headings(found))
 
 
 @cache
-def _usual_units():
+def _known_units():
     """SI unit of each number of everyday machines, by path without the label of its group."""
     loads = Gravity(), Spring(1.0, 0.0), TorsionSpring(1.0, 0.0, on="crank"), TorsionDamper(1.0, on="crank")
     machines = (
@@ -276,7 +276,7 @@ def _usual_units():
     return {path: unit for scene in scenes for path, unit in scene.units.items()}
 
 
-def columns(found):
+def headings(found):
     """Headings of parameters with units, from pairs that end with the unit, by parameter."""
     return [heading(name, unit) for name, (_, unit) in found.items()]
 

@@ -24,31 +24,33 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
 from ..numbers.fingerprint import digest
-from ..numbers.formatting import parted, si_columns
+from ..numbers.formatting import parse_heading, si_columns
 from ..results.reductions import Output, parsed
-from ..solution.parameters import unknown
-from ..solution.scene import WORTH_COMPILING, Scene
+from ..solution.parameters import path_problem
+from ..solution.scene import MIN_VALUES_COMPILED, Scene
 from ..version import __version__
-from .chunk import FAILED, LEAST, PROBED, Job, tried
-from .dataset import Dataset, Parts
-from .workers import ATTEMPTS, Workers, computed
+from .chunk import FAILED, MAX_PROBED_DESIGNS, MIN_ANGLES_PER_TURN, Job, dry_run
+from .dataset import ChunkResults, Dataset
+from .workers import MAX_CHUNK_RUNS, Workers, run_chunks
 
 
 def job_of(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
     """The job, the engines to try, and what is compared: what is varied, or a function, and what ratios refer to."""
     _require_kinds(source, designs)
     if not is_case(source):
-        checks.require("sweep", *_only_of_cases(source, variant, reference))
-    compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
-    known = compared[0].units if is_varied(compared[0]) else None
+        checks.require("sweep", *_case_option_problems(source, variant, reference))
+    compared = variant_and_reference(source, variant, reference) if is_case(source) else (source, reference)
+    known = compared[0].units if can_vary(compared[0]) else None
     wanted, problems = _outputs(outputs)
-    columns, wrong = si_columns(designs.columns, known, partial(unknown, source) if isinstance(source, Scene) else None)
+    columns, wrong = si_columns(
+        designs.columns, known, partial(path_problem, source) if isinstance(source, Scene) else None
+    )
     problems += [
         *wrong,
         *_name_problems(designs.columns, wanted),
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
-        checks.count("angles", angles, size=checks.ANGLE),
+        checks.count("angles", angles, size=checks.BYTES_PER_ANGLE),
         None if chunk is None else checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
@@ -63,7 +65,7 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     if known is not None:
         wanted = tuple(item.of(compared[0]) for item in wanted)
 
-    engines = _engines(engine, len(designs) * max(angles, LEAST))
+    engines = _engines(engine, len(designs) * max(angles, MIN_ANGLES_PER_TURN))
     threads = numba_backend.core_count() if executor is None and workers is None else 1
     make, make_reference = _makers(known, *compared)
     job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
@@ -77,16 +79,16 @@ def _require_kinds(source, designs):
         raise ParameterError(
             f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
         )
-    if not (is_case(source) or is_varied(source) or callable(source)):
+    if not (is_case(source) or can_vary(source) or callable(source)):
         raise ParameterError(
             "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
             f"{checks.shown(source)}"
         )
 
 
-def _only_of_cases(source, variant, reference):
+def _case_option_problems(source, variant, reference):
     """What is wrong with names of variants where the source has none."""
-    kind = "a Scene" if is_varied(source) else "a function"
+    kind = "a Scene" if can_vary(source) else "a function"
     if variant is not None:
         yield (
             f"variant names one of a case's variants, and {kind} has none, got {checks.shown(variant)}; leave it out, "
@@ -102,7 +104,7 @@ def _engines(engine, values):
         numba_backend.require_numba()
     if engine:
         return [engine]
-    return ["compiled", "numpy"] if values >= WORTH_COMPILING and numba_backend.numba_available() else ["numpy"]
+    return ["compiled", "numpy"] if values >= MIN_VALUES_COMPILED and numba_backend.numba_available() else ["numpy"]
 
 
 def is_case(source):
@@ -110,7 +112,7 @@ def is_case(source):
     return hasattr(source, "variants") and hasattr(source, "reference")
 
 
-def is_varied(source):
+def can_vary(source):
     """Whether it can be varied by path, as a `Scene` and a case's variant can."""
     return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
@@ -121,7 +123,7 @@ def names_of(case, variant=None, reference=None):
     return variant or next((name for name in case.variants if name != reference), reference), reference
 
 
-def chosen(case, variant=None, reference=None):
+def variant_and_reference(case, variant=None, reference=None):
     """These variants."""
     return tuple(map(case.variant, names_of(case, variant, reference)))
 
@@ -133,25 +135,25 @@ def _is_scene(item):
 def _makers(known, source, reference):
     """Functions from values to what is varied, and to what ratios refer to."""
     if known is None:
-        return partial(_called, source), partial(_fixed, reference)
-    return partial(_varied, source), partial(_varied, reference)
+        return partial(_call, source), partial(_return_fixed, reference)
+    return partial(_vary, source), partial(_vary, reference)
 
 
-def _varied(item, values):
+def _vary(item, values):
     """The item with those of the values that it has a place for."""
     known = item.units
     return item.varied({path: value for path, value in values.items() if path in known})
 
 
-def _called(function, values):
+def _call(function, values):
     return function(**values)
 
 
-def _fixed(item, values):
+def _return_fixed(item, values):
     return item
 
 
-def listed(outputs):
+def output_list(outputs):
     """Outputs asked for, one or several."""
     if isinstance(outputs, str | Output):
         return [outputs]
@@ -163,7 +165,7 @@ def listed(outputs):
 def _outputs(outputs):
     """The outputs asked for, and what is wrong with them."""
     wanted, problems = [], []
-    for text in listed(outputs):
+    for text in output_list(outputs):
         try:
             wanted.append(parsed(text))
         except ParameterError as error:
@@ -175,7 +177,7 @@ def _name_problems(columns, wanted):
     """Columns of the designs that would stand in the table twice."""
     taken = {*map(str, wanted), FAILED}
     for name in columns:
-        if parted(name)[0] in taken:
+        if parse_heading(name)[0] in taken:
             yield f"column {name!r} of the designs has the name of an output; rename it"
 
 
@@ -240,7 +242,7 @@ def _require_portable(job, executor, workers):
 
 __all__ = ["FAILED", "sweep"]
 
-CHUNK, WIDE = 10_000, 50_000
+CHUNK_DESIGNS, STREAMED_CHUNK_DESIGNS = 10_000, 50_000
 """Designs computed together, unless told, and where they take little time and memory and nobody waits for them."""
 
 
@@ -342,16 +344,16 @@ def sweep(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )
     with Workers(executor, workers) as hands:
-        job = _tried(job, designs, engines, hands)
+        job = _dry_run(job, designs, engines, hands)
         for hint in job.hints:
             warnings.warn(hint, stacklevel=2)
         here = executor is None and workers is None and folder is None
-        chunk = chunk or (WIDE if here and job.wide else CHUNK)
-        parts = Parts(designs, chunk)
+        chunk = chunk or (STREAMED_CHUNK_DESIGNS if here and job.wide else CHUNK_DESIGNS)
+        parts = ChunkResults(designs, chunk)
         if folder is not None:
             parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
         todo = [number for number in parts.numbers if not parts.holds(number)]
-        with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, hands)) as found:
+        with _bar(progress, len(designs)) as bar, closing(run_chunks(job, parts.rows, todo, hands)) as found:
             bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
             for number, rows in found:
                 parts.keep(number, rows)
@@ -359,10 +361,10 @@ def sweep(
     return parts.table()
 
 
-def _tried(job, designs, engines, hands):
+def _dry_run(job, designs, engines, hands):
     """The job made ready by a trial; designs with which workers die are passed over, some of them."""
-    for first in range(min(ATTEMPTS, len(designs))):
-        for ready in hands.survived(tried, job, designs[first : first + PROBED], engines):
+    for first in range(min(MAX_CHUNK_RUNS, len(designs))):
+        for ready in hands.survived(dry_run, job, designs[first : first + MAX_PROBED_DESIGNS], engines):
             return ready or job
     return job
 

@@ -12,12 +12,12 @@ import pandas as pd
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
-from ..numbers.formatting import parted
+from ..numbers.formatting import parse_heading
 from ..results.reductions import parsed
 from . import designs
-from .sweeps import FAILED, chosen, is_case, is_varied, listed, sweep
+from .sweeps import FAILED, can_vary, is_case, output_list, sweep, variant_and_reference
 
-LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
+QUANTILE_LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,18 +51,19 @@ class Tolerances:
     sensitivity: pd.DataFrame
     spreads: dict[str, Any] = field(repr=False)
 
-    def quantiles(self, levels=LEVELS):
+    def quantiles(self, levels=QUANTILE_LEVELS):
         """Quantiles of every output over the designs, a pandas DataFrame."""
         return self.table[list(self.outputs)].quantile(list(levels)).rename_axis("quantile")
 
     def share(self, output, *, above=-np.inf, below=np.inf):
         """Share of all designs whose output lies between."""
-        named = {parted(column)[0]: column for column in self.outputs}
+        named = {parse_heading(column)[0]: column for column in self.outputs}
         name = str(parsed(output))
         checks.require("tolerances", checks.choice("output", name, tuple(named)))
-        values, unit = self.table[named[name]], parted(named[name])[1]
+        values, unit = self.table[named[name]], parse_heading(named[name])[1]
         above, below = (
-            checks.converted("tolerances", word, bound, unit) for word, bound in (("above", above), ("below", below))
+            checks.to_plain_named("tolerances", word, bound, unit)
+            for word, bound in (("above", above), ("below", below))
         )
         return float(((values > above) & (values < below)).mean())
 
@@ -109,12 +110,12 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     >>> found.sensitivity["total"].round(2).to_dict()
     {('largest O [N]', 'slider.mass'): 1.0, ('largest O [N]', 'coupler_length'): 0.0}
     """
-    if not (is_case(case) or is_varied(case) or callable(case)):
+    if not (is_case(case) or can_vary(case) or callable(case)):
         raise ParameterError(
             f"tolerances: case must be a Case, a Scene or a function that makes a Scene, got {checks.shown(case)}"
         )
     if spreads is None and is_case(case):
-        known = chosen(case, options.get("variant"), options.get("reference"))[0].units
+        known = variant_and_reference(case, options.get("variant"), options.get("reference"))[0].units
         spreads = {name: text for name, text in case.tolerances.items() if name in known}
     power = isinstance(count, int) and count > 1 and not count & (count - 1)
     checks.require(
@@ -131,7 +132,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         None if folder is None else folder_problem(folder),
     )
     found = designs.distributions(spreads)
-    wanted = tuple(dict.fromkeys(map(parsed, listed(outputs))))
+    wanted = tuple(dict.fromkeys(map(parsed, output_list(outputs))))
     sweeps = itertools.count()
 
     def run(designed):
@@ -144,7 +145,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         return tuple(table.columns[len(found) : -1])
 
     def values(numbers):
-        table = run(pd.DataFrame(numbers.T, columns=designs.columns(found)))
+        table = run(pd.DataFrame(numbers.T, columns=designs.headings(found)))
         return np.array(table[list(names_in(table))]).T
 
     table = run(designs.sobol(spreads, count, seed))

@@ -13,13 +13,13 @@ import numpy as np
 import pandas as pd
 
 from ..errors import KinetostaticsError
-from .chunk import rows, run_chunk
+from .chunk import result_table, run_chunk
 
-ATTEMPTS = 3
+MAX_CHUNK_RUNS = 3
 """How often a chunk is run whose worker dies, before the designs that do it are looked for."""
-ALONE = 2
+MAX_DESIGN_RUNS = 2
 """How often a design by itself is run whose worker dies, before it has no numbers."""
-WAITING = 256
+MAX_PENDING_CHUNKS = 256
 """Chunks handed to an executor at a time; to workers of our own two for each."""
 
 
@@ -30,10 +30,10 @@ class Workers:
     """
 
     def __init__(self, executor=None, count=None):
-        self._given = executor or _Here()
+        self._given = executor or _SameProcess()
         self._pool: Any = None
         self._count = count
-        self.capacity = 2 * count if count else WAITING if executor else 1
+        self.capacity = 2 * count if count else MAX_PENDING_CHUNKS if executor else 1
 
     def __enter__(self):
         return self
@@ -75,7 +75,7 @@ class Workers:
     def deaths(self, error):
         """How many deaths of workers an error of a call tells of; raises it if none."""
         if type(error).__name__ == "KilledWorker":  # of Dask, which has tried several workers
-            return ATTEMPTS
+            return MAX_CHUNK_RUNS
         if not isinstance(error, BrokenExecutor):
             raise error
         if self._count is None:
@@ -90,7 +90,7 @@ class Workers:
             return self._given.submit(*call)
         if self._pool is None:
             self._pool = _pool(self._count)
-        with _without_interrupts():  # what starts here inherits it
+        with _signals_blocked():  # what starts here inherits it
             return self._pool.submit(*call)
 
     def _stop(self, at_once):
@@ -99,7 +99,7 @@ class Workers:
             self._pool = None
 
 
-class _Here(Executor):
+class _SameProcess(Executor):
     """The process and thread that submits, at once."""
 
     def submit(self, function, /, *arguments, **options):
@@ -111,27 +111,27 @@ class _Here(Executor):
 def _pool(count):
     from loky import ProcessPoolExecutor
 
-    return ProcessPoolExecutor(count, initializer=_serve, initargs=(os.getpid(),))
+    return ProcessPoolExecutor(count, initializer=_start_worker, initargs=(os.getpid(),))
 
 
-def _serve(parent):
+def _start_worker(parent):
     """Start of a worker: signals to all processes are left to the parent, and nothing is done that nobody waits for.
 
     A worker that ends while it hands over a result leaves half of it, for whose rest the parent waits for ever.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
-    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+    threading.Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()
 
 
-def _end_with(parent):
+def _exit_with_parent(parent):
     while os.getppid() == parent:
         time.sleep(0.5)
     os._exit(1)
 
 
 @contextmanager
-def _without_interrupts():
+def _signals_blocked():
     """Ctrl-C and SIGTERM wait, where there are signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -143,7 +143,7 @@ def _without_interrupts():
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def computed(job, rows_of, numbers, workers):
+def run_chunks(job, rows_of, numbers, workers):
     """Number and result of each chunk, in the order in which they are done.
 
     Parameters
@@ -169,28 +169,30 @@ def computed(job, rows_of, numbers, workers):
                     found = future.result()
                 except Exception as error:
                     deaths[number] += workers.deaths(error)
-                    (waiting.appendleft if deaths[number] < ATTEMPTS else suspects.append)(number)
+                    (waiting.appendleft if deaths[number] < MAX_CHUNK_RUNS else suspects.append)(number)
                 else:
                     yield number, found
         workers.one_at_a_time()
         if suspects and not workers.survived(run_chunk, job, rows_of(suspects[0])[:0]):
             raise KinetostaticsError("sweep: the workers die before they compute anything")
         for number in suspects:
-            yield number, _narrowed(job, rows_of(number), workers)
+            yield number, _isolate_deaths(job, rows_of(number), workers)
     finally:
         workers.give_up(running)
 
 
-def _narrowed(job, frame, workers):
+def _isolate_deaths(job, frame, workers):
     """Outputs of designs that may kill their worker, run by themselves: half by half, down to those that do it.
 
     One alone is tried again: a worker may die of something else.
     """
     alone = len(frame) == 1
-    for _ in range(ALONE if alone else 1):
+    for _ in range(MAX_DESIGN_RUNS if alone else 1):
         for found in workers.survived(run_chunk, job, frame):
             return found
     if alone:
-        return rows(job, frame, np.full((len(job.outputs), 1), np.nan), np.array(["the worker died with this design"]))
+        return result_table(
+            job, frame, np.full((len(job.outputs), 1), np.nan), np.array(["the worker died with this design"])
+        )
     halves = np.array_split(np.arange(len(frame)), 2)
-    return pd.concat([_narrowed(job, frame.iloc[half], workers) for half in halves])
+    return pd.concat([_isolate_deaths(job, frame.iloc[half], workers) for half in halves])

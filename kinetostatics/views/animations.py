@@ -9,11 +9,11 @@ from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
-from .canvas import ACCENT, axes, display, single
-from .drawings import MASS_CENTRE, PIN, equal_scales, leading, still_parts
-from .symbols import artist, put
+from .canvas import ACCENT, axes, display_unit, single_solution
+from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_equal_scales
+from .strokes import set_points, stroke_artist
 
-MOST = 0.9
+UNCLIPPED_SHARE = 0.9
 """Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
 
@@ -52,22 +52,22 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     """
     from matplotlib.animation import FuncAnimation
 
-    solution, ax = single(solution), axes(ax)
+    solution, ax = single_solution(solution), axes(ax)
     if joints is None:
         joints = [name for name in ("O", "A", "B") if name in solution.mechanism.outputs]
     joints = (joints,) if isinstance(joints, str) else tuple(joints)
-    interval = checks.singles(
+    interval = checks.single_numbers(
         "animation",
         checks.count("frames", frames),
         None if joints else "joints must name at least one reaction",
         interval=(interval, "ms", {"low": 0.0, "strict": True}),
     )["interval"]
-    solution = _whole(solution, frames)
-    count, shape = solution.crank_angle.size, still_parts(ax, solution)
+    solution = _over_period(solution, frames)
+    count, shape = solution.crank_angle.size, draw_fixed_parts(ax, solution)
     links, marks = _moving_links(ax, shape, solution), _moving_marks(ax, shape, solution)
     moving = [links, marks, _moving_arrows(ax, solution, joints), _moving_caption(ax, solution)]
     paths = np.concatenate([*marks.paths, *links.paths], axis=1)
-    equal_scales(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
+    set_equal_scales(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
 
     def draw(step):
         for part in moving:
@@ -78,7 +78,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
 
 
-class _Moving(NamedTuple):
+class _MovingParts(NamedTuple):
     """What moves in an animation: its artists, how they come to a step, and the points (2, K) that they pass."""
 
     artists: list
@@ -89,13 +89,13 @@ class _Moving(NamedTuple):
 def _moving_links(ax, shape, solution):
     """Links, counterweights and signs of loads."""
     strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
-    parts = [artist(ax, stroke, 1.0) for stroke in strokes]
+    parts = [stroke_artist(ax, stroke, 1.0) for stroke in strokes]
 
     def move(step):
         for part, stroke in zip(parts, strokes, strict=True):
-            put(part, stroke.points[..., step])
+            set_points(part, stroke.points[..., step])
 
-    return _Moving(parts, move, [stroke.points.reshape(2, -1) for stroke in strokes])
+    return _MovingParts(parts, move, [stroke.points.reshape(2, -1) for stroke in strokes])
 
 
 def _moving_marks(ax, shape, solution):
@@ -110,15 +110,15 @@ def _moving_marks(ax, shape, solution):
         for mark, position in zip(marks, positions, strict=True):
             mark.set_data(position[:, [step]])
 
-    return _Moving(marks, move, positions)
+    return _MovingParts(marks, move, positions)
 
 
 def _moving_arrows(ax, solution, joints):
     """Reactions, the largest as long as the crank; the title tells it."""
     made = solution.mechanism
-    forces = [_cut(solution, joint) for joint in joints]
-    largest = max(_largest(magnitude(force)) for force in forces)
-    length = _largest(magnitude(solution.position(leading(made))))
+    forces = [_clipped_reaction(solution, joint) for joint in joints]
+    largest = max(_largest_finite(magnitude(force)) for force in forces)
+    length = _largest_finite(magnitude(solution.position(first_moving_joint(made))))
     starts = [solution.position(made.outputs[joint].at or joint) for joint in joints]
     arrows = ax.quiver(
         *np.zeros((2, len(joints))),
@@ -130,14 +130,14 @@ def _moving_arrows(ax, solution, joints):
         width=0.005,
         zorder=5,
     )
-    factor, shown = display("N", [largest])
+    factor, shown = display_unit("N", [largest])
     ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
 
     def move(step):
         arrows.set_offsets(np.array([start[:, step] for start in starts]))
         arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
 
-    return _Moving([arrows], move, [])
+    return _MovingParts([arrows], move, [])
 
 
 def _moving_caption(ax, solution):
@@ -147,10 +147,10 @@ def _moving_caption(ax, solution):
     def move(step):
         caption.set_text(f"crank angle {np.degrees(solution.crank_angle[step]):.0f}°")
 
-    return _Moving([caption], move, [])
+    return _MovingParts([caption], move, [])
 
 
-def _whole(solution, frames):
+def _over_period(solution, frames):
     """The solution over its whole period, at its own crank angles if they are enough of it."""
     angle, period = np.sort(solution.crank_angle), solution.period
     step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
@@ -162,17 +162,17 @@ def _whole(solution, frames):
         return solution
 
 
-def _largest(values):
+def _largest_finite(values):
     finite = values[np.isfinite(values)]
     return float(np.max(finite, initial=0.0)) or 1.0
 
 
-def _cut(solution, joint):
+def _clipped_reaction(solution, joint):
     """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
     force = solution.reaction(joint)
     if not solution.mechanism.grows(joint):
         return force
     size = magnitude(force)
-    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), MOST)
+    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), UNCLIPPED_SHARE)
     with np.errstate(invalid="ignore"):
         return np.where(size > most, np.nan_to_num(force / size, nan=0.0) * most, force)

@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ..numbers import checks
-from .canvas import ACCENT, FROM_X, INK, STEEL, axes, closed, styled
+from .canvas import ACCENT, FROM_X, INK, STEEL, axes, close_curve, with_line_styles
 
-POINTS = 1440
-DEGREES = {"angles": checks.Number("deg", table=True)}
-RADIUS = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
-LARGEST = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
+POINTS_PER_TURN = 1440
+ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
+RADIUS_RULE = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
+LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
 """Crank angles a turn at which curves are drawn."""
 
 
@@ -44,17 +44,21 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
     >>> ks.plots.cam_profile(cam, roller_radius=0.05).get_aspect()
     1.0
     """
-    angles = checks.examined("cam_profile", DEGREES, {"angles": angles}, _cam_problem(cam))["angles"]
+    angles = checks.check_values("cam_profile", ANGLES_RULE, {"angles": angles}, _cam_problem(cam))["angles"]
     ax = axes(ax)
-    made = cam.profile(roller_radius, POINTS, side)
-    surface = closed(made.surface)
+    made = cam.profile(roller_radius, POINTS_PER_TURN, side)
+    surface = close_curve(made.surface)
     if side == "disk":
         ax.fill(*surface, color=STEEL, alpha=0.25, lw=0)
     ax.plot(*surface, color=INK, lw=1.5, label="working curve")
-    ax.plot(*closed(made.pitch), color=ACCENT, lw=0.8, ls="-.", label="pitch curve")
+    ax.plot(*close_curve(made.pitch), color=ACCENT, lw=0.8, ls="-.", label="pitch curve")
     if cutter_radius is not None:
         ax.plot(
-            *closed(made.cutter_path(cutter_radius)), color="tab:green", lw=0.8, ls="--", label="path of the cutter"
+            *close_curve(made.cutter_path(cutter_radius)),
+            color="tab:green",
+            lw=0.8,
+            ls="--",
+            label="path of the cutter",
         )
     posed = cam.profile(roller_radius, np.radians(angles), side)
     for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
@@ -93,18 +97,20 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     >>> ks.plots.cam_curvature(cam, roller_radius=0.05).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    named = _named(cams, "cam_curvature", _cam_problem)
+    named = _items_by_label(cams, "cam_curvature", _cam_problem)
     side_problem = checks.choice("side", side, ("disk", "ring"))
-    radius = checks.examined("cam_curvature", RADIUS, {"roller_radius": roller_radius}, side_problem)["roller_radius"]
+    radius = checks.check_values("cam_curvature", RADIUS_RULE, {"roller_radius": roller_radius}, side_problem)[
+        "roller_radius"
+    ]
     ax = axes(ax)
-    angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
-    for name, cam, style in styled(named):
+    angle = np.linspace(0.0, 2 * np.pi, POINTS_PER_TURN + 1)
+    for name, cam, style in with_line_styles(named):
         ax.plot(np.degrees(angle), 1.0 / cam.curvature_radius(angle), linestyle=style, label=name)
     if radius is not None:
         limit = (1.0 if side == "disk" else -1.0) / radius
         ax.axhline(limit, color=ACCENT, lw=1.0, ls="--", label=f"undercut by the roller, {side}")
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _over_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
+    return _label_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
 
 def cam_pressure_angle(cams, largest=None, ax=None):
@@ -128,16 +134,16 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     >>> ks.plots.cam_pressure_angle(cam, largest=0.5).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    named = _named(cams, "cam_pressure_angle", _cam_problem)
-    largest = checks.examined("cam_pressure_angle", LARGEST, {"largest": largest})["largest"]
+    named = _items_by_label(cams, "cam_pressure_angle", _cam_problem)
+    largest = checks.check_values("cam_pressure_angle", LIMIT_RULE, {"largest": largest})["largest"]
     ax = axes(ax)
-    angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
-    for name, cam, style in styled(named):
+    angle = np.linspace(0.0, 2 * np.pi, POINTS_PER_TURN + 1)
+    for name, cam, style in with_line_styles(named):
         ax.plot(np.degrees(angle), np.degrees(cam.pressure_angle(angle)), linestyle=style, label=name)
     for limit in () if largest is None else (-largest, largest):
         ax.axhline(np.degrees(limit), color=ACCENT, lw=1.0, ls="--")
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _over_turn(ax, "pressure angle [deg]", len(named) > 1)
+    return _label_turn(ax, "pressure angle [deg]", len(named) > 1)
 
 
 def contact_pressure(contacts, ax=None):
@@ -162,9 +168,9 @@ def contact_pressure(contacts, ax=None):
     >>> ks.plots.contact_pressure(found).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    named = _named(contacts, "contact_pressure", _contact_problem)
+    named = _items_by_label(contacts, "contact_pressure", _contact_problem)
     ax = axes(ax)
-    for name, contact, style in styled(named):
+    for name, contact, style in with_line_styles(named):
         order = np.argsort(contact.crank_angle)
         (line,) = ax.plot(
             np.degrees(contact.crank_angle[order]), contact.pressure[order] / 1e6, linestyle=style, label=name
@@ -174,7 +180,7 @@ def contact_pressure(contacts, ax=None):
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, color=ACCENT, lw=1.0, ls="--")
     ax.set_ylim(bottom=0.0)
-    return _over_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
+    return _label_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
 
 
 def law_motion(laws, ax=None):
@@ -200,25 +206,27 @@ def law_motion(laws, ax=None):
     """
     import matplotlib.pyplot as plt
 
-    named = _named(laws, "law_motion", lambda law: None if callable(law) else f"must be a law, got {checks.shown(law)}")
+    named = _items_by_label(
+        laws, "law_motion", lambda law: None if callable(law) else f"must be a law, got {checks.shown(law)}"
+    )
     checks.require(
         "law_motion", None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
     )
     four: Any = plt.subplots(4, 1, sharex=True, layout="constrained", figsize=(6.4, 7.2))[1] if ax is None else ax
-    angle = np.linspace(0.0, 2 * np.pi, 2 * POINTS + 1)
-    for name, law, style in styled(named):
+    angle = np.linspace(0.0, 2 * np.pi, 2 * POINTS_PER_TURN + 1)
+    for name, law, style in with_line_styles(named):
         for part, values in zip(four, law(angle), strict=True):
             part.plot(np.degrees(angle), values, linestyle=style, label=name)
     texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
     for part, text in zip(four, texts, strict=True):
         part.set_ylabel(text)
-    _over_turn(four[-1], texts[-1], False)
+    _label_turn(four[-1], texts[-1], False)
     if len(named) > 1:
         four[0].legend(frameon=False, fontsize="small")
     return four
 
 
-def _over_turn(ax, text, legend):
+def _label_turn(ax, text, legend):
     ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:
@@ -226,7 +234,7 @@ def _over_turn(ax, text, legend):
     return ax
 
 
-def _named(items, owner, problem):
+def _items_by_label(items, owner, problem):
     """What is drawn by label, each looked at."""
     named = dict(items) if isinstance(items, Mapping) else {"": items}
     wrong = [f"{name or 'it'} {text}" for name, item in named.items() if (text := problem(item))]

@@ -1,20 +1,29 @@
-"""What every figure shares: colours, axes, labels, units that read well."""
+"""What every figure shares: colours, axes, labels, units that read well.
+
+Crank angles that a curve must not miss: extremes between those solved, kinks, and both sides of jumps.
+
+Crank angles without a value, shaded and named, and axes that what grows without bound beside them does not set.
+"""
 
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..errors import ParameterError
+from ..errors import KinetostaticsError, ParameterError
 from ..mechanics.quantities import label_of
 from ..numbers import checks
-from ..numbers.formatting import parted
+from ..numbers.formatting import parse_heading
+from ..results.extremes import extrema
+from ..results.rounding import PLACED
+from ..solution.drive_and_loads import tables_over_angles
 
 
 @dataclass(frozen=True)
-class Counted:
+class AngleConvention:
     """How crank angles are counted: the text of an axis, the angle from +x at 0, degrees, and the sense.
 
     All figures of one folder count in one way; `FROM_X` is that of the library.
@@ -37,8 +46,8 @@ class Counted:
         return self.zero + self.sense * np.asarray(degrees)
 
 
-FROM_X = Counted("from +x, counter-clockwise")
-FROM_Y_CLOCKWISE = Counted("from +y, clockwise", 90.0, -1)
+FROM_X = AngleConvention("from +x, counter-clockwise")
+FROM_Y_CLOCKWISE = AngleConvention("from +y, clockwise", 90.0, -1)
 INK, STEEL, ACCENT, LOAD = "0.15", "slategray", "tab:red", "tab:green"
 STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line styles, so that curves differ in print too."""
@@ -50,7 +59,7 @@ def axes(ax):
     return plt.subplots(layout="constrained")[1] if ax is None else ax
 
 
-def labelled(solutions, name):
+def solutions_by_label(solutions, name):
     """Solutions by label; a single one is labelled by the quantity shown."""
     checks.require("plots", checks.quantity(name))
     several = isinstance(solutions, Mapping)
@@ -70,9 +79,9 @@ def labelled(solutions, name):
     return named
 
 
-def single(solution):
+def single_solution(solution):
     """The solution given, if it is one of one design."""
-    return next(iter(labelled({"solution": solution}, "").values()))
+    return next(iter(solutions_by_label({"solution": solution}, "").values()))
 
 
 def require_columns(name, table, columns):
@@ -89,22 +98,22 @@ def require_columns(name, table, columns):
     checks.require(name, problem)
 
 
-def styled(named):
+def with_line_styles(named):
     """Name, solution and line style of each."""
     return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
-LONG = 20
+LONG_LABEL = 20
 """Letters of a label from which on a legend has one column."""
-COLUMNS = (3, 2, 1)
+LEGEND_COLUMNS = (3, 2, 1)
 """Of a legend above curves: as many as fit into the axes."""
-ALIKE = 2e-3
+SAME_CURVE_TOLERANCE = 2e-3
 """Distance of curves, beside the extent of all, up to which one covers the other."""
-NOTHING = 1e-9
+ZERO_TOLERANCE = 1e-9
 """Size of a curve, beside the largest, below which it is rounding."""
 
 
-def distinct(curves, apart=False):
+def distinct_curves(curves, apart=False):
     """Labels of curves (N,) or (2, N) for a legend, each with the name of the curve: one for all that cover each other.
 
     The label of a curve that is zero but for rounding says so. Curves that are drawn apart, each to a scale of its own,
@@ -118,17 +127,19 @@ def distinct(curves, apart=False):
     for name, array in arrays.items():
         for names in found:
             other, extent = arrays[names[0]], extents[name] if apart else max(extents.values())
-            if other.shape == array.shape and np.allclose(array, other, rtol=0.0, atol=ALIKE * extent, equal_nan=True):
+            if other.shape == array.shape and np.allclose(
+                array, other, rtol=0.0, atol=SAME_CURVE_TOLERANCE * extent, equal_nan=True
+            ):
                 names.append(name)
                 break
         else:
             found.append([name])
     several = len(arrays) > 1
-    zero = {name: several and np.max(np.abs(finite[name]), initial=0.0) <= NOTHING * largest for name in arrays}
+    zero = {name: several and np.max(np.abs(finite[name]), initial=0.0) <= ZERO_TOLERANCE * largest for name in arrays}
     return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in found}
 
 
-def in_order(solution, value, counted=FROM_X):
+def period_curve(solution, value, counted=FROM_X):
     """Crank angles and values (2, N) over one period, by growing angle as it is counted."""
     degrees = np.degrees(solution.crank_angle)
     angle = counted(degrees, np.degrees(solution.period))
@@ -136,32 +147,32 @@ def in_order(solution, value, counted=FROM_X):
     return np.stack([angle[order], np.broadcast_to(value, angle.shape)[order]])
 
 
-def drawn_over_turn(ax, curves):
+def draw_curves(ax, curves):
     """Draw curves (2, N) by label, each in its own style, those that cover each other as one."""
-    for text, name, style in styled(distinct({name: value for name, (_, value) in curves.items()})):
+    for text, name, style in with_line_styles(distinct_curves({name: value for name, (_, value) in curves.items()})):
         ax.plot(*curves[name], linestyle=style, label=text)
 
 
-def readable(column):
+def axis_words(column):
     """Heading of a column of a table, "mean_absolute balancing_torque [N m]", as words for an axis."""
-    name, unit = parted(column)
+    name, unit = parse_heading(column)
     words = name.replace("_", " ").replace(".", " ")
     if words.startswith("ratio "):
         words = f"ratio of {words.removeprefix('ratio ')}, reference / design"
     return f"{words} [{unit or 'SI'}]"
 
 
-MOST = 0.9
+ORDINARY_SHARE = 0.9
 """Share of values that are ordinary where a few grow without bound."""
-BEYOND = 1e4
+UNBOUNDED_RATIO = 1e4
 """Times the ordinary values from which on others grow without bound."""
-SIGHT = 3.0
+DRAWN_RATIO = 3.0
 """Times the ordinary values up to which those that grow without bound are drawn."""
-BESIDE = 36
+GAP_REACH = 36
 """Share of the crank angles, 1 / `BESIDE`, on each side of a gap where values may grow without bound."""
 
 
-def ordinary(arrays):
+def ordinary_size(arrays):
     """Largest size of all values, unless some grow without bound: then of the others.
 
     That are those far beyond most others, as forces near change points, and those beside a gap.
@@ -172,10 +183,10 @@ def ordinary(arrays):
     if not finite.size:
         return 0.0
     most, apart = float(finite.max()), float(np.max(others, initial=0.0))
-    if 0.0 < SIGHT * apart < most:
+    if 0.0 < DRAWN_RATIO * apart < most:
         return apart
-    usual, largest = float(np.quantile(finite, MOST)), float(np.nanmax(sizes))
-    return usual if 0.0 < BEYOND * usual < largest else most
+    usual, largest = float(np.quantile(finite, ORDINARY_SHARE)), float(np.nanmax(sizes))
+    return usual if 0.0 < UNBOUNDED_RATIO * usual < largest else most
 
 
 def _away_from_gaps(values):
@@ -183,34 +194,34 @@ def _away_from_gaps(values):
     missing = np.isnan(values)
     if not missing.any():
         return values
-    reach = max(1, values.shape[-1] // BESIDE)
+    reach = max(1, values.shape[-1] // GAP_REACH)
     beside = np.any([np.roll(missing, step, axis=-1) for step in range(-reach, reach + 1)], axis=0)
     return np.where(beside, np.nan, values)
 
 
-def in_sight(arrays):
+def drawn_limit(arrays):
     """Size up to which values are drawn, so that a few far beyond all others do not flatten these; infinite if none."""
-    most = ordinary(arrays)
+    most = ordinary_size(arrays)
     beyond = any(np.any(np.abs(array) > most) for array in arrays)
-    return SIGHT * most if beyond else np.inf
+    return DRAWN_RATIO * most if beyond else np.inf
 
 
-def display(name, arrays):
+def display_unit(name, arrays):
     """Factor and unit in which numbers of this size read well."""
     if name == "rad":
         return 180 / np.pi, "deg"
-    largest = ordinary(list(arrays))
+    largest = ordinary_size(list(arrays))
     if name == "Pa" and largest >= 1e5:
         return 1e-6, "MPa"
     return (1e-3, f"k{name}") if name in ("N", "N m", "W") and largest >= 1e4 else (1.0, name)
 
 
-def closed(curve):
+def close_curve(curve):
     """Curve (2, N) over one turn with its first point repeated at the end."""
     return np.concatenate([curve, curve[:, :1]], axis=1)
 
 
-def finished(ax, ylabel, legend, period=360, counted=FROM_X):
+def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
     """The axes of curves over the crank angle, degrees, with labels, grid and legend."""
     ax.set_xlabel(counted.axis)
     ax.set_ylabel(ylabel)
@@ -222,8 +233,8 @@ def finished(ax, ylabel, legend, period=360, counted=FROM_X):
     ax.grid(alpha=0.3)
     if legend:
         handles, texts = ax.get_legend_handles_labels()
-        most = COLUMNS if max(map(len, texts), default=0) < LONG else COLUMNS[-1:]
-        texts = [textwrap.fill(text, 2 * LONG, break_on_hyphens=False) for text in texts]
+        most = LEGEND_COLUMNS if max(map(len, texts), default=0) < LONG_LABEL else LEGEND_COLUMNS[-1:]
+        texts = [textwrap.fill(text, 2 * LONG_LABEL, break_on_hyphens=False) for text in texts]
         style = {"frameon": False, "loc": "upper center", "fontsize": "small", "columnspacing": 1.0}
         for columns in most:
             box = ax.legend(handles, texts, ncols=columns, **style).get_window_extent()
@@ -232,3 +243,170 @@ def finished(ax, ylabel, legend, period=360, counted=FROM_X):
         share = min(box.height / ax.bbox.height, 0.4)
         ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
     return ax
+
+
+KINK_TOLERANCE = 1e-12
+"""Distance from a kink, rad, within which samples of the turn stand at it or at a side of a jump."""
+
+
+def with_peaks(named, *quantities):
+    """Solutions by label with more crank angles: those of extremes of quantities, and of kinks of tables and friction.
+
+    All have those of all, so that curves that cover each other still do. A solution stays as it is where there is
+    nothing between its crank angles, or these do not rise.
+
+    Parameters
+    ----------
+    named : mapping of label to Solution
+        Each of one design.
+    quantities : str or function
+        As for `extremes`; vectors by their magnitude.
+    """
+    more = np.concatenate(
+        [np.empty(0), *(_peak_angles(solution, item) for solution in named.values() for item in quantities)]
+    )
+    return {name: _with_angles(solution, np.unique(more)) for name, solution in named.items()}
+
+
+def _peak_angles(solution, quantity):
+    """Crank angles in a period that a curve of a quantity must not miss; none where its extremes cannot be told."""
+    if not _is_known_between(solution):
+        return np.empty(0)
+    try:
+        found = extrema(solution, quantity)
+    except KinetostaticsError:  # a force that does not repeat, for one, can still be drawn where it is solved
+        return np.empty(0)
+    return angles_between(solution, found.angle[np.isfinite(found.value)])
+
+
+def angles_between(solution, extremes):
+    """Crank angles of extremes where the solution has none, and of kinks and both sides of jumps, rising."""
+    there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
+    return np.unique(np.concatenate([extremes[~there], _kink_samples(solution.sampled)]))
+
+
+def _kink_samples(turn):
+    """Samples of a turn at kinks and at both sides of jumps."""
+    if not turn.kinks.size:
+        return turn.kinks
+    kinks = np.concatenate([turn.kinks[-1:] - turn.period, turn.kinks, turn.kinks[:1] + turn.period])
+    behind = np.searchsorted(kinks, turn.angle).clip(1, kinks.size - 1)
+    distance = np.minimum(turn.angle - kinks[behind - 1], kinks[behind] - turn.angle)
+    return turn.angle[distance < KINK_TOLERANCE]
+
+
+def _is_known_between(solution):
+    angle = solution.crank_angle
+    return (
+        np.ndim(angle) == 1 and not tables_over_angles(solution) and angle.size > 1 and bool(np.all(np.diff(angle) > 0))
+    )
+
+
+def _with_angles(solution, more):
+    """The solution with such crank angles of its period besides its own, as far as these go round."""
+    if not more.size or not _is_known_between(solution):
+        return solution
+    own, period = solution.crank_angle, solution.period
+    span = own[-1] - own[0]
+    turns = np.round((span + np.max(np.diff(own))) / period)
+    whole = abs(span + np.max(np.diff(own)) - turns * period) < 1e-9 * period
+    end = own[0] + (turns * period if whole else span)
+    again = period * np.arange(np.floor(own[0] / period), np.floor(end / period) + 1.0)
+    more = np.ravel(np.mod(more, period) + again[:, None])
+    return solution.at(np.union1d(own, more[(more > own[0]) & (more < end)]))
+
+
+GAP_STYLE = {"color": "0.9", "lw": 0.0, "zorder": 0.5}
+NOTE_STYLE = {"color": "0.35", "fontsize": "x-small"}
+MIN_NAMED_GAP = 0.01
+"""Breadth of a gap, beside that of the axes, down to which its name stands in it."""
+
+
+def shade_gaps(ax, named, curves, counted):
+    """Shade where curves (2, N) of solutions have no value, and say why."""
+    found: dict[tuple[float, float, str], list[str]] = {}
+    for name, solution in named.items():
+        _, closed = period_curve(solution, solution.closed, counted)
+        for start, end, rows in _missing_runs(*curves[name]):
+            found.setdefault((start, end, _reason_missing(closed[rows].astype(bool), solution)), []).append(name)
+    low, high = ax.get_xlim()
+    for (start, end, why), names in found.items():
+        ax.axvspan(start, end, **GAP_STYLE)
+        if end - start > MIN_NAMED_GAP * (high - low):
+            text = why if len(names) == len(named) else f"{', '.join(names)}: {why}"
+            place = {"transform": ax.get_xaxis_transform(), "rotation": 90, "ha": "center", "va": "bottom"}
+            ax.text(0.5 * (start + end), 0.08, text, clip_on=True, **place, **NOTE_STYLE)
+    ax.set_xlim(low, high)
+
+
+def _missing_runs(angle, value):
+    """Runs of rows without a value: from the last angle before that has one to the next behind, and the rows."""
+    missing = np.flatnonzero(np.isnan(value))
+    for rows in np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1):
+        if rows.size:
+            yield float(angle[max(rows[0] - 1, 0)]), float(angle[min(rows[-1] + 1, len(angle) - 1)]), rows
+
+
+def _reason_missing(closed, solution):
+    if not closed.all():
+        return "cannot be assembled"
+    return "jams" if solution.friction else "no value"
+
+
+def limit_axis(ax, arrays, unit):
+    """Limit the axis to what is ordinary of values (N,), as they are drawn, if some grow far beyond it."""
+    sight = drawn_limit(arrays)
+    if np.isfinite(sight):
+        values = np.concatenate(arrays)
+        seen = np.clip(values[np.isfinite(values)], -sight, sight)
+        low, high = seen.min(), seen.max()
+        room = ax.margins()[1] * (high - low)
+        ax.set_ylim(low - room, high + room)
+        write_notes(ax, [f"beyond the frame: {size_text(arrays, unit)}"])
+
+
+def size_text(arrays, unit):
+    """Up to what size values (N,) go, in words."""
+    largest = float(np.nanmax(np.abs(np.concatenate(arrays))))
+    return f"up to {largest:.3g} {unit}" if np.isfinite(largest) else "without bound"
+
+
+def write_notes(ax, lines):
+    """Write lines into the corner of the axes."""
+    box = {"boxstyle": "square,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.7}
+    ax.text(0.01, 0.01, "\n".join(lines), transform=ax.transAxes, va="bottom", bbox=box, **NOTE_STYLE)
+
+
+class CurveEnd(NamedTuple):
+    """Where a curve ends that is closed but for gaps, and for what is beyond the frame.
+
+    Attributes
+    ----------
+    row : int
+    angle : float
+        Direction in which it goes on, degrees.
+    why : str
+        What it ends for; "" where it goes on beyond the frame.
+    """
+
+    row: int
+    angle: float
+    why: str
+
+
+def curve_ends(solution, curve, drawn):
+    """Each `End` of a curve (2, N) of a solution over its period, of which some is drawn and the rest is NaN."""
+    there, missing = np.isfinite(drawn).all(axis=0), np.isnan(curve).any(axis=0)
+    for step in (1, -1):
+        for row in np.flatnonzero(there & ~np.roll(there, -step)).tolist():
+            before, behind = (row - step) % there.size, (row + step) % there.size
+            x, y = drawn[:, row] - (drawn[:, before] if there[before] else 0.0)
+            why = _reason_missing(solution.closed[[behind]], solution) if missing[behind] else ""
+            yield CurveEnd(row, float(np.degrees(np.arctan2(y, x))), why)
+
+
+def mark_ends(ax, found, points, color):
+    """Mark ends of a curve (2, N): a cross where it stops, a head of an arrow where it goes on."""
+    for end in found:
+        style = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
+        ax.plot(*points[:, end.row], ls="", color=color, zorder=4, **style)

@@ -11,19 +11,19 @@ from matplotlib import rc_context
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..errors import ParameterError
-from ..numbers.files import written_whole
-from .canvas import ACCENT, axes, readable, require_columns
+from ..numbers.files import write_atomically
+from .canvas import ACCENT, axes, axis_words, require_columns
 
-EXACT = 1e-17
+MIN_DRAWN_ERROR = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
-USELESS = 1e3
+MAX_DRAWN_ERROR = 1e3
 """Where larger errors, and NaN, are drawn."""
 COLOURS = [plt.get_cmap("tab20")(number) for number in (0, 2, 4, 8, 10, 12, 14, 16, 18, 1, 3, 5, 9, 11, 13, 17, 19)]
 """Without reds, which are ours."""
 MARKERS = "osD^v<>PX*phd"
 
 
-def _styles(table):
+def _method_styles(table):
     """How each method of a study is drawn, by name."""
     styles = {}
     for number, (name, ours) in enumerate(table.groupby("method", sort=False)["ours"].first().items()):
@@ -69,20 +69,26 @@ def work_precision(table, ax=None, like=None):
     require_columns("work_precision", table, ("method", "ours", "setting", "error", time))
     ax = axes(ax)
     given = table.dropna(subset=["error"])
-    for name, style in _styles(table if like is None else like).items():
+    for name, style in _method_styles(table if like is None else like).items():
         rows = given[given["method"] == name]
         if len(rows):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
             device = rows["device"].iloc[0] if "device" in rows else "cpu"
             text += "" if device == "cpu" else f", on {device}"
-            ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
+            ax.plot(rows[time], np.maximum(rows["error"], MIN_DRAWN_ERROR), label=text, **style)
             proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
-            ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)
+            ax.vlines(
+                proven[time],
+                np.maximum(proven["error"], MIN_DRAWN_ERROR),
+                proven["bound"],
+                color=style["color"],
+                lw=1.0,
+            )
             ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
     if "bound" in given and given["bound"].notna().any():
         ax.plot([], [], "_", color=ACCENT, markersize=9, label="proven bound on the error below it")
-    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
+    ax.set(xscale="log", yscale="log", ylim=(MIN_DRAWN_ERROR / 3, 30))
     ax.set_xlabel("time [ms]" if whole else "time [ns per crank angle]")
     text = "largest error / largest value [1]"
     ax.set_ylabel(f"error of the {table['label'].iloc[0]} [{table['unit'].iloc[0]}]" if whole else text)
@@ -120,24 +126,34 @@ def error_by_distance(table, ax=None):
     shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "label")
     require_columns("error_by_distance", table, shown)
     ax = axes(ax)
-    for name, style in _styles(table).items():
+    for name, style in _method_styles(table).items():
         rows = table[(table["method"] == name) & (table["not given"] == "")]
         failing = (rows["nan"] > 0) | (rows["raised"] != "")
         if len(rows):
-            ax.plot(rows["number"], rows["error"].where(~failing, USELESS).clip(EXACT, USELESS), label=name, **style)
+            ax.plot(
+                rows["number"],
+                rows["error"].where(~failing, MAX_DRAWN_ERROR).clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
+                label=name,
+                **style,
+            )
     problem = table.drop_duplicates("number")
     ax.plot(
         problem["number"],
-        np.clip(problem["condition"] * 2.0**-53, EXACT, USELESS),
+        np.clip(problem["condition"] * 2.0**-53, MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
         "k--",
         label="condition x rounding",
     )
     if "angle rounding" in problem:
-        shown = problem["angle rounding"].clip(EXACT, USELESS)
+        shown = problem["angle rounding"].clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR)
         ax.plot(problem["number"], shown, "-.", color="0.5", label="one rounding of the crank angle")
     if "bound" in problem:
-        ax.plot(problem["number"], problem["bound"].clip(EXACT, USELESS), "k:", label="proven bound of ours")
-    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
+        ax.plot(
+            problem["number"],
+            problem["bound"].clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
+            "k:",
+            label="proven bound of ours",
+        )
+    ax.set(xscale="log", yscale="log", ylim=(MIN_DRAWN_ERROR / 3, 3 * MAX_DRAWN_ERROR), xlabel=table["axis"].iloc[0])
     ax.xaxis.set_major_locator(LogLocator(numticks=7))
     ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
     ax.grid(visible=True, alpha=0.3)
@@ -245,7 +261,7 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
 
 def _axis_text(labels, column, width=40):
     """What an axis says, in lines that are no longer than it."""
-    return textwrap.fill(labels.get(column) or readable(column), width)
+    return textwrap.fill(labels.get(column) or axis_words(column), width)
 
 
 def sweep_page(table, parameters, outputs, path, labels=None):
@@ -261,7 +277,7 @@ def sweep_page(table, parameters, outputs, path, labels=None):
             ax.remove()
     else:
         figure = _scatter_matrix(table, [*parameters, *outputs], labels or {})
-    with written_whole(path) as temporary:
+    with write_atomically(path) as temporary:
         figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
     plt.close(figure)
     return Path(path)
@@ -289,22 +305,22 @@ def precision_page(table, path):
         f"{part['case'].iloc[0]}, {variant}: {part['label'].iloc[0]}": part
         for (variant, _), part in table.groupby(["variant", "quantity"], sort=False)
     }
-    return _page(work_precision, panels, path)
+    return _draw_page(work_precision, panels, path)
 
 
 def drive_page(tables, path):
     """Chart of studies of the drive, a panel for each of a mapping of title to table, saved as PNG and SVG."""
     import pandas as pd
 
-    return _page(partial(work_precision, like=pd.concat(tables.values())), tables, path)
+    return _draw_page(partial(work_precision, like=pd.concat(tables.values())), tables, path)
 
 
 def stability_page(table, path):
     """Chart of a stability study, a panel for each place, saved as PNG and SVG; returns the paths."""
-    return _page(error_by_distance, dict(list(table.groupby("place", sort=False))), path)
+    return _draw_page(error_by_distance, dict(list(table.groupby("place", sort=False))), path)
 
 
-def _page(draw, panels, path):
+def _draw_page(draw, panels, path):
     """Panels by title, two in a row of a page's width, with one legend below."""
     columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
@@ -318,15 +334,15 @@ def _page(draw, panels, path):
     for ax in grid.flat[len(panels) :]:
         ax.remove()
     figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=2, fontsize=8)
-    return _saved(figure, path)
+    return _save_page(figure, path)
 
 
-def _saved(figure, path):
+def _save_page(figure, path):
     """Figure as PNG and SVG beside each other; returns the paths."""
     paths = []
     for kind in ("png", "svg"):
         target = Path(f"{path}.{kind}")
-        with rc_context({"svg.hashsalt": target.stem}), written_whole(target) as temporary:
+        with rc_context({"svg.hashsalt": target.stem}), write_atomically(target) as temporary:
             metadata = {"Date": None} if kind == "svg" else {}
             figure.savefig(temporary, format=kind, dpi=150, metadata=metadata)
         paths.append(target)

@@ -1,34 +1,142 @@
-"""Curves of solutions over the crank angle, and hodographs of their reactions."""
+"""Curves of solutions over the crank angle, and hodographs of their reactions.
+
+Figures of the studies' own kinds: relative motion of the chain unit, polar hodograph of the shaking force.
+"""
 
 from collections.abc import Mapping
 
+import matplotlib.pyplot as plt
 import numpy as np
 
+from ..design.linkage import four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
-from ..mechanics.quantities import of_mechanism, values
-from ..numbers.checks import choice, singles
+from ..mechanics.quantities import magnitude, of_mechanism, values
+from ..numbers.checks import choice, require, singles
 from ..results.extremes import extremes
-from . import peaks
+from . import canvas
 from .canvas import (
     FROM_X,
+    FROM_Y_CLOCKWISE,
     INK,
+    ZERO_TOLERANCE,
     axes,
-    closed,
-    display,
-    drawn_over_turn,
-    finished,
-    in_order,
-    in_sight,
-    labelled,
-    ordinary,
-    styled,
+    close_curve,
+    display_unit,
+    draw_curves,
+    drawn_limit,
+    finish_axes,
+    ordinary_size,
+    period_curve,
+    solutions_by_label,
+    with_line_styles,
+    with_peaks,
 )
 from .labels import label
-from .peaks import with_peaks
-from .studies import require_turning
 
-LEAST_MARKS = 0.01
+
+def chain_unit_motion(solutions, link, order=1, ax=None):
+    """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
+
+    Both are counted in the crank's sense of turning and divided by crank speed, or its square; the crank angle from
+    +y, clockwise.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    link : "coupler" or "rocker"
+        Which link of the four-bar, whatever it is called.
+    order : 1 or 2
+        Velocity or acceleration.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.linkage.chain_unit(0.1, 1.0, 0.5), 1.0).solve(90)
+    >>> ks.plots.chain_unit_motion(s, "rocker").get_xlabel()
+    'crank angle from +y, clockwise [deg]'
+    """
+    require(
+        "chain_unit_motion",
+        None if order in (1, 2) else f"order must be 1 or 2, got {order!r}",
+        choice("link", link, ("coupler", "rocker")),
+    )
+    ax = axes(ax)
+    named = solutions_by_label(solutions, f"{link} rate")
+    require_turning(named)
+
+    def relative(solution):
+        turning, speed = getattr(four_bar_of(solution.mechanism), link).link, solution.crank_speed
+        if order == 1:
+            return solution.rate(turning) / speed
+        return solution.angular_acceleration(turning) / (speed * abs(speed))
+
+    named = with_peaks(named, relative)
+    curves = {name: period_curve(solution, relative(solution), FROM_Y_CLOCKWISE) for name, solution in named.items()}
+    draw_curves(ax, curves)
+    kind = "velocity" if order == 1 else "acceleration"
+    return finish_axes(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1, counted=FROM_Y_CLOCKWISE)
+
+
+def shaking_force(solutions, by="direction", ax=None):
+    """Polar hodograph of the shaking force, by its own direction or by crank angle (mower study, figures 6a, 6b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    by : "direction" or "crank angle"
+        What the polar angle is.
+    ax : polar Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
+    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
+    >>> ks.plots.shaking_force(solutions).name
+    'polar'
+    """
+    require("shaking_force", choice("by", by, ("direction", "crank angle")))
+    if ax is None:
+        ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
+    ax = axes(ax)
+    named = with_peaks(solutions_by_label(solutions, "shaking_force"), "shaking_force")
+    sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
+    factor, shown = display_unit("N", sizes.values())
+    largest = max(float(np.max(size)) for size in sizes.values())
+    for name, solution, style in with_line_styles(named):
+        x, y = solution.shaking_force
+        angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
+        zero = len(named) > 1 and np.max(sizes[name]) <= ZERO_TOLERANCE * largest
+        text = f"{name} (0)" if zero else name
+        ax.plot(*close_curve(np.array([angle, factor * sizes[name]])), linestyle=style, label=text)
+    way = "the angle of its direction, from +x" if by == "direction" else FROM_X.axis.replace(" [deg]", "")
+    ax.set_title(f"shaking force [{shown}] over {way}", fontsize="medium")
+    ax.set_rlabel_position(67.5)
+    if len(named) > 1:
+        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
+    return ax
+
+
+def require_turning(named):
+    """Refuse solutions of a crank at rest."""
+    still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
+    require(
+        "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
+    )
+
+
+MIN_MARK_STEP = 0.01
 """Least step of the crank-angle marks, degrees."""
 
 
@@ -60,15 +168,15 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     ('crank angle from +x, counter-clockwise [deg]', 2)
     """
     ax = axes(ax)
-    named = with_peaks(labelled(solutions, quantity), quantity)
+    named = with_peaks(solutions_by_label(solutions, quantity), quantity)
     read = {name: values(solution, quantity) for name, solution in named.items()}
-    declared = _declared(named, quantity)
-    factor, shown = display(declared.unit, list(read.values()))
-    curves = {name: in_order(named[name], factor * value, counted) for name, value in read.items()}
-    drawn_over_turn(ax, curves)
-    finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
-    peaks.framed(ax, [value for _, value in curves.values()], shown)
-    peaks.shaded(ax, named, curves, counted)
+    declared = _quantity_of(named, quantity)
+    factor, shown = display_unit(declared.unit, list(read.values()))
+    curves = {name: period_curve(named[name], factor * value, counted) for name, value in read.items()}
+    draw_curves(ax, curves)
+    finish_axes(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest_period(named), counted)
+    canvas.limit_axis(ax, [value for _, value in curves.values()], shown)
+    canvas.shade_gaps(ax, named, curves, counted)
     return ax
 
 
@@ -170,7 +278,7 @@ def acceleration_error(solutions, ax=None, slider=None):
     'crank angle from +x, counter-clockwise [deg]'
     """
     ax = axes(ax)
-    named = labelled(solutions, "slider acceleration")
+    named = solutions_by_label(solutions, "slider acceleration")
     require_turning(named)
     curves = {}
     for name, solution in named.items():
@@ -179,11 +287,13 @@ def acceleration_error(solutions, ax=None, slider=None):
         psi = solution.crank_angle - solution.mechanism.guides[slider or solution.mechanism.slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
-        curves[name] = in_order(solution, 100 * error, FROM_X)
-    drawn_over_turn(ax, curves)
-    finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named))
-    peaks.framed(ax, [value for _, value in curves.values()], "%")
-    peaks.shaded(ax, named, curves, FROM_X)
+        curves[name] = period_curve(solution, 100 * error, FROM_X)
+    draw_curves(ax, curves)
+    finish_axes(
+        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest_period(named)
+    )
+    canvas.limit_axis(ax, [value for _, value in curves.values()], "%")
+    canvas.shade_gaps(ax, named, curves, FROM_X)
     return ax
 
 
@@ -217,30 +327,30 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     >>> ax.get_aspect()
     1.0
     """
-    marks = singles("hodograph", marks=(marks, "deg", {"low": LEAST_MARKS}))["marks"]
+    marks = singles("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
     ax = axes(ax)
-    named = with_peaks(labelled(solutions, joint), joint)
+    named = with_peaks(solutions_by_label(solutions, joint), joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
-    declared = _declared(named, joint)
-    factor, shown = display(declared.unit, curves.values())
+    declared = _quantity_of(named, joint)
+    factor, shown = display_unit(declared.unit, curves.values())
     sizes = [np.hypot(*curve) for curve in curves.values()]
-    sight = in_sight(sizes)
+    sight = drawn_limit(sizes)
     whole = curves
     curves = {name: np.where(np.hypot(*curve) <= sight, curve, np.nan) for name, curve in curves.items()}
-    most = 2.0 * ordinary(sizes)
+    most = 2.0 * ordinary_size(sizes)
     extents = {name: factor * min(_extent(curve), most) for name, curve in curves.items()}
     whys: set[str] = set()
-    for name, solution, style in styled(named):
-        (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
-        rows = [row for row in _marked(solution, marks) if np.isfinite(curves[name][0, row])]
+    for name, solution, style in with_line_styles(named):
+        (line,) = ax.plot(*close_curve(factor * curves[name]), linestyle=style, label=name)
+        rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curves[name][0, row])]
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
-        ends = list(peaks.ends(solution, whole[name], curves[name]))
-        peaks.marked(ax, ends, factor * curves[name], line.get_color())
+        ends = list(canvas.curve_ends(solution, whole[name], curves[name]))
+        canvas.mark_ends(ax, ends, factor * curves[name], line.get_color())
         whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[name], 0.02 * max(extents.values()))
         period = np.degrees(solution.period)
-        texts = _shared(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
+        texts = _merge_labels(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
         for text, point in texts:
             label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
@@ -249,9 +359,9 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     ax.margins(0.1)
     notes = [f"× {why}" for why in sorted(whys)]
     if any(np.any(size > sight) for size in sizes):
-        notes.insert(0, f"▸ beyond the frame: {peaks.size([factor * size for size in sizes], shown)}")
+        notes.insert(0, f"▸ beyond the frame: {canvas.size_text([factor * size for size in sizes], shown)}")
     if notes:
-        peaks.noted(ax, notes)
+        canvas.write_notes(ax, notes)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):
@@ -269,7 +379,7 @@ def _degrees(solution):
     return np.degrees(solution.crank_angle)
 
 
-def _longest(named):
+def _longest_period(named):
     """Longest period of solutions, degrees."""
     return round(np.degrees(max(solution.period for solution in named.values())))
 
@@ -282,19 +392,19 @@ def _vector(solution, name):
     return vectors[name].read(solution)
 
 
-def _declared(named, name):
+def _quantity_of(named, name):
     """Unit and label of a quantity that all solutions have."""
     return quantities.quantity(next(iter(named.values())), name)
 
 
-def _marked(solution, step):
+def _rows_at_marks(solution, step):
     """Rows of the solution whose crank angles are multiples of a step in degrees, to half a degree."""
     period = np.degrees(solution.period)
     apart = np.mod(_degrees(solution) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
     return np.argmin(np.abs(apart), axis=1)[np.abs(apart).min(axis=1) < 0.5]
 
 
-def _shared(degrees, points, near):
+def _merge_labels(degrees, points, near):
     """Labels of points (2, M) by their crank angles, with their places: one for points nearer to each other than so."""
     labels: dict[int, list[str]] = {}
     for row, point in enumerate(points.T):

@@ -8,21 +8,20 @@ from matplotlib.lines import Line2D
 from ..machine.group import FRAME
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
-from . import symbols
-from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, labelled, styled
+from . import strokes
+from .canvas import ACCENT, FROM_X, INK, ZERO_TOLERANCE, axes, close_curve, solutions_by_label, with_line_styles
 from .labels import label
-from .shape import Shape, own_strokes, posed, whole_turn
-from .symbols import artist, put
+from .strokes import Shape, at_angles, set_points, stroke_artist, strokes_by_owner, whole_turn
 
-DEGREES = {"angles": checks.Number("deg", table=True)}
+ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
-    {"marker": symbols.MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
+    {"marker": strokes.MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
-WEIGHTS = ("counterweight", "bar")
+COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes that counterweights are drawn by."""
-FOOT = 3.0
+GROUND_DEPTH = 3.0
 """Room for the ground below a fixed pivot, half lengths of a block."""
 
 
@@ -51,18 +50,18 @@ def mass_centres(solutions, angle=60, ax=None):
     >>> ks.plots.mass_centres(solutions).get_aspect()
     1.0
     """
-    angle = checks.singles("mass_centres", angle=(angle, "deg", {}))["angle"]
-    named = labelled(solutions, "common mass centre")
+    angle = checks.single_numbers("mass_centres", angle=(angle, "deg", {}))["angle"]
+    named = solutions_by_label(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
     paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
-    for name, solution, style in styled(named):
+    for name, solution, style in with_line_styles(named):
         points = principal_points(solution.mechanism)
-        reach = np.abs(solution.position(leading(solution.mechanism))).max()
-        rests = np.ptp(paths[name], axis=1).max() < NOTHING * reach
+        reach = np.abs(solution.position(first_moving_joint(solution.mechanism))).max()
+        rests = np.ptp(paths[name], axis=1).max() < ZERO_TOLERANCE * reach
         shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
         text = f"{name} (at rest)" if rests else name
-        (line,) = ax.plot(*closed(paths[name]), label=text, zorder=5, **shown)
-        ax.plot(*points.mass_centre(posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
+        (line,) = ax.plot(*close_curve(paths[name]), label=text, zorder=5, **shown)
+        ax.plot(*points.mass_centre(at_angles(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
@@ -95,31 +94,33 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     >>> ks.plots.mechanism(ks.Scene(shaper, 6.0, loads=[ks.Gravity()]).solve(8), angles=(60,)).get_aspect()
     1.0
     """
-    angles = np.atleast_1d(checks.examined("mechanism", DEGREES, {"angles": angles})["angles"])
+    angles = np.atleast_1d(checks.check_values("mechanism", ANGLES_RULE, {"angles": angles})["angles"])
     checks.require("mechanism", None if angles.ndim == 1 else f"angles must be a row of numbers, got {angles}")
-    named, ax = labelled(solutions, ""), axes(ax)
+    named, ax = solutions_by_label(solutions, ""), axes(ax)
     solution = next(iter(named.values()))
-    shape, poses = still_parts(ax, solution), posed(solution, angles)
+    shape, poses = draw_fixed_parts(ax, solution), at_angles(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
-    once = [stroke for stroke, owners in own_strokes(named, angles[:1]) if len(owners) == len(named)]
+    once = [stroke for stroke, owners in strokes_by_owner(named, angles[:1]) if len(owners) == len(named)]
     moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
-            put(artist(ax, stroke, shade), stroke.points[..., row])
+            set_points(stroke_artist(ax, stroke, shade), stroke.points[..., row])
         for joint in moving:
             ax.plot(*poses.position(joint)[:, row], **PIN, alpha=shade, zorder=4)
     for name in shape.heavy:
         for style in MASS_CENTRE:
             ax.plot(*poses.position(name)[:, 0], **style)
-    for names, point in _together(poses, shape):
+    for names, point in _names_by_place(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
     gaps = np.any([np.isnan(poses.position(name)[0]) for name in moving], axis=0)
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
-        label(ax, text, poses.position(leading(poses.mechanism))[:, row], alpha=shade)
-    _draw_own(ax, [(stroke, owners) for stroke, owners in own_strokes(named, angles[:1]) if len(owners) < len(named)])
-    equal_scales(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
+        label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
+    _draw_own(
+        ax, [(stroke, owners) for stroke, owners in strokes_by_owner(named, angles[:1]) if len(owners) < len(named)]
+    )
+    set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
 
 
@@ -127,18 +128,18 @@ def _draw_own(ax, strokes):
     """What only some machines have, each machine's in a colour of its own, and whose it is in the legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
-        text = f"{'counterweight' if stroke.kind in WEIGHTS else 'load'}: {', '.join(owners)}"
+        text = f"{'counterweight' if stroke.kind in COUNTERWEIGHT_KINDS else 'load'}: {', '.join(owners)}"
         known = text in colours
         colour = colours.setdefault(text, f"C{len(colours)}")
-        drawn = artist(ax, stroke, 1.0)
+        drawn = stroke_artist(ax, stroke, 1.0)
         drawn.set(color=colour) if isinstance(drawn, Line2D) else drawn.set(fc=(colour, 0.12), ec=colour, alpha=None)
         drawn.set_label("_" if known else text)
-        put(drawn, stroke.points[..., 0])
+        set_points(drawn, stroke.points[..., 0])
     if colours:
         ax.legend(frameon=False, fontsize="small", loc="upper right")
 
 
-def still_parts(ax, solution):
+def draw_fixed_parts(ax, solution):
     """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
     made = solution.mechanism
     turn = whole_turn(solution)
@@ -149,22 +150,22 @@ def still_parts(ax, solution):
         ax.plot(*turn.position(bar.end), color=INK, lw=0.5, ls=":")
     for slider, guide in made.guides.items():
         along = np.asarray(guide.direction, dtype=float)
-        below, reach = 0.6 * shape.unit * symbols.left(along), 1.5 * shape.unit * along
+        below, reach = 0.6 * shape.unit * strokes.left(along), 1.5 * shape.unit * along
         start, end = shape.ways[slider].T
-        rail = symbols.hatched(start - reach - below, end + reach - below, 0.5 * shape.unit)
+        rail = strokes.hatched_line(start - reach - below, end + reach - below, 0.5 * shape.unit)
         ax.plot(*rail, color=INK, lw=0.8, alpha=0.6, zorder=1)
     for point in shape.grounds(solution.loads):
-        ax.plot(*point, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
+        ax.plot(*point, marker=strokes.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
         ax.plot(*point, **PIN, zorder=4)
     return shape
 
 
-def leading(made):
+def first_moving_joint(made):
     """First joint that moves, from the crank outwards; O where none does."""
     return next((name for name, point in made.joints.items() if point.link != FRAME), "O")
 
 
-def _together(poses, shape):
+def _names_by_place(poses, shape):
     """Names of joints with their place in the first pose, those that coincide together."""
     found: list[tuple[list[str], Any]] = []
     for name in shape.made.joints:
@@ -178,7 +179,7 @@ def _together(poses, shape):
     return found
 
 
-def equal_scales(ax, moving=()):
+def set_equal_scales(ax, moving=()):
     """Equal scales, for what is drawn and for what moves, places (N, 2)."""
     ax.relim()
     if len(moving):

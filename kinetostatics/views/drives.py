@@ -10,8 +10,17 @@ import numpy as np
 from ..drive.running import Running
 from ..numbers import checks
 from ..numbers.checks import require
-from .canvas import FROM_X, INK, axes, display, finished, labelled, single, styled
-from .peaks import with_peaks
+from .canvas import (
+    FROM_X,
+    INK,
+    axes,
+    display_unit,
+    finish_axes,
+    single_solution,
+    solutions_by_label,
+    with_line_styles,
+    with_peaks,
+)
 
 
 def crank_speed(runs, ax=None):
@@ -38,12 +47,12 @@ def crank_speed(runs, ax=None):
     """
     _require_running(runs)
     ax = axes(ax)
-    for name, run, style in styled(runs):
-        (line,) = ax.plot(*_closed(run, run.speed), linestyle=style, label=name)
+    for name, run, style in with_line_styles(runs):
+        (line,) = ax.plot(*_closed_curve(run, run.speed), linestyle=style, label=name)
         ax.axhline(run.mean_speed, color=line.get_color(), lw=0.8, ls=":")
     ax.plot([], [], color=INK, lw=0.8, ls=":", label="mean over time")
     ax.set_ylabel("crank speed [rad/s]")
-    return _finished(ax, runs.values())
+    return _finish(ax, runs.values())
 
 
 def drive_torques(run, ax=None):
@@ -75,12 +84,12 @@ def drive_torques(run, ax=None):
         "machine, with its inertia": run.crank_torque,
         "loads alone": run.solution.load_torque,
     }
-    factor, unit = display("N m", curves.values())
-    for name, values, style in styled(curves):
-        ax.plot(*_closed(run, factor * values), linestyle=style, label=name)
+    factor, unit = display_unit("N m", curves.values())
+    for name, values, style in with_line_styles(curves):
+        ax.plot(*_closed_curve(run, factor * values), linestyle=style, label=name)
     ax.set_ylabel(f"torque at the crank [{unit}]")
     ax.margins(y=0.2)  # room for the legend
-    _finished(ax, [run]).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
+    _finish(ax, [run]).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
     return ax
 
 
@@ -108,7 +117,7 @@ def energy_flow(runs, ax=None):
     """
     _require_running(runs)
     ax = axes(ax)
-    shown = parts_that_move_energy(runs)
+    shown = energy_parts(runs)
     flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}
     energies = {name: [flow.get(part, 0.0) for part in shown] for name, flow in flows.items()}
     largest = max((abs(value) for values in energies.values() for value in values), default=0.0)
@@ -131,7 +140,7 @@ def energy_flow(runs, ax=None):
     return ax
 
 
-def parts_that_move_energy(runs):
+def energy_parts(runs):
     """Names of the parts that give or take energy in a turn of any of the runs, in order."""
     parts = {part.name: None for run in runs.values() for part in run.energy_flow.parts}
     moving = {part.name for run in runs.values() for part in run.energy_flow.parts if part.energy}
@@ -147,12 +156,12 @@ def _require_running(runs):
     checks.require("plots", None if several and not wrong else f"{wanted}, got {given}")
 
 
-def _closed(run, values):
+def _closed_curve(run, values):
     """Crank angles in degrees and values, the first again at the end of the period."""
     return np.degrees(np.append(run.crank_angle, run.period)), np.append(values, values[0])
 
 
-def _finished(ax, runs):
+def _finish(ax, runs):
     period = round(np.degrees(max(run.period for run in runs)))
     ax.set_xlabel(FROM_X.axis)
     ax.set_xticks(range(0, period + 1, period // 4))
@@ -183,19 +192,19 @@ def lost_power(solution, ax=None):
     >>> ks.plots.lost_power(s).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    solution = single(solution)
+    solution = single_solution(solution)
     _require_friction({"solution": solution})
     ax = axes(ax)
     lost = solution.losses
     drawn = with_peaks({"": solution}, lost.power, *lost.powers.values())[""]
     angle = np.degrees(drawn.crank_angle)
     powers = {name: np.broadcast_to(power(drawn), angle.shape) for name, power in lost.powers.items()}
-    factor, unit = display("W", [np.sum(list(powers.values()), axis=0)])
+    factor, unit = display_unit("W", [np.sum(list(powers.values()), axis=0)])
     ax.stackplot(angle, *(factor * power for power in powers.values()), labels=list(powers), alpha=0.85, lw=0)
     ax.axhline(factor * lost.total, color=INK, ls="--", lw=1.0, label="mean")
-    ax = finished(ax, f"power lost [{unit}]", legend=False, period=round(np.degrees(solution.period)))
+    ax = finish_axes(ax, f"power lost [{unit}]", legend=False, period=round(np.degrees(solution.period)))
     ax.set_ylim(0, 1.08 * ax.dataLim.ymax or 1.0)
-    ax.legend(*_upside_down(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return ax
 
 
@@ -220,11 +229,11 @@ def losses(solutions, ax=None):
     >>> [text.get_text() for text in ks.plots.losses({"greased": s}).get_xticklabels()]
     ['greased']
     """
-    named = labelled(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
+    named = solutions_by_label(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
     _require_friction(named)
     ax = axes(ax)
     lost = {name: solution.losses for name, solution in named.items()}
-    factor, unit = display("W", [np.array([item.total for item in lost.values()])])
+    factor, unit = display_unit("W", [np.array([item.total for item in lost.values()])])
     parts = list(dict.fromkeys(part for item in lost.values() for part in item.lost))
     places, bottom = np.arange(len(lost)), np.zeros(len(lost))
     for part in parts:
@@ -240,11 +249,11 @@ def losses(solutions, ax=None):
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)
     ax.grid(axis="y", alpha=0.3)
     ax.set_axisbelow(True)
-    ax.legend(*_upside_down(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return ax
 
 
-def _upside_down(ax):
+def _reversed_legend(ax):
     """Legend in the order in which parts are stacked."""
     return tuple(item[::-1] for item in ax.get_legend_handles_labels())
 

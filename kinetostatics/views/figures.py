@@ -1,4 +1,9 @@
-"""The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files."""
+"""The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files.
+
+Figures of what a search found: cam, torque and support reaction before and after, and fronts.
+
+Figures of designs: fronts of two outputs.
+"""
 
 from functools import partial
 from pathlib import Path
@@ -9,14 +14,30 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ..design.pareto import Front
 from ..errors import CaseError, ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..numbers.files import unwritable, written_whole
+from ..numbers.files import write_atomically, write_problem
+from ..numbers.formatting import parse_heading
 from ..results.losses import lose
-from . import curves, drawings, drives, studies
-from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
-from .shape import loads_drawn, moves_alike
+from . import curves, drawings, drives
+from .canvas import (
+    ACCENT,
+    FROM_X,
+    FROM_Y_CLOCKWISE,
+    INK,
+    axes,
+    axis_words,
+    close_curve,
+    display_unit,
+    distinct_curves,
+    finish_axes,
+    with_line_styles,
+)
+from .curves import hodograph, torque
+from .drawings import mechanism
+from .strokes import load_strokes, moves_alike
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
@@ -51,15 +72,17 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     if problem:
         raise ParameterError(problem)
     paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in ([only] if only else figures)}
-    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
+    checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
     counted = FROM_Y_CLOCKWISE if _is_chain_unit(case) else FROM_X
-    pages = {name: partial(_numbered, figures[name], case.published.figures.get(name), counted) for name in paths}
-    return [saved(pages[name], solutions, paths[name], case, file_format) for name in progress(paths)]
+    pages = {
+        name: partial(_with_figure_number, figures[name], case.published.figures.get(name), counted) for name in paths
+    }
+    return [save_figure(pages[name], solutions, paths[name], case, file_format) for name in progress(paths)]
 
 
-def _numbered(draw, number, counted, solutions) -> Figure:
+def _with_figure_number(draw, number, counted, solutions) -> Figure:
     """A figure, with the number that it has in the study it is from, if it is from one."""
     figure = draw(solutions, counted)
     if number:
@@ -71,28 +94,28 @@ def _numbered(draw, number, counted, solutions) -> Figure:
 
 def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
-    bars = len(drives.parts_that_move_energy(runs)) * (1 + len(runs))
+    bars = len(drives.energy_parts(runs)) * (1 + len(runs))
     figures = {
-        "speed": lambda runs: _single(drives.crank_speed)(runs),
+        "speed": lambda runs: _one_axes(drives.crank_speed)(runs),
         "torque": lambda runs: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
-        "energy": lambda runs: _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
+        "energy": lambda runs: _one_axes(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
-    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
-    return [saved(figures[name], runs, path, case, "png") for name, path in paths.items()]
+    checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
+    return [save_figure(figures[name], runs, path, case, "png") for name, path in paths.items()]
 
 
-def saved(draw, solutions, path, case, file_format):
+def save_figure(draw, solutions, path, case, file_format):
     with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
         figure = draw(solutions)
         metadata = {"Date": None} if file_format == "svg" else {}
-        with written_whole(path) as temporary:
+        with write_atomically(path) as temporary:
             figure.savefig(temporary, format=file_format, dpi=150, metadata=metadata)
     plt.close(figure)
     return path
 
 
-def _that_have(quantity, items):
+def _having(quantity, items):
     return {name: item for name, item in items.items() if quantity in of_mechanism(item.mechanism)}
 
 
@@ -101,10 +124,10 @@ def _always(case):
 
 
 def _has(quantity):
-    return lambda case: bool(_that_have(quantity, case.variants))
+    return lambda case: bool(_having(quantity, case.variants))
 
 
-def _law_is_meant(case):
+def _compares_with_cosine_law(case):
     """Whether the slider of a variant is to follow a cosine law, and each variant has one slider to compare with it."""
     kinds = {getattr(getattr(item.table, "cam", None), "kind", None) for item in case.variants.values()}
     return "cosine-law" in kinds and all(item.mechanism.slider is not None for item in case.variants.values())
@@ -114,11 +137,11 @@ def _is_chain_unit(case):
     return all(item.table.mechanism == "chain-unit" for item in case.variants.values())
 
 
-def _rubs(case):
+def _has_friction(case):
     return any(map(lose, case.variants.values()))
 
 
-def _that_rub(solutions):
+def _with_friction(solutions):
     return {name: solution for name, solution in solutions.items() if lose(solution)}
 
 
@@ -126,7 +149,7 @@ def _is_balanced(case):
     return any(item.balanced is not None for item in case.variants.values())
 
 
-def _single(plot, width=6.4, height=4.0, **axes):
+def _one_axes(plot, width=6.4, height=4.0, **axes):
     """How a plot fills a page; crank angles are counted as the plot does."""
 
     def draw(solutions, _=FROM_X) -> Figure:
@@ -140,7 +163,7 @@ def _single(plot, width=6.4, height=4.0, **axes):
 def _over_turn(quantity):
     def draw(solutions, counted) -> Figure:
         figure, ax = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-        curves.over_turn(_that_have(quantity, solutions), quantity, ax=ax, counted=counted)
+        curves.over_turn(_having(quantity, solutions), quantity, ax=ax, counted=counted)
         return figure
 
     return draw
@@ -149,7 +172,7 @@ def _over_turn(quantity):
 def _hodographs(solutions, counted=FROM_X) -> Figure:
     """Hodographs of the support reaction, those that cover each other in one panel."""
     reactions = {name: solution.reaction("O") for name, solution in solutions.items()}
-    shown = {text: solutions[name] for text, name in distinct(reactions, apart=True).items()}
+    shown = {text: solutions[name] for text, name in distinct_curves(reactions, apart=True).items()}
     return _one_each(partial(curves.hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 
@@ -185,22 +208,22 @@ def _mechanisms(solutions, counted=FROM_X) -> Figure:
             same[name] = solution
     shown = {", ".join(group): group for group in alike}
     wide = max(map(_proportion, solutions.values()))
-    width = 8.0 if wide > WIDE else max(3.2, min(5.2, 5.5 * wide))
-    plot = partial(drawings.mechanism, angles=counted.from_x(POSES), counted=counted)
-    return _one_each(plot, shown, width, width / wide + LETTERING, 1 if wide > WIDE else 2)
+    width = 8.0 if wide > WIDE_RATIO else max(3.2, min(5.2, 5.5 * wide))
+    plot = partial(drawings.mechanism, angles=counted.from_x(DRAWN_ANGLES), counted=counted)
+    return _one_each(plot, shown, width, width / wide + TITLE_HEIGHT, 1 if wide > WIDE_RATIO else 2)
 
 
-POSES = (40.0, 160.0, 280.0)
+DRAWN_ANGLES = (40.0, 160.0, 280.0)
 """Crank angles at which mechanisms are drawn, degrees."""
-WIDE = 1.7
+WIDE_RATIO = 1.7
 """Width over height of a mechanism from which on it is drawn across a page."""
-LETTERING = 0.8
+TITLE_HEIGHT = 0.8
 """Height of title and labels of axes, inches."""
 
 
 def _most_loaded(solutions):
     """Name of the variant of whose loads a drawing shows most, the last of several."""
-    strokes = {name: len(loads_drawn(solution, POSES[:1])) for name, solution in solutions.items()}
+    strokes = {name: len(load_strokes(solution, DRAWN_ANGLES[:1])) for name, solution in solutions.items()}
     return max(reversed(strokes), key=strokes.__getitem__)
 
 
@@ -215,16 +238,16 @@ def _overview(solutions, counted=FROM_X) -> Figure:
     many = len(shown)
     rows: list[Any] = [["mechanism", "torque"], shown]
     widths = heights = None
-    if wide > 1.5 * WIDE:
+    if wide > 1.5 * WIDE_RATIO:
         rows, heights = [["mechanism"] * (1 + many), ["torque", *shown]], [0.8, 1.0]
-    elif wide < 1 / WIDE or many == 1:
-        left = float(np.clip(5.4 * wide + LETTERING, 2.0, 4.0))
+    elif wide < 1 / WIDE_RATIO or many == 1:
+        left = float(np.clip(5.4 * wide + TITLE_HEIGHT, 2.0, 4.0))
         rows = [["mechanism", *["torque"] * many], ["mechanism", *shown]]
         widths = [left, *[(11.0 - left) / many] * many]
     figure, axes = plt.subplot_mosaic(
         rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
     )
-    drawings.mechanism(solutions[drawn], angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
+    drawings.mechanism(solutions[drawn], angles=counted.from_x(DRAWN_ANGLES), ax=axes["mechanism"], counted=counted)
     axes["mechanism"].set_title(f"{drawn}: {solutions[drawn].mechanism.name}")
     curves.torque(solutions, ax=axes["torque"], counted=counted)
     axes["torque"].set_title("torque the drive must give")
@@ -238,22 +261,164 @@ FIGURES = {
     "overview": (_overview, _always),
     "mechanism": (_mechanisms, _always),
     "torque": (_over_turn("balancing_torque"), _always),
-    "acceleration_error": (_single(curves.acceleration_error), _law_is_meant),
+    "acceleration_error": (_one_axes(curves.acceleration_error), _compares_with_cosine_law),
     "hodograph": (_hodographs, _always),
     "pressure_angle": (_over_turn("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_over_turn("cam_force"), _has("cam_force")),
-    "losses": (lambda solutions, _: _single(drives.losses)(_that_rub(solutions)), _rubs),
-    "lost_power": (lambda solutions, _: _one_each(drives.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
-    "mass_centres": (_single(drawings.mass_centres, 9.0, 3.6), _is_balanced),
-    "shaking_by_direction": (_single(studies.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
+    "losses": (lambda solutions, _: _one_axes(drives.losses)(_with_friction(solutions)), _has_friction),
+    "lost_power": (
+        lambda solutions, _: _one_each(drives.lost_power, _with_friction(solutions), 6.4, 3.2, 1),
+        _has_friction,
+    ),
+    "mass_centres": (_one_axes(drawings.mass_centres, 9.0, 3.6), _is_balanced),
+    "shaking_by_direction": (_one_axes(curves.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (
-        _single(partial(studies.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
+        _one_axes(partial(curves.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
         _is_balanced,
     ),
     **{
-        f"{link}_{kind}": (_single(partial(studies.chain_unit_motion, link=link, order=order)), _is_chain_unit)
+        f"{link}_{kind}": (_one_axes(partial(curves.chain_unit_motion, link=link, order=order)), _is_chain_unit)
         for link in ("coupler", "rocker")
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },
 }
 """Figure by name: how it is drawn, and the cases it applies to."""
+
+
+def front(found, ax=None):
+    """Designs of which none is better in both outputs, as `ks.design.pareto` finds them, and the source.
+
+    Parameters
+    ----------
+    found : design.Front
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> vary = {"spring.stiffness": (100e3, 900e3)}
+    >>> found = ks.design.pareto(saw, vary, ("largest_absolute B", "rms balancing_torque"), points=3, angles=90)
+    >>> ks.plots.front(found).has_data()
+    True
+    """
+    ax = axes(ax)
+    scales, headings = [], []
+    for column in list(found.table.columns)[:2]:
+        name, unit = parse_heading(column)
+        factor, shown = display_unit(unit, [found.table[column].to_numpy()])
+        scales.append(factor)
+        headings.append(axis_words(f"{name} [{shown or '1'}]"))
+    first, second = (found.table.iloc[:, place].to_numpy() * scales[place] for place in (0, 1))
+    ax.plot(second, first, "o-", color=INK, label="best designs")
+    before = [value * scale for value, scale in zip(found.before, scales, strict=True)]
+    ax.plot(before[1], before[0], "x", color=ACCENT, label="before")
+    ax.set_ylabel(headings[0])
+    ax.set_xlabel(headings[1])
+    ax.grid(alpha=0.3)
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+ANGLES_PER_TURN = 720
+
+
+def draw_designs(case, found, folder, file_format="png"):
+    """Draw what designs of a case found, by name, into a folder, a page for each; returns the paths."""
+    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in found}
+    checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
+    pages = {
+        name: partial(front_page if isinstance(item, Front) else before_and_after, item) for name, item in found.items()
+    }
+    return [
+        save_figure(lambda _, draw=pages[name]: draw(), {}, path, case, file_format) for name, path in paths.items()
+    ]
+
+
+def before_and_after(found):
+    """Before and after a search: cam, torque, support reaction.
+
+    Parameters
+    ----------
+    found : Found
+        As `ks.design.torque_free_cam` and `ks.design.optimise` return it.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=2, gravity=False)
+    >>> figure = ks.plots.before_and_after(found)
+    >>> len(figure.axes)
+    6
+    """
+    scenes = {"before": found.before, "after": found.scene}
+    solutions = {name: scene.solve(ANGLES_PER_TURN) for name, scene in scenes.items()}
+    cams = {name: cam for name, scene in scenes.items() if (cam := cam_of(scene)) is not None}
+    upper = ["cam", "torque", "torque after"] if cams else ["torque", "torque", "torque after"]
+    rows: Any = [upper, ["radius" if cams else "mechanism", *scenes]]
+    figure, parts = plt.subplot_mosaic(rows, figsize=(11.5, 6.8), layout="constrained")
+    if cams:
+        pitch_curves(cams, ax=parts["cam"])
+        parts["cam"].set_title("pitch curve of the cam")
+        cam_radius(cams, ax=parts["radius"])
+        parts["radius"].set_title("its distance from O, over the turn")
+    else:
+        mechanism(solutions["after"], ax=parts["mechanism"])
+        parts["mechanism"].set_title("after")
+    torque(solutions, ax=parts["torque"])
+    torque({"after": solutions["after"]}, ax=parts["torque after"])
+    parts["torque"].set_title("torque the drive must give")
+    parts["torque after"].set_title("after alone")
+    for name, solution in solutions.items():
+        hodograph(solution, ax=parts[name], marks=45)
+        parts[name].set_title(f"support reaction, {name}")
+    return figure
+
+
+def front_page(found):
+    figure, ax = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    front(found, ax=ax)
+    return figure
+
+
+def cam_of(scene):
+    """First cam of a scene that is fixed to the frame; None without one."""
+    return next((group.cam for group in scene.mechanism.led_by_ground), None)
+
+
+def pitch_curves(cams, ax=None):
+    """Pitch curves of cams by label, around O."""
+    ax = axes(ax)
+    angle = np.linspace(0.0, 2 * np.pi, ANGLES_PER_TURN, endpoint=False)
+    for name, cam, style in with_line_styles(cams):
+        radius = cam.radius(angle)[0]
+        ax.plot(*close_curve(1e3 * radius * np.array([np.cos(angle), np.sin(angle)])), linestyle=style, label=name)
+    ax.plot(0.0, 0.0, "k+", ms=8)
+    ax.annotate("O", (0.0, 0.0), xytext=(4, 4), textcoords="offset points")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlabel="x [mm]", ylabel="y [mm]")
+    ax.legend(frameon=False, fontsize="small", loc="center", bbox_to_anchor=(0.5, 0.3))
+    return ax
+
+
+def cam_radius(cams, ax=None):
+    """Distance of pitch curves from O over the crank angle, by label."""
+    ax = axes(ax)
+    angle = np.linspace(0.0, 2 * np.pi, ANGLES_PER_TURN + 1)
+    curves = [1e3 * cam.radius(angle)[0] for cam in cams.values()]
+    for (name, _, style), curve in zip(with_line_styles(cams), curves, strict=True):
+        ax.plot(np.degrees(angle), curve, linestyle=style, label=name)
+    finish_axes(ax, "radius [mm]", len(cams) > 1)
+    ax.lines[-1].remove()  # the line at zero, far below
+    low, high = min(map(np.min, curves)), max(map(np.max, curves))
+    ax.set_ylim(low - 0.08 * (high - low), high + 0.25 * (high - low))
+    return ax

@@ -12,11 +12,11 @@ DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 """Ways from a point to its label, the first of them preferred."""
 DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0)
 """Between a point and the nearest side of its label, points of print."""
-LED = 14.0
+LEADER_DISTANCE = 14.0
 """Distance from which on a line leads from the label to its point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
 """What it costs a label to lie there; a farther place costs up to 1."""
-ROUNDS = 3
+PLACEMENT_ROUNDS = 3
 """How often each label is placed: first beside those before it, then beside all others."""
 
 
@@ -41,9 +41,11 @@ class Labels(Artist):
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = _Places.around(point, size.width, size.height, scale)
-            frees.append((places, STEPS + self._costs(places.boxes, points, np.concatenate([NO_BOX, *marks]), paths)))
+            frees.append(
+                (places, DISTANCE_COSTS + self._costs(places.boxes, points, np.concatenate([NO_BOX, *marks]), paths))
+            )
         chosen: list[tuple] = []
-        for place in list(range(len(shown))) * ROUNDS:
+        for place in list(range(len(shown))) * PLACEMENT_ROUNDS:
             others = chosen[:place] + chosen[place + 1 :]
             places, costs = frees[place]
             best = int(np.argmin(costs + places.met(others)))
@@ -93,7 +95,7 @@ def _boxes_of_markers(line, scale):
     return (corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4)
 
 
-STEPS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
+DISTANCE_COSTS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
 
 
 class _Places(NamedTuple):
@@ -122,7 +124,7 @@ class _Places(NamedTuple):
         boxes = np.hstack([point + offsets, point + offsets + [width, height]])
         leaders = [
             Path([point, np.clip(point, box[:2], box[2:])]) if far else None
-            for far, box in zip(distance > LED, boxes, strict=True)
+            for far, box in zip(distance > LEADER_DISTANCE, boxes, strict=True)
         ]
         return cls(offsets, boxes, leaders)
 

@@ -9,11 +9,19 @@ quantity that the mechanism has not is a `QuantityError`, a batch of designs a `
 from .animations import animation
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
-from .curves import acceleration_error, cam_force, hodograph, over_turn, pressure_angle, torque
-from .designs import before_and_after, front
+from .curves import (
+    acceleration_error,
+    cam_force,
+    chain_unit_motion,
+    hodograph,
+    over_turn,
+    pressure_angle,
+    shaking_force,
+    torque,
+)
 from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
-from .studies import chain_unit_motion, shaking_force
+from .figures import before_and_after, front
 
 __all__ = [
     "acceleration_error",

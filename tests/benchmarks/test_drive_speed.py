@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import kinetostatics as ks
-from kinetostatics.drive.one_dof import Driven
+from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.studies.methods.running import study_running
 from support import DATA
 from support.speed import PLAIN, SPEED
@@ -39,7 +39,7 @@ class Rivals:
     """DOP853 on energy by crank angle, from the synchronous speed."""
 
     def __init__(self):
-        self.driven = Driven("benchmark", SCENE, MOTOR, 1000.0, "compiled")
+        self.driven = DrivenMachine("benchmark", SCENE, MOTOR, 1000.0, "compiled")
         self.here = self.driven.here(0.0, SPEED)[0]
 
     def turn(self, speed):

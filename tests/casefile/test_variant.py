@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.build import guide_of, link_of
+from kinetostatics.casefile.build import build_guide, build_link
 from kinetostatics.casefile.variant import NoSuchNameError
 from support.case_chains import EXAMPLES, IN_PYTHON
 from support.case_files import shipped
@@ -113,17 +113,17 @@ def guide(**values):
 
 def test_a_centre_at_mid_length_needs_a_length():
     table = SimpleNamespace(mass=2.0, centre="mid-length", inertia=0.1)
-    assert link_of(table, 0.6).centre == (0.3, 0.0)
+    assert build_link(table, 0.6).centre == (0.3, 0.0)
     with pytest.raises(ks.KinetostaticsError, match="is for links between two joints"):
-        link_of(table)
+        build_link(table)
 
 
 def test_guide_takes_points_or_numbers_not_both():
-    assert guide_of(guide()).is_level
-    assert guide_of(guide(guide_angle=0.3)).guide_angle == 0.3
-    assert guide_of(guide(guide_through=((0.0, 1.0), (1.0, 1.0)))).guide_offset == 1.0
+    assert build_guide(guide()).is_level
+    assert build_guide(guide(guide_angle=0.3)).guide_angle == 0.3
+    assert build_guide(guide(guide_through=((0.0, 1.0), (1.0, 1.0)))).guide_offset == 1.0
     with pytest.raises(ks.KinetostaticsError, match="either guide_through or"):
-        guide_of(guide(guide_through=((0.0, 1.0), (1.0, 1.0)), guide_angle=0.3))
+        build_guide(guide(guide_through=((0.0, 1.0), (1.0, 1.0)), guide_angle=0.3))
 
 
 # What designs may vary in a case

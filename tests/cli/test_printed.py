@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from kinetostatics.cli import main
-from kinetostatics.cli.output import print_table, say
+from kinetostatics.cli.output import print_folded, print_table
 from support.every import every
 
 NUMBERS = {
@@ -55,7 +55,7 @@ def test_a_table_fits_the_line_and_loses_nothing(columns, monkeypatch, capsys):
 def test_a_long_name_stays_whole(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "40")
     print_table(pd.DataFrame({"value": [1.0]}, index=["x" * 90]))
-    say("y" * 90)
+    print_folded("y" * 90)
     printed = capsys.readouterr().out
     assert "x" * 90 in printed
     assert "y" * 90 in printed

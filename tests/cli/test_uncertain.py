@@ -16,13 +16,15 @@ PLAIN = ["run", CASE, "--variant", "plain", "--angles", "36", "--uncertain", "cr
 
 
 def test_sizes_go_to_the_variants_with_that_number():
-    found = sweep_commands.inputs(SAW, ["plain", "cam-cosine"], ["crank_length=0.01 mm", "slider.mass = 2 kg"])
+    found = sweep_commands.standard_uncertainties(
+        SAW, ["plain", "cam-cosine"], ["crank_length=0.01 mm", "slider.mass = 2 kg"]
+    )
     wanted = {"crank_length": pytest.approx(1e-5), "slider.mass": 2.0}
     assert found == {"plain": wanted, "cam-cosine": {"slider.mass": 2.0}}
 
 
 def test_given_sizes_precede_tolerances_of_the_case():
-    found = sweep_commands.inputs(SAW, ["cam-circle"], ["tolerances", "slider.mass=2 kg"])["cam-circle"]
+    found = sweep_commands.standard_uncertainties(SAW, ["cam-circle"], ["tolerances", "slider.mass=2 kg"])["cam-circle"]
     assert found["spring.stiffness"] == pytest.approx(7e3)
     assert found["block.mass"] == pytest.approx(20.0 / 12.0**0.5)  # uniform
     assert found["slider.mass"] == 2.0
@@ -38,12 +40,12 @@ def test_given_sizes_precede_tolerances_of_the_case():
 ])  # fmt: skip
 def test_what_is_no_uncertainty_is_refused_all_at_once(texts, message):
     with pytest.raises(ks.ParameterError, match=message):
-        sweep_commands.inputs(SAW, ["plain"], texts)
+        sweep_commands.standard_uncertainties(SAW, ["plain"], texts)
 
 
 def test_a_case_without_tolerances_says_so():
     with pytest.raises(ks.ParameterError, match=r"toggle_press.toml has no \[tolerances\]"):
-        sweep_commands.inputs(ks.load_case("toggle_press"), ["idle"], ["tolerances"])
+        sweep_commands.standard_uncertainties(ks.load_case("toggle_press"), ["idle"], ["tolerances"])
 
 
 def test_run_prints_uncertainty_and_its_sources(monkeypatch, capsys):

@@ -36,7 +36,7 @@ def test_two_materials_press_by_mean_compliance():
 
 def test_steel_on_steel_has_the_handbook_factor():
     """p0 = 0.418 sqrt(F E / (w R)) for equal moduli and a ratio of 0.3 (Dubbel; Hertz's formula by Stribeck)."""
-    modulus = roller.modulus(STEEL, STEEL)
+    modulus = roller.contact_modulus(STEEL, STEEL)
     assert roller.pressure(5e3, 0.02, modulus, 0.04) == pytest.approx(
         0.418 * np.sqrt(5e3 * 210e9 / (0.02 * 0.04)), rel=6e-4
     )

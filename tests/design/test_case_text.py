@@ -13,7 +13,7 @@ CASES = ("sawframe_2r63", "mower_drive", "chain_unit", "in_line_twin")
 def test_shipped_scenes_written_and_read_are_the_same(tmp_path, name):
     case = ks.load_case(name)
     scenes = {variant: item.scene for variant, item in case.variants.items()}
-    read = ks.load_case(case_text.write(tmp_path / "again.toml", case.title, scenes))
+    read = ks.load_case(case_text.write_case(tmp_path / "again.toml", case.title, scenes))
     assert read.title == case.title
     for variant, item in case.variants.items():
         np.testing.assert_array_equal(read.solve(variant, 24).balancing_torque, item.solve(24).balancing_torque)
@@ -44,7 +44,7 @@ def test_groups_loads_and_friction_are_written(tmp_path):
     )
     friction = {"O": ks.PinFriction(0.1, 0.01), "guide": ks.GuideFriction(0.05, 0.1)}
     scene = ks.Scene(ks.Mechanism("odd one", ks.Crank(None, link), groups), 12.0, 3.0, loads, friction)
-    read = ks.load_case(case_text.write(tmp_path / "odd.toml", "Odd", {"one": scene})).variant("one").scene
+    read = ks.load_case(case_text.write_case(tmp_path / "odd.toml", "Odd", {"one": scene})).variant("one").scene
     assert read.mechanism.name == "odd one"
     for name in ("O", "guide", "D", "cam_force", "contact_pressure", "balancing_torque"):
         one, other = (ks.extremes(item.solve(12), name).range for item in (scene, read))
@@ -73,7 +73,7 @@ def test_a_design_is_written_with_its_reference(tmp_path):
 def test_what_case_files_have_no_text_for_is_refused(tmp_path, load, message):
     scene = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 10.0, loads=load)
     with pytest.raises(ks.ParameterError, match=message):
-        case_text.write(tmp_path / "no.toml", "No", {"one": scene})
+        case_text.write_case(tmp_path / "no.toml", "No", {"one": scene})
     assert not (tmp_path / "no.toml").exists()
 
 
@@ -92,7 +92,7 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
         "two turns": ks.Scene(pump, 10.0, loads=loads),
         "diagram": ks.Scene(pump, 10.0, loads=ks.ProcessForce(DIAGRAM)),
     }
-    read = ks.load_case(case_text.write(tmp_path / "made.toml", "Made", scenes))
+    read = ks.load_case(case_text.write_case(tmp_path / "made.toml", "Made", scenes))
     files = {"cam_cam", "two-turns_load_1", "two-turns_load_2", "diagram_load_1"}
     assert {path.stem.removeprefix("made_") for path in tmp_path.glob("*.csv")} == files
     for name, scene in scenes.items():
@@ -100,11 +100,11 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
         assert one.period == other.period
         np.testing.assert_allclose(other.balancing_torque, one.balancing_torque, rtol=1e-13, atol=1e-13)
     with pytest.raises(ks.errors.FileError, match="there already"):
-        case_text.write(tmp_path / "made.toml", "Made", scenes)
+        case_text.write_case(tmp_path / "made.toml", "Made", scenes)
 
 
 def test_a_cam_of_ones_own_is_refused(tmp_path):
     cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
     scene = ks.Scene(ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(1.0)), 10.0)
     with pytest.raises(ks.ParameterError, match="no text for a cam of the class LawCam"):
-        case_text.write(tmp_path / "no.toml", "No", {"one": scene})
+        case_text.write_case(tmp_path / "no.toml", "No", {"one": scene})

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design import measures
-from kinetostatics.design.constraints import wanted
+from kinetostatics.design.constraints import parse_output
 from kinetostatics.design.problem import Problem, true_value
 from kinetostatics.results.reductions import parsed
 from support.case_files import PLAIN, case_file
@@ -37,7 +37,7 @@ def test_outputs_over_two_turns_are_those_of_sweeps(name):
     table = ks.sweep(FOUR_STROKE, ks.designs.grid({"slider.mass": "1..2 kg:2"}), [text], progress=False)
     problem = Problem(FOUR_STROKE, {"slider.mass": (0.5, 3.0)}, ["balancing_torque"])
     for mass, expected in table.to_numpy(dtype=object)[:, :2]:
-        output = wanted(text, FOUR_STROKE)
+        output = parse_output(text, FOUR_STROKE)
         assert problem.output(output, np.array([mass]))[0] == pytest.approx(expected, rel=1e-7)
         assert true_value(output, FOUR_STROKE.varied({"slider.mass": mass})) == pytest.approx(expected, rel=1e-7)
 
@@ -62,7 +62,7 @@ roller = { radius = "50 mm", width = "60 mm", youngs_modulus = "210 GPa", poisso
     ).variant("cam")
     problem = Problem(told, vary, ["contact_pressure"])
     assert problem.start == pytest.approx([150e9, told.scene.parameters["coupler_length"]])
-    value, slopes = problem.output(wanted("largest contact_pressure", told), problem.start)
+    value, slopes = problem.output(parse_output("largest contact_pressure", told), problem.start)
     assert value > 0
     assert slopes[0] > 0  # a stiffer cam is pressed harder
 

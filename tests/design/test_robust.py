@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design.constraints import wanted
+from kinetostatics.design.constraints import parse_output
 from kinetostatics.design.problem import Problem
-from kinetostatics.design.robust import Sampled, harrell_davis
+from kinetostatics.design.robust import SampledOutput, harrell_davis_weights
 from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
@@ -59,7 +59,7 @@ def test_quantile_derivatives_equal_small_changes():
     circle = SAW.variant("cam-circle")
     problem = Problem(circle, vary, ["balancing_torque"], SAW.variant("plain"))
     for trim in (0.0, 0.02):
-        goal = Sampled(problem, wanted(RATIO, circle.scene), ks.design.Spread(0.1, CIRCLE, 32, trim), -1.0)
+        goal = SampledOutput(problem, parse_output(RATIO, circle.scene), ks.design.Spread(0.1, CIRCLE, 32, trim), -1.0)
         point = np.array([7.9e5, -0.021])
         _, slopes = goal(point)
         for place, step in enumerate((30.0, 2e-6)):
@@ -125,8 +125,8 @@ def test_peaks_beside_kinks_are_seen_in_each_machine():
     spread = ks.design.Spread(0.9, {"slider.mass": "normal 0 % +- 5 %"}, samples=16)
     output = "largest balancing_torque"
     found = ks.design.over_spread(scene, output, spread, samples=16)
-    sampled = Sampled(
-        Problem(scene, {"crank_length": (0.04, 0.06)}, ["balancing_torque"]), wanted(output, scene), spread, 1.0
+    sampled = SampledOutput(
+        Problem(scene, {"crank_length": (0.04, 0.06)}, ["balancing_torque"]), parse_output(output, scene), spread, 1.0
     )
     mass = 2.0 * (1.0 + sampled._deviations["slider.mass"])
     for value, own in zip(found, mass, strict=True):
@@ -142,6 +142,6 @@ def test_peaks_beside_kinks_are_seen_in_each_machine():
 
 
 def test_quantile_weights_sum_to_one():
-    weights = harrell_davis(0.05, 4096)
+    weights = harrell_davis_weights(0.05, 4096)
     assert weights.sum() == pytest.approx(1.0, abs=1e-12)
     assert weights @ np.linspace(0, 1, 4096) == pytest.approx(0.05, abs=1e-3)

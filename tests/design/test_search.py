@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.design import problem, search
-from kinetostatics.design.constraints import Demand, demand
+from kinetostatics.design.constraints import Constraint, parse_constraint
 from kinetostatics.results.reductions import parsed
 from support.improved_saws import CAM, CIRCLE, ENDS, FORCE, FRONT_OF, RATIO, SAW, SPRING, TORQUE, bound, front
 
@@ -39,19 +39,19 @@ class Circle:
         return float(values @ values), 2.0 * values
 
 
-LIMIT = Demand(parsed("mean_absolute balancing_torque"), "<=", 1.0)
+LIMIT = Constraint(parsed("mean_absolute balancing_torque"), "<=", 1.0)
 
 
 def test_a_small_miss_is_corrected_least():
-    values = search.restored(Circle([2.0, 2.0]), [LIMIT], np.array([0.6, 0.8]) * (1.0 + 1e-6))
+    values = search.restore_limits(Circle([2.0, 2.0]), [LIMIT], np.array([0.6, 0.8]) * (1.0 + 1e-6))
     assert_allclose(values, [0.6, 0.8], rtol=1e-12)
     kept = np.array([0.3, 0.4])
-    assert search.restored(Circle([2.0, 2.0]), [LIMIT], kept) is kept
+    assert search.restore_limits(Circle([2.0, 2.0]), [LIMIT], kept) is kept
 
 
 def test_what_is_made_good_stays_within_its_bounds():
-    level = Demand(LIMIT.output, "=", 1.0)
-    values = search.restored(Circle([0.6, 2.0]), [level], np.array([0.6, 0.8 - 1e-6]))
+    level = Constraint(LIMIT.output, "=", 1.0)
+    values = search.restore_limits(Circle([0.6, 2.0]), [level], np.array([0.6, 0.8 - 1e-6]))
     assert_allclose(values, [0.6, 0.8], rtol=1e-12)
     assert values[0] <= 0.6
 
@@ -63,7 +63,7 @@ def test_what_has_no_derivatives_is_not_made_good():
             return found, np.nan * slopes
 
     missed = np.array([0.6, 0.8]) * (1.0 + 1e-6)
-    assert search.restored(Corner([2.0, 2.0]), [LIMIT], missed) is missed
+    assert search.restore_limits(Corner([2.0, 2.0]), [LIMIT], missed) is missed
 
 
 # Texts of what is asked of a design
@@ -81,7 +81,7 @@ def test_what_has_no_derivatives_is_not_made_good():
     ],
 )
 def test_limits_are_read_with_their_units(text, expected):
-    found = demand(text, CIRCLE.scene)
+    found = parse_constraint(text, CIRCLE.scene)
     assert (found.relation, found.value) == (expected[0], pytest.approx(expected[1], rel=1e-15))
 
 

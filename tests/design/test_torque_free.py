@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.casefile.designs import CAM
-from kinetostatics.design.cam_start import Options, begun
+from kinetostatics.casefile.designs import CAM_KEYS
+from kinetostatics.design.cam_start import Options, starting_machine
 from kinetostatics.design.problem import Problem
-from kinetostatics.design.torque_free import least_squares, wave
+from kinetostatics.design.torque_free import least_squares, waviness
 from support.case_files import shipped
 from support.every import every
 
@@ -127,7 +127,7 @@ SAW_CASE = shipped("sawframe_2r63")
 
 
 def search(cosine, sine):
-    start = begun(SAW_CASE.variant("cam-cosine").scene, Options(cosine, sine))
+    start = starting_machine(SAW_CASE.variant("cam-cosine").scene, Options(cosine, sine))
     return start, Problem(start.machine, start.vary, ["balancing_torque", "slider_position"], None, 360)
 
 
@@ -162,7 +162,7 @@ def test_random_starts_reach_the_same_least_squares(harmonics):
 def test_smooth_cams_come_first():
     """Waves are counted from the second harmonic on."""
     names = ("cam.cosine.0", "cam.cosine.1", "cam.sine.3", "coupler_length")
-    assert [wave(name) for name in names] == [0.0, 0.0, 9.0, 0.0]
+    assert [waviness(name) for name in names] == [0.0, 0.0, 9.0, 0.0]
 
 
 # What carries the weight that a symmetric cam cannot
@@ -232,4 +232,4 @@ def test_options_of_function_and_case_files_agree():
     function = inspect.signature(ks.design.torque_free_cam).parameters
     for option in fields(Options):
         assert function[option.name].default == option.default
-    assert {"cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic"} == set(CAM)
+    assert {"cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic"} == set(CAM_KEYS)

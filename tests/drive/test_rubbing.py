@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.friction import driven_by
+from kinetostatics.drive.friction import driven_machine
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 CAM = ks.Scene(
@@ -113,10 +113,10 @@ def test_friction_that_jams_is_refused_with_its_angles():
 
 
 def test_the_summary_tells_the_power_lost_by_joint():
-    from kinetostatics.drive.savings import summary
+    from kinetostatics.drive.savings import running_table
 
     run = ks.drive.steady(RUBBING, MOTOR, 1000.0)
-    table = summary({"saw": run}, {"saw": None})["saw"]
+    table = running_table({"saw": run}, {"saw": None})["saw"]
     assert table["lost by friction, mean"] == run.mean_friction_loss
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
 
@@ -127,7 +127,7 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))
     press = ks.crank_slider(0.06, 0.26, slider=ks.Link(22.0))
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
-    driven = driven_by("start", scene, SMALL, 3.0)
+    driven = driven_machine("start", scene, SMALL, 3.0)
     senses = {"sense": 1.0, "friction.O.sense": 1.0}
     one = driven.rubbed(1.0, 12.0, 0.0, senses)
     several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)

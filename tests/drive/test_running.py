@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import kinetostatics as ks
-from kinetostatics.drive.savings import mistaken_speed, summary
+from kinetostatics.drive.savings import running_table, speed_hint
 from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, SAW, TURN, saw
 
 
@@ -80,7 +80,7 @@ KLOSS = ks.drive.Motor.kloss(5e3, 150.0, synchronous_speed=157.0, overload=2.5, 
 def test_machines_stand_side_by_side_with_units():
     scene = ks.Scene(PUMP, 1.0, loads=(ks.Gravity(), ks.Torque(-40.0, on="crank")))
     runs = {"line": ks.drive.steady(scene, DISC_MOTOR, 5.0), "Kloss": ks.drive.steady(scene, KLOSS, 5.0)}
-    table = summary(runs, {"line": None, "Kloss": ks.drive.start(scene, KLOSS, 5.0)})
+    table = running_table(runs, {"line": None, "Kloss": ks.drive.start(scene, KLOSS, 5.0)})
     assert list(table) == ["unit", "line", "Kloss"]
     for name, run in runs.items():
         assert table.loc["mean speed of the crank", name] == run.mean_speed
@@ -96,5 +96,5 @@ def test_a_motor_without_its_transmission_is_told():
     for transmission, told in ((1.0, True), (150.0, False)):
         motor = ks.drive.Motor.kloss(5e3, 150.0, synchronous_speed=157.0, overload=2.5, transmission=transmission)
         scene = ks.Scene(PUMP, 1.0, loads=(ks.Torque(-4.0, on="crank"),))
-        found = mistaken_speed(ks.drive.steady(scene, motor, 50.0), scene)
+        found = speed_hint(ks.drive.steady(scene, motor, 50.0), scene)
         assert (found is not None and "transmission of the motor, 1, right?" in found) == told

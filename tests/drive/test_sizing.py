@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.running import LIGHTEST, flywheel_for
+from kinetostatics.drive.running import MIN_FLYWHEEL_RATIO, find_flywheel
 from kinetostatics.errors import DriveError
 from support.drives import MOTOR, SAW, TURN
 
@@ -165,19 +165,19 @@ def machine(least=0.0, own=0.5, floor=0.0):
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
 @pytest.mark.parametrize("least", [0.0, 3.0])
 def test_flywheel_found_from_any_starting_value(unit, least):
-    inertia, running = flywheel_for(0.02, machine(least), unit)
+    inertia, running = find_flywheel(0.02, machine(least), unit)
     assert inertia == pytest.approx(49.5, rel=1e-12)
     assert running.fluctuation == pytest.approx(0.02, rel=1e-12)
 
 
 def test_lightest_sufficient_flywheel_is_given():
-    inertia, running = flywheel_for(0.5, machine(least=3.0, own=60.0), 8.0)
+    inertia, running = find_flywheel(0.5, machine(least=3.0, own=60.0), 8.0)
     assert inertia == pytest.approx(3.0, rel=1e-12)
     assert running.fluctuation < 0.5
-    tiny, _ = flywheel_for(0.5, machine(least=1e-9, own=60.0), 8.0)
-    assert tiny < 2 * LIGHTEST * 8.0
+    tiny, _ = find_flywheel(0.5, machine(least=1e-9, own=60.0), 8.0)
+    assert tiny < 2 * MIN_FLYWHEEL_RATIO * 8.0
 
 
 def test_unreachable_fluctuation_is_refused():
     with pytest.raises(DriveError, match=r"flywheel: even \S+ kg m2 do not bring the fluctuation to 0\.02"):
-        flywheel_for(0.02, machine(floor=0.1), 1.0)
+        find_flywheel(0.02, machine(floor=0.1), 1.0)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.friction import driven_by
-from kinetostatics.drive.stick_slip import followed, sense_from_rest
+from kinetostatics.drive.friction import driven_machine
+from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, RUBBING, SMALL
 
 PENDULUM = ks.Scene(
@@ -109,13 +109,13 @@ def test_start_from_an_unloaded_dead_centre_goes_on():
 
 def test_steep_machines_start_and_flat_ones_stay():
     """Gravity has an arm of 0.15 m on the crank of 2 kg, friction one of 0.1 times 0.05 m."""
-    hung = driven_by("test", PENDULUM, None, 0.06)
+    hung = driven_machine("test", PENDULUM, None, 0.06)
     assert [sense_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
 
 
 def test_motion_ends_at_its_target_speed():
-    hung = driven_by("test", PENDULUM, None, 0.06)
-    found = followed(hung, -1.0, 0.0, 5.0, target=-0.5)
+    hung = driven_machine("test", PENDULUM, None, 0.06)
+    found = integrate_motion(hung, -1.0, 0.0, 5.0, target=-0.5)
     assert found.end == "ready"
     assert found.rows[1, -1] == pytest.approx(-0.5, rel=1e-12)
     assert found.path(found.time)[:2] == pytest.approx(found.rows[:2], rel=1e-10, abs=1e-12)

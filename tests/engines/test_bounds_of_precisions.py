@@ -12,7 +12,7 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.jax_backend import Backend
 from kinetostatics.engines.program import Program
 from kinetostatics.errors import NotGivenError
-from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart
+from kinetostatics.numbers.arithmetic import NEGLIGIBLE_LENGTH, RELATIVE_OFFSET, UNIT_ROUNDOFF, offset_from_zero
 from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
@@ -105,7 +105,7 @@ def test_a_total_is_within_its_bound_by_every_engine(numba, jax):
         error = np.abs(backend.run(program, state, leaves)[0] - exact)
         bound = backend.bounds(program, state, leaves)[0]
         assert np.all(error <= bound)
-        assert np.max(bound) < 40 * (U if precision == "single" else UNIT)
+        assert np.max(bound) < 40 * (U if precision == "single" else UNIT_ROUNDOFF)
 
 
 def test_a_constant_that_is_no_single_number_is_rounded_too():
@@ -213,12 +213,15 @@ def test_functions_of_jax_on_the_processor_keep_to_their_ulp(jax, function, name
         assert np.max(np.abs(double - exact) / np.abs(exact)) <= DOUBLE.ulp[name] * 2.0**-53
 
 
-@every("arithmetic, unit", [(SINGLE, U), (DOUBLE, UNIT)])
+@every("arithmetic, unit", [(SINGLE, U), (DOUBLE, UNIT_ROUNDOFF)])
 def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
     """By a share of lengths, or by a unit that no distance sees; exact arithmetic moves neither."""
     graph = Graph()
     half, sizes = 0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1)
-    for moved, least in ((apart(half, sizes), APART * 7.0), (apart(half, UNSEEN), APART * UNSEEN)):
+    for moved, least in (
+        (offset_from_zero(half, sizes), RELATIVE_OFFSET * 7.0),
+        (offset_from_zero(half, NEGLIGIBLE_LENGTH), RELATIVE_OFFSET * NEGLIGIBLE_LENGTH),
+    ):
         (bound,) = ErrorBounds(graph, {}, arithmetic).of([moved])
         assert Program(None, [bound])._by_numbers(np.array([0.0]), [3.0, 4.0], (1,))[0, 0] >= least
 

@@ -20,7 +20,7 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Recording
 from kinetostatics.numbers import arithmetic
-from kinetostatics.numbers.arithmetic import ROUNDING
+from kinetostatics.numbers.arithmetic import SQUARE_TOLERANCE
 from support.every import every
 
 ANGLE = np.linspace(0.0, 6.0, 9)
@@ -69,7 +69,7 @@ def test_a_total_loses_nothing_in_any_engine():
     pytest.importorskip("numba")
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
-    outputs = (arithmetic.total(*parts), arithmetic.total(parts[0], graph.angle(), -parts[3]))
+    outputs = (arithmetic.compensated_sum(*parts), arithmetic.compensated_sum(parts[0], graph.angle(), -parts[3]))
     values, angles = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001], np.array([0.1, 0.7])
     program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
@@ -83,16 +83,19 @@ def test_a_rest_is_the_same_in_any_engine():
     graph = Graph()
     x, y, length = parts = [graph.parameter(place) for place in range(3)]
     whole, values = (x * x + y * y).sqrt(), [0.3, 0.4, 0.5000000000000001]
-    outputs = arithmetic.rest(whole, x, y), arithmetic.total(whole, -length, arithmetic.rest(whole, x, y))
+    outputs = (
+        arithmetic.length_error(whole, x, y),
+        arithmetic.compensated_sum(whole, -length, arithmetic.length_error(whole, x, y)),
+    )
     program = Program(Recording((), outputs, (), (), tuple(parts), (), graph))
     least = np.sqrt(0.3 * 0.3 + 0.4 * 0.4)
-    lost = arithmetic.rest(least, 0.3, 0.4)
+    lost = arithmetic.length_error(least, 0.3, 0.4)
     for compute in (program.by_numpy, program.by_loop):
         found = compute(np.zeros(1), values, (), (1,))
         np.testing.assert_array_equal(found[:, 0], [lost, math.fsum((least, -values[2], lost))])
 
 
-VALUES = (-1.0, -ROUNDING / 2, 0.0, 1e-300, 0.3, 2.0)
+VALUES = (-1.0, -SQUARE_TOLERANCE / 2, 0.0, 1e-300, 0.3, 2.0)
 
 
 @every("name", ["sin", "cos", "atan", "sqrt", "abs", "root", "divisor", "fma", "total"])
@@ -136,8 +139,8 @@ def test_memory_given_receives_the_same(operation):
 
 
 def test_a_root_forgives_rounding_only():
-    assert PLAIN["root"](-ROUNDING / 2, 1.0) == 0.0
-    assert math.isnan(PLAIN["root"](-3 * ROUNDING, 1.0))
+    assert PLAIN["root"](-SQUARE_TOLERANCE / 2, 1.0) == 0.0
+    assert math.isnan(PLAIN["root"](-3 * SQUARE_TOLERANCE, 1.0))
 
 
 def test_a_total_of_plain_numbers_too_large_is_infinite_or_nothing():

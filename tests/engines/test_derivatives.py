@@ -10,7 +10,7 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers import arithmetic
-from kinetostatics.numbers.parameter_tree import put_together
+from kinetostatics.numbers.parameter_tree import unflatten
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 SIZES = np.array([[0.9], [1.0], [1.1]])
@@ -68,7 +68,7 @@ def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name
             numbers = [flint.arb(float(number)) for number in leaves.numbers]
             numbers[place] *= 1 + share
             given = iter(numbers)
-            mechanism, speed, acceleration, loads, *_ = put_together(structure, lambda: next(given), None, None)
+            mechanism, speed, acceleration, loads, *_ = unflatten(structure, lambda: next(given), None, None)
             moved = Dynamics(mechanism, angle, speed, acceleration, loads)
             return {name: np.array([list(part) for part in components(moved, name)]) for name in quantities}
 
@@ -138,13 +138,13 @@ def test_value_and_slope_of_operations_are_those_of_sympy(name):
 
 @pytest.mark.parametrize("name", ["held", "sign", "rest"])
 def test_signs_and_numbers_that_are_held_have_no_slope(name):
-    functions = {"rest": lambda x: arithmetic.rest(x, 0.3 * x, 0.4)}
+    functions = {"rest": lambda x: arithmetic.length_error(x, 0.3 * x, 0.4)}
     value, slope = along_two_directions(functions.get(name, getattr(Elementary(), name)))
     assert np.isfinite(value[0])
     assert slope == 0.0
 
 
 def test_a_total_has_the_slopes_of_a_sum():
-    value, slopes = along_two_directions(lambda x: arithmetic.total(x, 0.2, -(x * x)))
+    value, slopes = along_two_directions(lambda x: arithmetic.compensated_sum(x, 0.2, -(x * x)))
     assert value[0] == pytest.approx(0.36, rel=1e-15)
     assert slopes[:, 0] == pytest.approx([-0.6, -1.2], rel=1e-15)

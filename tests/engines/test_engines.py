@@ -194,7 +194,7 @@ def test_without_numba_many_crank_angles_stay_with_numpy(threshold, monkeypatch)
 
 
 def test_the_threshold_is_a_million_crank_angles():
-    assert scenes.WORTH_COMPILING == 1_000_000
+    assert scenes.MIN_VALUES_COMPILED == 1_000_000
     assert "a million crank angles" in " ".join(ks.solve.__doc__.split())
 
 

@@ -23,7 +23,15 @@ from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.numba_backend import numba_available
 from kinetostatics.engines.program import Program, operations, program_of
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN, apart, rest, sign, total
+from kinetostatics.numbers.arithmetic import (
+    NEGLIGIBLE_LENGTH,
+    RELATIVE_OFFSET,
+    UNIT_ROUNDOFF,
+    compensated_sum,
+    length_error,
+    offset_from_zero,
+    sign,
+)
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, over_worst, solution
@@ -74,7 +82,13 @@ def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_ha
     one, two = graph.parameter(0), graph.parameter(1)
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
     values = bounds_of(graph, outputs, [3.0, 0.7])
-    wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
+    wanted = [
+        3.7 * UNIT_ROUNDOFF,
+        2.1 * UNIT_ROUNDOFF,
+        3.0 / 0.7 * UNIT_ROUNDOFF,
+        1.5 * 3.0 * UNIT_ROUNDOFF,
+        2 * 3.7 * 3.0 * UNIT_ROUNDOFF,
+    ]
     np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
 
@@ -83,7 +97,7 @@ def test_a_sign_is_no_rounding_of_what_it_multiplies(tight):
     graph = Graph()
     one, two = graph.parameter(0), graph.parameter(1)
     (bound,) = bounds_of(graph, [one.sign() * (one * two)], [-3.0, 0.7], tight)
-    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8)
+    assert bound == pytest.approx(2.1 * UNIT_ROUNDOFF, rel=1e-8)
 
 
 def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
@@ -99,7 +113,7 @@ def test_a_root_of_what_is_proven_to_be_negative_has_no_bound():
     graph = Graph()
     one, other, unit = map(graph.parameter, range(3))
     square = one * one - other * other
-    (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT, 2.0])
+    (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT_ROUNDOFF, 2.0])
     assert not np.isfinite(bound)
 
 
@@ -137,7 +151,7 @@ def test_products_with_the_number_zero_count_for_nothing():
     one, other = map(graph.parameter, range(2))
     rounded = one + other
     (bound,) = bounds_of(graph, [one * other + 0.0 * rounded], [3.0, 0.7])
-    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8, abs=0.0)
+    assert bound == pytest.approx(2.1 * UNIT_ROUNDOFF, rel=1e-8, abs=0.0)
 
 
 def test_a_bound_that_is_too_small_is_found(flint, monkeypatch):
@@ -208,30 +222,32 @@ def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
     whole = math.fsum(values)
-    bound, carried = bounds_of(graph, (total(*parts), total(parts[0] * parts[1], parts[2], parts[3])), values)
+    bound, carried = bounds_of(
+        graph, (compensated_sum(*parts), compensated_sum(parts[0] * parts[1], parts[2], parts[3])), values
+    )
     assert 1e-17 < abs(whole) < 1e-16
-    assert abs(whole) * UNIT <= bound < 1.001 * abs(whole) * UNIT
-    assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)
+    assert abs(whole) * UNIT_ROUNDOFF <= bound < 1.001 * abs(whole) * UNIT_ROUNDOFF
+    assert carried == pytest.approx(0.18 * UNIT_ROUNDOFF + abs(0.18 - 0.9) * UNIT_ROUNDOFF, rel=1e-8)
 
 
 def test_a_length_and_its_rest_are_bounded_together_where_they_are_taken_so():
     graph = Graph()
     x, y, other = map(graph.parameter, range(3))
     length = (x * x + y * y).sqrt()
-    lost = rest(length, x, y)
+    lost = length_error(length, x, y)
     sums = (
-        total(length, -other, lost),
-        total(other, -length, -lost),
-        total(length, -other),
-        total(length, -other, -lost),
+        compensated_sum(length, -other, lost),
+        compensated_sum(other, -length, -lost),
+        compensated_sum(length, -other),
+        compensated_sum(length, -other, -lost),
     )
     values = [0.3, 0.4, 0.5]
     ahead, back, alone, against = bounds_of(graph, sums, values)
     (off,) = bounds_of(graph, [lost], values)
-    exact = abs(rest(math.hypot(0.3, 0.4), 0.3, 0.4))
-    assert exact < 0.5 * UNIT
-    assert ahead == back < 1.001 * exact * UNIT + 5.0 * UNIT * UNIT
-    assert 0.5 * UNIT < alone < 2.0 * UNIT
+    exact = abs(length_error(math.hypot(0.3, 0.4), 0.3, 0.4))
+    assert exact < 0.5 * UNIT_ROUNDOFF
+    assert ahead == back < 1.001 * exact * UNIT_ROUNDOFF + 5.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF
+    assert 0.5 * UNIT_ROUNDOFF < alone < 2.0 * UNIT_ROUNDOFF
     assert against > alone
     assert off == pytest.approx(exact, rel=1e-8)
 
@@ -241,8 +257,8 @@ def test_parts_of_a_length_that_are_rounded_count_in_its_rest():
     x, y, other = map(graph.parameter, range(3))
     rounded = x * y
     length = (rounded * rounded + y * y).sqrt()
-    (bound,) = bounds_of(graph, [total(length, -other, rest(length, rounded, y))], [3.0, 0.1, 0.3])
-    assert bound > 0.3 * UNIT
+    (bound,) = bounds_of(graph, [compensated_sum(length, -other, length_error(length, rounded, y))], [3.0, 0.1, 0.3])
+    assert bound > 0.3 * UNIT_ROUNDOFF
 
 
 @every("digits, finite", [(30, True), (46, True), (52, True), (60, False)])
@@ -261,7 +277,7 @@ def test_a_guard_that_acts_is_an_error(form):
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     share = form(root, root.kept_off_zero(unit))
     (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
-    assert known < 12.0 * UNIT
+    assert known < 12.0 * UNIT_ROUNDOFF
     off = form(2.0**-20, 1e-3) - 1.0
     assert not acting < abs(off)
 
@@ -272,8 +288,8 @@ def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
     recorded = graph()
     one, other, unit = map(recorded.parameter, range(3))
     share = form((recorded.angle().cos() * one - other).forgiving_root(unit))
-    known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT))
-    assert known < 20.0 * UNIT
+    known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT_ROUNDOFF))
+    assert known < 20.0 * UNIT_ROUNDOFF
     assert not np.isfinite(doubtful)
 
 
@@ -295,7 +311,7 @@ def test_a_quotient_by_what_a_guard_makes_larger_elsewhere_keeps_its_own_bound()
     sine = graph.angle().sin()
     outputs = other / sine.kept_off_zero(unit), 1.0 / sine.kept_off_zero(unit), (sine + other) / sine
     bounds = bounds_of(graph, outputs, [0.3, 1e8], angle=1e-3)
-    assert bounds[-1] >= UNIT * 0.3e3
+    assert bounds[-1] >= UNIT_ROUNDOFF * 0.3e3
 
 
 def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
@@ -304,7 +320,7 @@ def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
     product = (graph.angle().cos() / small) * tiny
     found = *ErrorBounds(graph).of([product]), *tight_bounds(graph, {}, [product])
     bounds = Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
-    assert np.all(bounds >= UNIT * (5e-324 / 4.1e-193) * np.cos(1.0))
+    assert np.all(bounds >= UNIT_ROUNDOFF * (5e-324 / 4.1e-193) * np.cos(1.0))
 
 
 @every("function", [lambda part: part.arctan(), sign])
@@ -337,7 +353,7 @@ def test_a_root_of_what_is_or_may_be_negative_has_no_bound():
     product = (one * other).forgiving_root(unit)
     difference = (one * one - other * other).forgiving_root(unit)
     assert not np.isfinite(bounds_of(graph, [product], [1e-20, -1.0, 2.0])).any()
-    assert not np.isfinite(bounds_of(graph, [difference], [1.0, 1.0 + 6 * UNIT, 2.0])).any()
+    assert not np.isfinite(bounds_of(graph, [difference], [1.0, 1.0 + 6 * UNIT_ROUNDOFF, 2.0])).any()
     assert np.isfinite(bounds_of(graph, [difference, 1.0 / difference], [1.0, 0.9, 2.0])).all()
 
 
@@ -346,7 +362,7 @@ def test_a_guarded_divisor_is_off_by_what_its_guard_adds():
     one, other, unit = map(graph.parameter, range(3))
     guarded = 1.0 / (one * one - other * other).sqrt().kept_off_zero(unit)
     clear, acting = (bounds_of(graph, [guarded], [1.0, 0.5, unit])[0] for unit in (1e-8, 0.9))
-    assert clear < 4.0 * UNIT
+    assert clear < 4.0 * UNIT_ROUNDOFF
     assert 1.0 / 0.75**0.5 - 1.0 / 0.9 <= acting < 0.05
 
 
@@ -370,7 +386,7 @@ def test_a_total_of_given_numbers_is_bounded_by_few_roundings_of_itself():
     graph = Graph()
     parts = [graph.parameter(place) for place in range(4)]
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
-    (bound,) = bounds_of(graph, [total(*parts) * parts[0]], values)
+    (bound,) = bounds_of(graph, [compensated_sum(*parts) * parts[0]], values)
     assert bound < 1e-31
 
 
@@ -378,17 +394,17 @@ def test_a_length_and_its_rest_leave_few_roundings_of_what_a_design_is_off_anoth
     graph = Graph()
     x, y, other = (graph.parameter(place) for place in range(3))
     length = (x * x + y * y).sqrt()
-    off = total(length, rest(length, x, y), -other)
+    off = compensated_sum(length, length_error(length, x, y), -other)
     (bound,) = bounds_of(graph, [off * graph.angle().sin()], [0.21, 0.81, 0.83], angle=1.0)
-    assert bound < 8 * UNIT * (0.83679 - 0.83)
+    assert bound < 8 * UNIT_ROUNDOFF * (0.83679 - 0.83)
 
 
 def test_a_length_of_the_angle_and_its_rest_are_bounded_to_their_last_bits():
     graph = Graph()
     x, y = graph.parameter(0), graph.angle()
     length = (x * x + y * y).sqrt()
-    (bound,) = bounds_of(graph, [total(length, rest(length, x, y))], [0.21], angle=0.81)
-    assert 0.5 * UNIT * 0.83 < bound < 12 * UNIT * 0.84
+    (bound,) = bounds_of(graph, [compensated_sum(length, length_error(length, x, y))], [0.21], angle=0.81)
+    assert 0.5 * UNIT_ROUNDOFF * 0.83 < bound < 12 * UNIT_ROUNDOFF * 0.84
 
 
 def test_what_is_turned_by_the_sign_of_a_clear_sum_keeps_its_error():
@@ -396,7 +412,7 @@ def test_what_is_turned_by_the_sign_of_a_clear_sum_keeps_its_error():
     one, other = map(graph.parameter, range(2))
     turning = graph.angle().sin() * one - other
     (bound,) = bounds_of(graph, [sign(turning) * one], [3.0, 0.5], angle=1.0)
-    assert bound < 1e-9 * UNIT
+    assert bound < 1e-9 * UNIT_ROUNDOFF
 
 
 def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value():
@@ -404,13 +420,13 @@ def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value(
     one, other = map(graph.parameter, range(2))
     cosine = graph.angle().cos() * one - other
     (bound, alone) = bounds_of(graph, [one / (1.0 + abs(cosine)), cosine], [100.0, 50.0])
-    assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT) + 100.0 / 51.0 * UNIT)
+    assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT_ROUNDOFF) + 100.0 / 51.0 * UNIT_ROUNDOFF)
 
 
 def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
-    product = apart(one, UNSEEN) * other
+    product = offset_from_zero(one, NEGLIGIBLE_LENGTH) * other
     for dust in (OWN.dust, None):
         (bound,) = ErrorBounds(graph, arithmetic=OWN._replace(dust=dust)).of([product])
         values = Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
@@ -459,7 +475,7 @@ def test_a_sum_of_what_vanishes_with_what_turns_is_known_where_it_does(other):
     one, two = map(graph.parameter, range(2))
     turning = graph.angle().sin()
     (bound,) = bounds_of(graph, [one * turning - other(turning, two)], [0.3, 0.1], angle=1e-9)
-    assert bound < 8.0 * UNIT * 1e-9
+    assert bound < 8.0 * UNIT_ROUNDOFF * 1e-9
 
 
 def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound():
@@ -505,7 +521,7 @@ def test_a_reciprocal_of_a_tiny_number_is_none_to_tell_a_pivot_by():
     below = part - other
     outputs = 1e-250 / below, 1e-30 / below
     (_, bound) = bounds_of(graph, outputs, [2.0**90, 2.0**90], angle=1.0)
-    assert bound >= 3.5 * UNIT * 1e-30 / 2.0**270
+    assert bound >= 3.5 * UNIT_ROUNDOFF * 1e-30 / 2.0**270
 
 
 def test_no_random_graph_of_extreme_numbers_is_off_by_more_than_its_bounds(flint):
@@ -555,7 +571,7 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
-    assert max(error) <= OWN.ulp.get(function, OWN.ulp["atan"]) * UNIT
+    assert max(error) <= OWN.ulp.get(function, OWN.ulp["atan"]) * UNIT_ROUNDOFF
 
 
 @every("function", OTHER)
@@ -585,7 +601,7 @@ def test_one_less_a_sine_or_cosine_is_bounded_as_the_square_of_the_other_is_smal
         other = getattr(np, OTHER[function])(angle)
         for output in (part - side, side - part, part + -side):
             bound = bound_of(way, graph, output, angle, 0.3)
-            assert 0.5 * other * other * (distance < SMALL_TURN) <= bound < 8.0 * min(other * other, UNIT)
+            assert 0.5 * other * other * (distance < SMALL_TURN) <= bound < 8.0 * min(other * other, UNIT_ROUNDOFF)
 
 
 @every("way", BOUNDS)
@@ -595,7 +611,7 @@ def test_a_sign_that_may_be_the_other_is_no_known_one(way):
     angle, values = 1e-9, (0.1 + 0.2, 0.3)
     for unsure in ((given + 1.0) - (other + 1.0), graph.angle() - other):
         folded = sign(unsure) * graph.angle().cos() - 1.0
-        assert not bound_of(way, graph, folded, angle, *values) < UNIT
+        assert not bound_of(way, graph, folded, angle, *values) < UNIT_ROUNDOFF
     for sure in (given + 1e-300, given - other):  # one rounding turns no sign
         assert bound_of(way, graph, sign(sure) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
 
@@ -607,9 +623,9 @@ def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
     parts = [graph.parameter(place) for place in range(5)]
     for values, least in (([0.5, 0.2, -0.5, -0.2, 0.0], 1e-290), ([0.1, 0.2, -0.3, 1e-40, 1e-60], 1e-46)):
         exact = sum(map(Fraction, values))
-        off = abs(Fraction(total(*values)) - exact)
-        bound = Fraction(bound_of(way, graph, total(*parts) * graph.angle(), 1.0, *values))
-        assert off <= bound <= 9 * UNIT * abs(exact) + Fraction(least)
+        off = abs(Fraction(compensated_sum(*values)) - exact)
+        bound = Fraction(bound_of(way, graph, compensated_sum(*parts) * graph.angle(), 1.0, *values))
+        assert off <= bound <= 9 * UNIT_ROUNDOFF * abs(exact) + Fraction(least)
 
 
 @pytest.mark.slow
@@ -623,8 +639,8 @@ def test_what_is_moved_off_zero_to_have_a_direction_is_in_bounds(flint, family, 
 @every("way", BOUNDS)
 def test_what_is_moved_by_a_share_of_lengths_is_in_bounds(way):
     graph = Graph()
-    moved = apart(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
-    assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= APART * 7.0
+    moved = offset_from_zero(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
+    assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= RELATIVE_OFFSET * 7.0
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
@@ -638,11 +654,11 @@ def test_however_near_to_a_change_point_bounds_hold_or_are_infinite(flint, angle
 
 
 @every("way", BOUNDS)
-@every("given", [-1e-130, -0.9 * APART * UNSEEN])
+@every("given", [-1e-130, -0.9 * RELATIVE_OFFSET * NEGLIGIBLE_LENGTH])
 def test_a_sign_that_is_turned_by_what_moves_it_off_zero_is_no_known_one(way, given):
     """Along an axis a pivot so near to O is taken to lie on its other side."""
     graph = Graph()
-    folded = sign(apart(graph.parameter(0), UNSEEN)) * graph.angle().cos() - 1.0
+    folded = sign(offset_from_zero(graph.parameter(0), NEGLIGIBLE_LENGTH)) * graph.angle().cos() - 1.0
     assert not bound_of(way, graph, folded, 1e-9, given) < 1.0
     assert bound_of(way, graph, folded, 1e-9, 0.3) < 1e-17
 
@@ -670,7 +686,7 @@ def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_
         lambda root, one: one * one.graph.angle() - 0.0 * root,
         lambda root, one: (one + 0.0 * (1.0 + root)).sin(),
         lambda root, one: one / (one + 0.0 * root),
-        lambda root, one: total(one, one, 0.0 * root),
+        lambda root, one: compensated_sum(one, one, 0.0 * root),
         lambda root, one: sign(0.0 * root),
         lambda root, one: 0.0 * sign(root - one),
     ],

@@ -1,7 +1,7 @@
 """Formulas: recorded arithmetic as trees, gathered as by hand, the value kept."""
 
 from kinetostatics.engines.graph import Graph, Node
-from kinetostatics.explain.formats import TEXT, written
+from kinetostatics.explain.formats import TEXT, write_formula
 from kinetostatics.explain.formulas import formula, names_in
 from kinetostatics.explain.symbols import Symbol
 from tests.support.every import every
@@ -12,7 +12,7 @@ def spelled(make):
     graph = Graph()
     given = [graph.parameter(place) for place in range(3)]
     tree = formula(make(*given), set(given))
-    return written(tree, TEXT, lambda place: Symbol("abc"[place]))
+    return write_formula(tree, TEXT, lambda place: Symbol("abc"[place]))
 
 
 @every(

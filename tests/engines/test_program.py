@@ -18,7 +18,7 @@ from kinetostatics.engines.program import plausibility_test, program_of
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers import parameter_tree
-from kinetostatics.numbers.parameter_tree import put_together
+from kinetostatics.numbers.parameter_tree import unflatten
 from support import DATA
 from support.scenes import (
     ANGLES,
@@ -217,7 +217,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
 
     def beside(place, way):
         numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
-        mechanism, speed, acceleration, loads, *_ = put_together(structure, lambda: next(numbers), None, None)
+        mechanism, speed, acceleration, loads, *_ = unflatten(structure, lambda: next(numbers), None, None)
         moved = Dynamics(mechanism, angles, speed, acceleration, loads)
         return [part for quantity in names for part in components(moved, quantity)]
 

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, in_digits, written
+from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, format_number, write_formula
 from kinetostatics.explain.symbols import Symbol
 from tests.support.every import every
 
@@ -28,25 +28,25 @@ TREES = {
     ],
 )
 def test_symbols(style, name, text):
-    assert written(TREES[name], style, SYMBOLS.__getitem__) == text
+    assert write_formula(TREES[name], style, SYMBOLS.__getitem__) == text
 
 
 @every("value, text", [(-0.5, "(-0.5)/(-0.5)^2"), (2.0, "2/2^2"), (1e-7, "1e-07/(1e-07)^2")])
 def test_numbers_are_bracketed_where_they_must(value, text):
-    assert written(("quotient", A, ("power", A, 2)), TEXT, lambda place: value) == text
+    assert write_formula(("quotient", A, ("power", A, 2)), TEXT, lambda place: value) == text
 
 
 @every("name", TREES)
 def test_mathml_is_well_formed(name):
     for given in (SYMBOLS.__getitem__, [-1.5e-7, 3.0].__getitem__):
-        ET.fromstring(f"<math>{written(TREES[name], MATHML, given)}</math>")
+        ET.fromstring(f"<math>{write_formula(TREES[name], MATHML, given)}</math>")
 
 
 def test_values_have_six_digits_and_constants_all_theirs():
-    assert in_digits(1 / 3) == "0.333333"
-    assert in_digits(0.0) == "0"
-    assert in_digits(1 / 3, True) == "0.3333333333333333"
-    assert in_digits(2.0, True) == "2"
+    assert format_number(1 / 3) == "0.333333"
+    assert format_number(0.0) == "0"
+    assert format_number(1 / 3, True) == "0.3333333333333333"
+    assert format_number(2.0, True) == "2"
     assert LATEX.number(-2.5e-8) == r"-2.5 \cdot 10^{-8}"
     assert "−8" in MATHML.number(-2.5e-8)
 

@@ -1,7 +1,7 @@
 """Symbols: what numbers of a scene and quantities are called."""
 
 import kinetostatics as ks
-from kinetostatics.explain.symbols import Symbol, keys_of, of_path, symbol_of
+from kinetostatics.explain.symbols import Symbol, load_keys, path_symbol, quantity_symbol
 from tests.support.every import every
 
 
@@ -24,7 +24,7 @@ from tests.support.every import every
     ],
 )
 def test_numbers_of_a_scene(path, text):
-    assert of_path(path).text == text
+    assert path_symbol(path).text == text
 
 
 @every(
@@ -40,7 +40,7 @@ def test_numbers_of_a_scene(path, text):
     ],
 )
 def test_quantities(quantity, text):
-    assert symbol_of(quantity).text == text
+    assert quantity_symbol(quantity).text == text
 
 
 def test_a_symbol_as_text():
@@ -52,4 +52,4 @@ def test_a_symbol_as_text():
 
 def test_loads_of_a_kind_are_counted_as_in_paths():
     loads = (ks.Spring(1.0, 0.0), ks.Gravity(), ks.Spring(2.0, 0.0))
-    assert keys_of(loads) == ["spring", "gravity", "spring2"]
+    assert load_keys(loads) == ["spring", "gravity", "spring2"]

@@ -10,8 +10,8 @@ from kinetostatics.engines.engines import NUMPY
 from kinetostatics.engines.error_bounds import STRETCH, Error, ErrorBounds, tight_bounds
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, operations, program_of
-from kinetostatics.numbers.arithmetic import UNIT
-from kinetostatics.studies.places import PLACES
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
+from kinetostatics.studies.stability import PLACES
 from support.bounded import FAMILIES, errors, solution
 from support.case_files import shipped
 from support.every import every
@@ -49,7 +49,7 @@ def test_an_adjoint_is_not_lost_by_numbers_of_a_design_that_are_tiny():
     root = (row.kept_off_zero(unit) * tiny).forgiving_root(unit)
     (bound,) = tight_bounds(graph, {row: lambda bounds: Error(0.0, graph.row(1))}, [root])
     (least,) = Program(None, (bound,)).by_numpy(np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5), np.ones(1)], (1,))
-    assert least >= 0.5 * UNIT * (4e-164 / 3e-5) ** 0.5
+    assert least >= 0.5 * UNIT_ROUNDOFF * (4e-164 / 3e-5) ** 0.5
 
 
 def test_errors_of_what_is_used_twice_cancel():
@@ -57,8 +57,8 @@ def test_errors_of_what_is_used_twice_cancel():
     other, factor = map(graph.parameter, range(2))
     rounded = graph.angle() + other + other
     forward, tight = found(graph, rounded - factor * rounded, 1.0, 0.3, 1.0 + 2.0**-30)
-    assert forward > 7.0 * UNIT
-    assert tight == pytest.approx(1.6 * UNIT, rel=0.01, abs=0.0)
+    assert forward > 7.0 * UNIT_ROUNDOFF
+    assert tight == pytest.approx(1.6 * UNIT_ROUNDOFF, rel=0.01, abs=0.0)
 
 
 def test_what_a_design_fixes_has_the_errors_of_all_that_it_is_computed_from():
@@ -84,7 +84,7 @@ def test_functions_have_terms_of_second_order():
     graph, error = Graph(), 2.0**-23
     row = graph.row(0)
     found = ErrorBounds(graph, {row: lambda bounds: Error(0.0, graph.row(1))}, weight=STRETCH).of([row.sin()])
-    (bound,) = Program(None, found)._plain(0.0, 0.0, 1.0, [], [1.0, error / UNIT])
+    (bound,) = Program(None, found)._plain(0.0, 0.0, 1.0, [], [1.0, error / UNIT_ROUNDOFF])
     assert bound >= error + 0.5 * STRETCH * error**2
 
 
@@ -100,7 +100,7 @@ def test_where_terms_of_second_order_are_not_small_the_forward_bound_stands_in()
     graph = Graph()
     one, other = graph.angle(), graph.parameter(0)
     difference = one * one - other * other
-    forward, tight = found(graph, one / difference, 1.0, 1.0 + 100 * UNIT * STRETCH**0.5)
+    forward, tight = found(graph, one / difference, 1.0, 1.0 + 100 * UNIT_ROUNDOFF * STRETCH**0.5)
     assert np.isfinite(forward)
     assert not np.isfinite(tight)
     place = next(place for place in PLACES if place.name == "limit position")

@@ -5,14 +5,14 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
-from kinetostatics.explain.named_recording import node_of, result, told
+from kinetostatics.explain.named_recording import name_result, node_of, record_with_names
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.scenes import SCENES, everything, solve
 
 
 def named(solution, quantity):
-    made, recorder = told(solution.dynamics, {}, {})
-    return made, recorder, result(made, quantity, of_scene(solution)[quantity])
+    made, recorder = record_with_names(solution.dynamics, {}, {})
+    return made, recorder, name_result(made, quantity, of_scene(solution)[quantity])
 
 
 def test_every_quantity_is_computed_to_the_same_bits():
@@ -51,6 +51,8 @@ def test_headings_follow_the_calculation():
 
 
 def test_numbers_without_a_path_have_a_symbol_all_the_same():
-    made, _ = told(ks.solve(ks.crank_slider(0.05, 0.2), 0.7, crank_speed=1.0).dynamics, {0: "crank_length"}, {})
+    made, _ = record_with_names(
+        ks.solve(ks.crank_slider(0.05, 0.2), 0.7, crank_speed=1.0).dynamics, {0: "crank_length"}, {}
+    )
     symbols = [found.symbol.text for found in made.names.of.values() if found.kind == "given"]
     assert symbols == ["l_crank", "c_2", "c_3", "phi"]

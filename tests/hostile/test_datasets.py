@@ -303,7 +303,7 @@ def together(monkeypatch, other):
     """Let another sweep begin in the folder just before this one writes down that it is its own."""
     from kinetostatics.sweeps import dataset
 
-    create = dataset._create
+    create = dataset._write_new
 
     def late(path, text):
         monkeypatch.setattr(dataset, "_create", create)

@@ -109,7 +109,7 @@ def test_change_points_compare_equal_to_themselves(lengths):
 def test_a_change_point_beside_a_gap_is_no_gap():
     bodies = {"coupler": ks.Link(3.0, 1.5, 0.2), "rocker": ks.Link(2.0, 1.0, 0.1)}
     mechanism = ks.four_bar(0.4, 0.3, 0.4, rocker_pivot=(0.5, 0), **bodies)
-    gaps = assembly.gaps(mechanism)
+    gaps = assembly.gap_intervals(mechanism)
     assert np.degrees(gaps) == pytest.approx(np.array([[101.536959, 258.463041]]))
     solution = ks.solve(mechanism, np.linspace(0.5, 1.0, 20), crank_speed=5.0, loads=[ks.Gravity()])
     with pytest.warns(ks.ConditionWarning, match="around crank angles 0 deg no value has a correct digit"):

@@ -8,10 +8,10 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
-from kinetostatics.machine.friction import NONE
-from kinetostatics.mechanics.assembly import HALF, NO_DIGIT
+from kinetostatics.machine.friction import NO_FRICTION
+from kinetostatics.mechanics.assembly import HALF_DIGITS_CONDITION, NO_DIGITS_CONDITION
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from support.bounded import FAMILIES, solution
 from support.case_files import shipped
 from support.every import every
@@ -31,7 +31,7 @@ def looked_at(made):
             largest = np.nanmax(size(components(made, quantity)))
             bound = size(np.atleast_2d(made.error_bound(quantity))) / largest
             condition = made.condition_of(quantity)
-        left = (condition < NO_DIGIT) & np.isfinite(bound)
+        left = (condition < NO_DIGITS_CONDITION) & np.isfinite(bound)
         if largest > 0 and left.any():
             yield quantity, bound[left], condition[left]
 
@@ -52,7 +52,7 @@ def warned(made):
 def test_where_a_bound_is_wide_the_condition_is_large(family, seed):
     made = solution(family, seed)
     for _, bound, condition in looked_at(made) if made is not None else ():
-        assert np.all(bound <= LOOSE * UNIT * condition)
+        assert np.all(bound <= LOOSE * UNIT_ROUNDOFF * condition)
 
 
 def without_bound(made):
@@ -71,7 +71,7 @@ def without_bound(made):
 def test_bounds_exist_unless_half_the_digits_are_lost(family, seed):
     made = solution(family, seed)
     for condition in without_bound(made) if made is not None else ():
-        assert np.all(condition > HALF)
+        assert np.all(condition > HALF_DIGITS_CONDITION)
 
 
 @pytest.mark.slow
@@ -81,8 +81,8 @@ def test_condition_claims_no_unproven_digits(case):
     for variant in shipped(case).variants.values():
         made = variant.scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
         for quantity, bound, condition in looked_at(made):
-            assert np.all(bound <= LOOSE * UNIT * condition), quantity
-        assert all(np.all(condition > HALF) for condition in without_bound(made))
+            assert np.all(bound <= LOOSE * UNIT_ROUNDOFF * condition), quantity
+        assert all(np.all(condition > HALF_DIGITS_CONDITION) for condition in without_bound(made))
 
 
 @every("family", ("chain", "plain", "four-bar", "place"))
@@ -91,8 +91,8 @@ def test_warnings_match_large_conditions(family, seed):
     made = solution(family, seed)
     if made is not None:
         with np.errstate(all="ignore"):
-            condition = replace(made, loads=(), friction=NONE).condition
-        assert warned(made) == bool(np.any(condition > HALF))
+            condition = replace(made, loads=(), friction=NO_FRICTION).condition
+        assert warned(made) == bool(np.any(condition > HALF_DIGITS_CONDITION))
 
 
 @pytest.mark.slow
@@ -106,4 +106,4 @@ def test_errors_stay_below_condition_times_rounding(flint, family, seed):
         except NotGivenError:  # a table in double precision, or a quantity that is zero
             continue
         error = ks.precision.relative_errors(components(made, quantity), reference)
-        assert np.nanmax(error) <= UNIT * np.max(condition)
+        assert np.nanmax(error) <= UNIT_ROUNDOFF * np.max(condition)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods.global_system import configurations, newton
+from kinetostatics.studies.methods.global_system import constraints, newton
 from support.chains import LOAD_KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
@@ -68,13 +68,13 @@ def solved(random, mechanism, loads, angles=ANGLES, **options):
 
 def by_newton_euler(s, names):
     """Forces from the equations of all bodies at once, at the positions that the solution has."""
-    model = newton.modelled(s, "O")
+    model = newton.model_of(s, "O")
     links = [s.placement.links[name] for name in model.names]
     shape = s.crank_angle.shape
     x, y = (np.array([np.broadcast_to(m.joint.position[k], shape) for m in links]) for k in (0, 1))
     theta = np.array([np.broadcast_to(np.arctan2(m.direction[1], m.direction[0]), shape) for m in links])
     q = np.concatenate([x, y, theta]).T
-    return {name: np.array(configurations.components(model, s, name, q)) for name in names}
+    return {name: np.array(constraints.components(model, s, name, q)) for name in names}
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import ConditionWarning, ParameterError
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods.high_precision.certified import differences, enclosure, relative_errors
 
 R, PIVOT = 0.1, (0.05, -0.35)
@@ -81,4 +81,4 @@ def test_pin_clearing_the_pivot_keeps_its_digits(flint, margin):
     for quantity in ("cylinder_rate", "O"):
         exact = enclosure(s, quantity, digits=20)
         moved = differences(enclosure(s.at(np.nextafter(s.crank_angle, 9.0)), quantity, digits=20), exact)
-        assert relative_errors(components(s, quantity), exact).max() <= 5.0 * (UNIT + moved.max())
+        assert relative_errors(components(s, quantity), exact).max() <= 5.0 * (UNIT_ROUNDOFF + moved.max())

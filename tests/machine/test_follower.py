@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.followers.follower import FollowerLaw, bend
+from kinetostatics.machine.followers.follower import FollowerLaw, path_curvature
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
@@ -14,7 +14,7 @@ def test_roller_path_bends_as_the_pitch_curve(kind):
     follower = KINDS[kind]()
     joint = scene(follower).solve(ANGLES).placement.joints["R"]
     place = follower.disk.curve(ANGLES)[0]
-    assert_allclose(1.0 / bend(joint), follower.disk.curvature_radius(np.angle(place)), rtol=1e-11)
+    assert_allclose(1.0 / path_curvature(joint), follower.disk.curvature_radius(np.angle(place)), rtol=1e-11)
 
 
 def test_follower_names_its_link_and_contact():

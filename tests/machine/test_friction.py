@@ -21,15 +21,15 @@ LEVER = ks.slotted_lever(0.1, pivot=(0.0, -0.3))
 )
 def test_each_pair_has_its_kind(mechanism, joint, kind):
     (name,) = (name for name in mechanism.pairs if name == joint or name.startswith(f"{joint}_"))
-    assert friction.kind_for(mechanism.pairs[name]) is kind
+    assert friction.friction_kind(mechanism.pairs[name]) is kind
 
 
 def test_mapping_keeps_joints_without_friction():
     given = {"O": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.0)}
-    kept = friction.taken(given)
+    kept = friction.frictions_by_joint(given)
     assert dict(kept) == given
     assert list(kept.acting) == ["O"]
-    assert friction.taken(kept) is kept
-    assert friction.taken({}) is friction.NONE
+    assert friction.frictions_by_joint(kept) is kept
+    assert friction.frictions_by_joint({}) is friction.NO_FRICTION
     with pytest.raises(KeyError):
         kept["A"]

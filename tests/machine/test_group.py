@@ -18,7 +18,17 @@ from kinetostatics.machine.links import Joint, LinkMotion, Sliding, Slot, Turnin
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import cos, sin
-from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, subtracted, turned, unturned, vector
+from kinetostatics.numbers.planar import (
+    dot,
+    minus,
+    number_or_zero,
+    plus,
+    rotate,
+    rotate_back,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
@@ -61,17 +71,17 @@ class Yoke(Group):
     def place(self, placement):
         """Slider where the slot's line meets the guide."""
         slope = cos(self.slot_angle) / sin(self.slot_angle)
-        parts = [unturned(vector(part), self.guide.direction) for part in placement.joints[self.on]]
+        parts = [rotate_back(vector_or_zero(part), self.guide.direction) for part in placement.joints[self.on]]
         rise = [parts[0][1] - self.guide.guide_offset, parts[1][1], parts[2][1]]
         along = [part[0] - slope * up for part, up in zip(parts, rise, strict=True)]
         across = (self.guide.guide_offset, 0.0, 0.0)
         pairs = zip(along, across, strict=True)
-        self.follow(placement, {self.pin: Joint(*(turned(pair, self.guide.direction) for pair in pairs))})
+        self.follow(placement, {self.pin: Joint(*(rotate(pair, self.guide.direction) for pair in pairs))})
 
     def follow(self, placement, joints):
         """Block and slider at joints that are known."""
         slider, u = "slider" + self.label, self.guide.direction
-        slot = turned((cos(self.slot_angle), sin(self.slot_angle)), u)
+        slot = rotate((cos(self.slot_angle), sin(self.slot_angle)), u)
         placement.joints[self.pin] = joints[self.pin]
         placement.travels[slider] = Joint(*(dot(u, part) for part in joints[self.pin]))
         placement.links[slider] = LinkMotion(joints[self.pin], u, None, None)
@@ -89,14 +99,19 @@ class Yoke(Group):
         """Slider along the guide, block, slider across it."""
         label, on, block = self.label, loads["slider" + self.label], loads["block" + self.label]
         pin, base = (placement.joints[name].position for name in (self.on, self.pin))
-        push = unturned(vector(on.force), self.guide.direction)
+        push = rotate_back(vector_or_zero(on.force), self.guide.direction)
         slot = -plus(push[0], along.get("slider" + label)) / sin(self.slot_angle)
         way = placement.links["block" + label].direction
         guide = cos(self.slot_angle) * slot - push[1]
         couple = minus(None, block.moment)
-        moment = plus(minus(couple, on.moment), dot(subtracted(pin, base), way) * slot)
-        force = vector(subtracted(stretched(-slot, turned(way, (0.0, 1.0))), block.force))
-        found = {"slot_force": slot, "slot_moment": number(couple), "guide_force": guide, "guide_moment": moment}
+        moment = plus(minus(couple, on.moment), dot(subtract_vectors(pin, base), way) * slot)
+        force = vector_or_zero(subtract_vectors(scale_vector(-slot, rotate(way, (0.0, 1.0))), block.force))
+        found = {
+            "slot_force": slot,
+            "slot_moment": number_or_zero(couple),
+            "guide_force": guide,
+            "guide_moment": moment,
+        }
         scalars = {name + label: part for name, part in found.items()}
         return Resolved({self.on + label: force}, scalars, {self.on: Wrench(force, None)})
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.parameter_tree import with_fields
+from kinetostatics.numbers.parameter_tree import replace_unchecked
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every
@@ -28,7 +28,7 @@ def press(away=AWAY, beside=BESIDE, coupler=COUPLER, way=(1, 1), axis=0, off=0.0
 def plainly(mechanism):
     """The same by the formulas of other rockers."""
     rocker, ram = mechanism.groups
-    return with_fields(mechanism, groups=(with_fields(rocker, knuckle=""), ram))
+    return replace_unchecked(mechanism, groups=(replace_unchecked(rocker, knuckle=""), ram))
 
 
 def directions(mechanism):
@@ -76,7 +76,7 @@ def test_coupler_may_point_to_either_side():
     """As in a program, whose lengths may become others after it was recorded."""
     bars = ks.Mechanism("double crank", ks.Crank(0.4), (ks.RockerGroup(0.3, 0.35, (0.1, 0.02)),))
     for knuckle, axis in (("x", 0), ("y", 1)):
-        known = with_fields(bars, groups=(with_fields(bars.groups[0], knuckle=knuckle),))
+        known = replace_unchecked(bars, groups=(replace_unchecked(bars.groups[0], knuckle=knuckle),))
         one, other = (directions(made)[axis] for made in (known, bars))
         assert np.min(other) < -0.9 < 0.9 < np.max(other)
         np.testing.assert_allclose(one, other, rtol=0.0, atol=3e-15)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.laws.law import Law, bends_of, knots_of
+from kinetostatics.machine.laws.law import Law, breakpoints_of, knots_of
 
 laws = ks.laws
 TURN = 2 * np.pi
@@ -156,12 +156,12 @@ def test_knots_mark_jumps_of_acceleration_or_jerk():
     rise, back = ks.laws.harmonic(0.05, 0.07, 2.0), ks.laws.cycloidal(0.07, 0.05, 2.0)
     rest = 2 * np.pi - 5.0
     law = ks.laws.joined(rise, ks.laws.dwell(0.07, 1.0), back, ks.laws.dwell(0.05, rest), smooth="velocity")
-    found = bends_of(law)
+    found = breakpoints_of(law)
     assert [round(knot.angle, 12) for knot in found if knot.jumps] == [0.0, 2.0]
     assert [round(knot.angle, 12) for knot in found if not knot.jumps] == [3.0, 5.0]
     angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    assert bends_of(ks.laws.table(angle, 0.05 + 0.01 * np.cos(angle))) == ()
-    assert bends_of(ks.laws.cosine(0.01, 0.05)) == ()
+    assert breakpoints_of(ks.laws.table(angle, 0.05 + 0.01 * np.cos(angle))) == ()
+    assert breakpoints_of(ks.laws.cosine(0.01, 0.05)) == ()
 
 
 # Segments of a turn

@@ -11,7 +11,7 @@ from kinetostatics import ConditionWarning
 from kinetostatics.machine.groups import lever, near_dead_centre, rocker, slider
 from kinetostatics.machine.guide import Line
 from kinetostatics.machine.kinematic_state import Throw
-from kinetostatics.mechanics.quantities import scale
+from kinetostatics.mechanics.quantities import largest_term
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from support.every import every
 
@@ -113,8 +113,8 @@ def test_pivot_at_the_centre_has_finite_motion():
 )
 def test_nearly_equal_lengths_are_recognised(given, close):
     radius, offset, length = given
-    assert near_dead_centre.is_small(Throw((radius, 0.0), True), offset, length) is close
-    assert near_dead_centre.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
+    assert near_dead_centre.has_small_clearance(Throw((radius, 0.0), True), offset, length) is close
+    assert near_dead_centre.has_small_clearance(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
 
 
 @pytest.mark.slow
@@ -151,7 +151,7 @@ def test_torque_keeps_digits_that_reactions_lose(flint, name):
         torque, support = (enclosure(s, quantity) for quantity in ("balancing_torque", "O"))
         assert support.largest * distance > 30.0
         error = np.max(relative_errors(s.balancing_torque[None], torque)) * torque.largest
-        assert error < 1e-14 * scale(s, "balancing_torque")
+        assert error < 1e-14 * largest_term(s, "balancing_torque")
         assert np.max(relative_errors(s.reaction("O"), support)) < 5e-16 / distance
 
 

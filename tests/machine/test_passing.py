@@ -11,7 +11,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods.high_precision.certified import differences, enclosure, relative_errors
 from support import multibody
 from support.enclosed import assert_enclosed
@@ -255,7 +255,7 @@ def test_torque_extremes_stay_finite(assembly):
 
 @meeting
 def test_slot_is_drawn_on_both_sides_of_the_pivot(assembly):
-    from kinetostatics.views.shape import Shape
+    from kinetostatics.views.strokes import Shape
 
     made = lever("meeting", assembly)
     shape = Shape(ks.Scene(made, SPEED).solve(24).dynamics)
@@ -319,4 +319,4 @@ def test_inclined_branch_keeps_its_digits(flint, pivot, excess):
     for quantity in ("balancing_torque_by_power", "rocker_angular_acceleration"):
         exact = enclosure(s, quantity, digits=20)
         moved = differences(enclosure(s.at(np.nextafter(s.crank_angle, 9.0)), quantity, digits=20), exact)
-        assert relative_errors(components(s, quantity), exact).max() <= 30 * (UNIT + moved.max())
+        assert relative_errors(components(s, quantity), exact).max() <= 30 * (UNIT_ROUNDOFF + moved.max())

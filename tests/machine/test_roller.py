@@ -78,7 +78,7 @@ def test_two_contacts_of_one_name_are_refused():
 # Line contact by Hertz
 
 
-STEEL_PAIR = roller.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+STEEL_PAIR = roller.contact_modulus((2.1e11, 0.3), (2.1e11, 0.3))
 
 
 def test_equal_materials_have_half_a_plane_modulus():

@@ -8,7 +8,7 @@ from kinetostatics.engines.engines import NUMPY
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.parameter_tree import with_fields
+from kinetostatics.numbers.parameter_tree import replace_unchecked
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 from support.enclosed import differences
 from support.every import every
@@ -77,7 +77,7 @@ SPRINGS = {
 def loaded(machine, given, acceleration=0.0):
     moved = next(iter(machine.guides))
     weight = [ks.Gravity(9.81, -1.4), ks.Force(360.0, at=(moved, 0.2, 0.1), direction=-0.6)]
-    loads = [with_fields(load, on=moved) for load in SPRINGS[given]] + weight
+    loads = [replace_unchecked(load, on=moved) for load in SPRINGS[given]] + weight
     return ks.Scene(machine, SPEED, acceleration, loads).solve(TURN)
 
 
@@ -95,7 +95,7 @@ def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration
 @every("name", [name for name in MACHINES if name not in APART])
 def test_inertia_and_a_spring_that_balances_it_are_taken_together(name):
     run = loaded(MACHINES[name], "balancing").dynamics
-    loads, pushes = springs.acting(run)
+    loads, pushes = springs.loads_on_groups(run)
     assert loads["slider"].force is not run.link_loads["slider"].force
     assert pushes["slider"] is not run.pushes["slider"]
     assert {part: loads[part] for part in loads if part != "slider"} == {
@@ -106,14 +106,17 @@ def test_inertia_and_a_spring_that_balances_it_are_taken_together(name):
 @every("name", APART)
 def test_where_no_departure_is_known_they_stay_apart(name):
     run = loaded(MACHINES[name], "balancing").dynamics
-    assert all(taken is given for taken, given in zip(springs.acting(run), (run.link_loads, run.pushes), strict=True))
+    assert all(
+        taken is given for taken, given in zip(springs.loads_on_groups(run), (run.link_loads, run.pushes), strict=True)
+    )
 
 
 def test_without_springs_or_mass_nothing_is_done():
     for load in (ks.ProcessForce(3.0), ks.Spring(1e3, 2.0)):
         run = ks.solve(ks.crank_slider(0.3, 2.0), TURN, crank_speed=SPEED, loads=load).dynamics
         assert all(
-            taken is given for taken, given in zip(springs.acting(run), (run.link_loads, run.pushes), strict=True)
+            taken is given
+            for taken, given in zip(springs.loads_on_groups(run), (run.link_loads, run.pushes), strict=True)
         )
 
 
@@ -202,7 +205,7 @@ def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
     close = plain(length=0.3 * (1.0 + 1e-13))
     run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics
     assert np.min(np.abs(run.placement.travels["slider"].second)) > 1e5
-    assert np.allclose(springs.acting(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
+    assert np.allclose(springs.loads_on_groups(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kinetostatics.errors import CaseError
-from kinetostatics.numbers.files import headings, read_columns, read_text, written_whole
+from kinetostatics.numbers.files import headings, read_columns, read_text, write_atomically
 
 
 def test_blanks_in_headings_count_as_underscores(tmp_path):
@@ -27,7 +27,7 @@ def test_too_large_a_file_is_refused(tmp_path):
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="the system has no names for open files")
 def test_an_open_pipe_takes_what_is_written():
     reading, writing = os.pipe()
-    with written_whole(f"/dev/fd/{writing}") as path:
+    with write_atomically(f"/dev/fd/{writing}") as path:
         Path(path).write_text("whole", encoding="utf-8")
     os.close(writing)
     assert os.read(reading, 99) == b"whole"

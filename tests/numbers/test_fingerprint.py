@@ -9,7 +9,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.engines import KERNELS
-from kinetostatics.numbers.fingerprint import key_of, of_class
+from kinetostatics.numbers.fingerprint import class_key, key_of
 
 ANGLES = np.linspace(0.0, 6.0, 20)
 GAIN = 1.0
@@ -130,5 +130,5 @@ def test_what_may_change_unseen_has_no_key():
 
 @pytest.mark.parametrize("kind", [ByGlobal, ByClassConstant, ByTable, Structural])
 def test_ordinary_classes_have_a_key(kind):
-    assert of_class(kind, (kind,)) is not None
-    assert of_class(kind, (kind,)) == of_class(kind, (kind,))
+    assert class_key(kind, (kind,)) is not None
+    assert class_key(kind, (kind,)) == class_key(kind, (kind,))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from kinetostatics.numbers.formatting import angle, at_most, number, pretty
+from kinetostatics.numbers.formatting import angle, number, pretty_unit, round_bound_up
 from support.every import every
 
 
@@ -39,7 +39,7 @@ def test_shown_value_is_within_half_a_place(power):
 
 @every("bound, text", [(1.23e-10, "1.3e-10"), (0.25, "0.25"), (0.2500001, "0.26"), (9.91, "10"), (0.0, "0")])
 def test_a_bound_is_never_told_smaller_than_it_is(bound, text):
-    assert at_most(bound) == text
+    assert round_bound_up(bound) == text
 
 
 @every("value, text", [(math.inf, "∞"), (-math.inf, "-∞"), (math.nan, ""), (1.5, "1.5")])
@@ -53,7 +53,7 @@ def test_infinity_may_have_a_sign_of_its_own(value, text):
     ("N/m**3", "N/m³"),
 ])  # fmt: skip
 def test_units_have_raised_exponents_and_dots(unit, text):
-    assert pretty(unit) == text
+    assert pretty_unit(unit) == text
 
 
 @every("degrees, text", [(1.1e-13, "0"), (-1e-9, "0"), (math.nan, ""), (138.58297, "138.583"), ("at", "at")])

@@ -11,7 +11,7 @@ A, B = (3.0, -1.5), (0.5, 2.0)
 
 
 def z(vector):
-    return complex(*planar.vector(vector))
+    return complex(*planar.vector_or_zero(vector))
 
 
 def test_products_and_turns_are_those_of_complex():
@@ -19,9 +19,9 @@ def test_products_and_turns_are_those_of_complex():
     assert complex(planar.dot(A, B), planar.cross(A, B)) == z(A).conjugate() * z(B)
     assert planar.length(A) == pytest.approx(abs(z(A)), rel=1e-15)
     assert z(planar.left(A)) == 1j * z(A)
-    assert z(planar.turned(A, (ray.real, ray.imag))) == pytest.approx(z(A) * ray, rel=1e-15)
-    assert z(planar.unturned(A, (ray.real, ray.imag))) == pytest.approx(z(A) / ray, rel=1e-15)
-    assert planar.turned(A, None) is A is planar.unturned(A, None)
+    assert z(planar.rotate(A, (ray.real, ray.imag))) == pytest.approx(z(A) * ray, rel=1e-15)
+    assert z(planar.rotate_back(A, (ray.real, ray.imag))) == pytest.approx(z(A) / ray, rel=1e-15)
+    assert planar.rotate(A, None) is A is planar.rotate_back(A, None)
 
 
 def test_circle_has_the_curvature_of_its_radius():

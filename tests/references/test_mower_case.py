@@ -9,8 +9,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
+from kinetostatics.views.canvas import with_peaks
 from kinetostatics.views.figures import draw_case
-from kinetostatics.views.peaks import with_peaks
 from support.case_files import case_file, problems, shipped
 from support.every import every
 

@@ -7,7 +7,7 @@ reaction that vanishes, being less than a hundredth of the largest load, to that
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.quantities import scale
+from kinetostatics.mechanics.quantities import largest_term
 from support.case_files import shipped
 from support.enclosed import ordinary_angles, worst
 from support.every import every
@@ -37,7 +37,7 @@ def test_shipped_results_are_near_exact_and_bounded(case, variant):
     s = scene.solve(ordinary_angles(scene, EVEN, BETWEEN))
     most = (ERROR_OF_TABLES, BOUND_OF_TABLES) if has_table_loads(scene) else (ERROR, BOUND)
     for name, found in worst(s).items():
-        size, largest = found.size, scale(s, name)
+        size, largest = found.size, largest_term(s, name)
         if name == "balancing_torque" or size < VANISHING * largest:
             size = max(size, largest)
         assert found.error <= most[0] * size, name

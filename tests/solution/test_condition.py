@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.assembly import HALF
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.mechanics.assembly import HALF_DIGITS_CONDITION
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.solution import condition
 from kinetostatics.solution.condition import ill_conditioned, is_surely_well_conditioned
 from support.machines import ANGLES, planar, turning
@@ -346,7 +346,7 @@ def assert_bound(solution, allowed=1e4):
     assert np.all(true[closed] <= found[closed])
     known = closed & np.isfinite(found)
     assert np.all(found[known] <= allowed * true[known])
-    assert np.all(errors[known] <= 100 * UNIT * found[known])
+    assert np.all(errors[known] <= 100 * UNIT_ROUNDOFF * found[known])
     return known.sum()
 
 
@@ -429,9 +429,9 @@ def near_limits(draw, kind):
 
 def rows(item, number):
     """One design of a batch."""
-    from kinetostatics.numbers.parameter_tree import mapped
+    from kinetostatics.numbers.parameter_tree import map_numbers
 
-    return mapped(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
+    return map_numbers(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
 
 
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])
@@ -439,7 +439,7 @@ def test_no_loss_of_half_the_digits_passes_the_first_look_at_margins(kind):
     draw = Draw(23, 400)
     batch, angle = near_limits(draw, kind)
     s = unwarned(batch, angle)
-    lost = s.condition[:, 0] > HALF
+    lost = s.condition[:, 0] > HALF_DIGITS_CONDITION
     (margin,) = s.closure
     passed = [
         is_surely_well_conditioned(unwarned(rows(batch, number), angle[number]), [margin[number]])
@@ -456,7 +456,7 @@ def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in
     s = ks.Solution(RANDOM[kind](draw), TURN[::4], 7.0, 0.0, (ks.Gravity(),))
     points, found = ill_conditioned(s.dynamics, s.dynamics.closure)
     whole = s.condition.ravel()
-    assert np.array_equal(points, np.flatnonzero(whole > HALF))
+    assert np.array_equal(points, np.flatnonzero(whole > HALF_DIGITS_CONDITION))
     np.testing.assert_array_equal(found, whole[points])
 
 

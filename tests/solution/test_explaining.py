@@ -10,7 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile.reading import shipped_cases
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.solution.drive_and_loads import over_the_angles
+from kinetostatics.solution.drive_and_loads import tables_over_angles
 from support.chains import chain
 from support.every import every
 from support.followers import KINDS as FOLLOWERS
@@ -38,7 +38,7 @@ CHANGING = {
 def ask(solution, quantity, angle, design=None):
     """The calculation, looked at in every way."""
     told = solution.explain(quantity, angle, design)
-    if not over_the_angles(solution):
+    if not tables_over_angles(solution):
         place = () if design is None else (design, 0)
         found = [np.asarray(part)[place] for part in components(solution.at(angle), quantity)]
         np.testing.assert_allclose(np.ravel(told.value), found, rtol=VALUE, atol=VALUE * max(map(abs, found)))

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.reductions import parsed
-from kinetostatics.solution.parted import Parted
+from kinetostatics.solution.parted import PiecewiseTurns
 
 OUTPUTS = tuple(map(parsed, ("smallest O", "mean B", "largest balancing_torque", "rms O", "range guide_force")))
 
@@ -18,7 +18,7 @@ def pump(crank=0.05, mass=2.0):
 
 
 def test_numbers_are_those_of_extremes_and_means():
-    numbers, rough = Parted.of(pump(), OUTPUTS, 192).estimated(OUTPUTS)
+    numbers, rough = PiecewiseTurns.of(pump(), OUTPUTS, 192).estimated(OUTPUTS)
     at = pump().solve(4)
     assert not rough.any()
     assert numbers[0, 0] == pytest.approx(ks.extremes(at, "O").range[0], rel=1e-6)
@@ -28,14 +28,14 @@ def test_numbers_are_those_of_extremes_and_means():
 
 def test_designs_have_the_numbers_that_they_have_alone():
     crank, mass = np.array([[0.03], [0.05], [0.06]]), np.array([[1.0], [2.0], [0.1]])
-    together, _ = Parted.of(pump(crank, mass), OUTPUTS, 192).estimated(OUTPUTS)
+    together, _ = PiecewiseTurns.of(pump(crank, mass), OUTPUTS, 192).estimated(OUTPUTS)
     for row in range(3):
-        alone, _ = Parted.of(pump(crank[row : row + 1], mass[row : row + 1]), OUTPUTS, 192).estimated(OUTPUTS)
+        alone, _ = PiecewiseTurns.of(pump(crank[row : row + 1], mass[row : row + 1]), OUTPUTS, 192).estimated(OUTPUTS)
         np.testing.assert_array_equal(together[:, row], alone[:, 0])
 
 
 def test_the_compiled_loop_gives_the_same(numba):
     plain, compiled = (
-        Parted.of(pump(), OUTPUTS, 192, engine=engine).estimated(OUTPUTS)[0] for engine in ("numpy", "compiled")
+        PiecewiseTurns.of(pump(), OUTPUTS, 192, engine=engine).estimated(OUTPUTS)[0] for engine in ("numpy", "compiled")
     )
     np.testing.assert_allclose(plain, compiled, rtol=1e-9)

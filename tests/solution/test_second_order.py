@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.certainty import Terms, second_order_effects
+from kinetostatics.solution.certainty import SecondOrderTerms, find_second_order
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
@@ -73,7 +73,7 @@ def terms_of(compute, deviations, numbers=(0.0,) * 9):
     """Terms of a function of the numbers of a scene, one for each path that is given."""
     leaves = SimpleNamespace(numbers=list(numbers), with_numbers=lambda moved: SimpleNamespace(numbers=moved))
     places = {path: place for place, path in enumerate(deviations)}
-    return Terms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
+    return SecondOrderTerms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
 
 
 @pytest.mark.slow
@@ -88,7 +88,7 @@ def test_products_with_common_input_are_all_seen(count, signs):
             return np.array([[given[common] * (signs[0] * given[one] + signs[1] * given[other])]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert paths[common] in told.paths
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
@@ -106,7 +106,7 @@ def test_products_without_common_input_are_all_seen(count):
             return np.array([[first - second]])
 
         terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = second_order_effects(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
         assert set(told.paths) in ({paths[one], paths[other]}, {paths[third], paths[fourth]})
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 

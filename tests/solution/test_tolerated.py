@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.uncertainty_table import largest_with_uncertainty, with_uncertainty
+from kinetostatics.solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
 from support.every import every
 
 YOKE = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=10.0)
@@ -74,7 +74,7 @@ def test_constant_and_repeated_rows_are_left_out():
     (7.0, 20.0, "7 +- 20"), (0.36, 1e-4 + 3e-16, "0.36 +- 0.0001"), (0.36, 1.01e-4, "0.36 +- 0.00011"),
 ])  # fmt: skip
 def test_value_is_printed_to_two_uncertain_digits(value, uncertainty, text):
-    assert with_uncertainty(value, uncertainty) == text
+    assert format_with_uncertainty(value, uncertainty) == text
 
 
 def test_a_doubt_is_told_once_and_names_the_quantities():

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies import timing
-from kinetostatics.studies.methods import running
+from kinetostatics.studies.methods import method, running
 from kinetostatics.views import charts
 from support.drives import BY_NAME, IDLE, MOTOR, SAW
 
@@ -53,13 +52,13 @@ def test_what_cannot_be_studied_says_why(call, kind, words):
 
 
 def test_times_are_those_of_one_call_and_in_order():
-    short, long = timing.seconds(lambda: time.sleep(0.001), lambda: time.sleep(0.004), repeats=1)
+    short, long = method.seconds(lambda: time.sleep(0.001), lambda: time.sleep(0.004), repeats=1)
     assert 0.001 <= short < long
     assert 0.004 <= long < 0.4
 
 
 def test_machine_and_versions_are_told():
-    found = timing.circumstances()
+    found = method.circumstances()
     assert f"numpy {np.__version__}" in found["versions"]
     assert platform.python_version() in found["versions"]
     assert "cores" in found["machine"]

@@ -164,7 +164,7 @@ def test_six_bar_runs_a_limited_number_of_models(monkeypatch):
         ks.TorsionDamper(2.0, on="rocker"),
     )
     s = solved(ks.Mechanism("six-bar", bar.crank, (*bar.groups, ram)), loads, angle=TURN[::3])
-    assert ingredients.MOST_MODELS <= 2000
+    assert ingredients.MAX_MODELS <= 2000
     monkeypatch.setattr(ingredients, "MOST_MODELS", 40)
     found = ks.needs(s, "balancing_torque")
     assert found.tried <= 40

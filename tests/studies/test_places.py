@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS
-from kinetostatics.studies.places import PLACES
+from kinetostatics.studies.stability import PLACES
 from support.bounded import errors
 from support.every import every
 from support.inclined import INCLINED
@@ -60,9 +60,9 @@ def test_inclined_twins_are_as_near_as_rounding(flint, place):
     rows = stability.study([replace(place, numbers=place.numbers[::3])], METHODS[:1])
     counted = rows[rows["angle rounding"] < DIGITS]
     assert len(counted) >= 3
-    assert np.all(counted["error"] <= 30 * (UNIT + counted["angle rounding"]))
+    assert np.all(counted["error"] <= 30 * (UNIT_ROUNDOFF + counted["angle rounding"]))
     most = MEETING if place.name in (f"{name}, inclined" for name in ("rhombus", "kite, A passing O2")) else BOUND
-    assert np.all(counted["bound"] <= most * (20 * UNIT + counted["angle rounding"]))
+    assert np.all(counted["bound"] <= most * (20 * UNIT_ROUNDOFF + counted["angle rounding"]))
     assert not rows[["lost", "flipped", "nan"]].any(axis=None)
     assert set(rows["raised"]) == {""}
 

@@ -155,7 +155,7 @@ def test_friction_is_charted_off_its_jumps():
     names = ("ours, NumPy", "papers' formulas", "SymPy Kane, lambdified", "Newton iteration, global system")
     methods = [method for method in METHODS if method.name in names]
     case = ks.load_case("sawframe_2r63_friction")
-    table = precision.study(precision._turn(case, "plain", 12), methods=methods, repeats=1).set_index("method")
+    table = precision.study(precision._solve_turn(case, "plain", 12), methods=methods, repeats=1).set_index("method")
     assert table.loc["ours, NumPy", "error"] < 5e-15
     assert table.loc["Newton iteration, global system", "error"].min() < 1e-14
     assert table.loc[list(names[1:3]), "not given"].str.contains("know no friction, but there is some in O").all()
@@ -186,8 +186,8 @@ def few(monkeypatch):
 
 
 def test_case_study_takes_one_variant_a_kind(case):
-    kinds = {name: precision.kinds(ks.load_case(name)) for name in ("mower_drive", "chain_unit")}
-    assert precision.kinds(case) == ["plain", "cam-circle", "cam-cosine"]
+    kinds = {name: precision.variant_of_each_kind(ks.load_case(name)) for name in ("mower_drive", "chain_unit")}
+    assert precision.variant_of_each_kind(case) == ["plain", "cam-circle", "cam-cosine"]
     assert kinds == {"mower_drive": ["unbalanced"], "chain_unit": ["rho-0.1"]}
 
 

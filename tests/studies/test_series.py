@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines.engines import Kernels
 from kinetostatics.studies import needs as ingredients
-from kinetostatics.studies.series import harmonic_series
+from kinetostatics.studies.simplifications import harmonic_series
 from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 
 

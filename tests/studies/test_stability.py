@@ -12,7 +12,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS, Method
 from kinetostatics.views import charts
@@ -124,7 +124,7 @@ def test_floats_are_exact_and_the_angle_rounded_once(table, place):
     rows = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
     rows = rows[rows["angle rounding"] < DIGITS]
     assert len(rows) >= 4
-    assert np.all(rows["error"] <= 30 * (UNIT + rows["angle rounding"]))
+    assert np.all(rows["error"] <= 30 * (UNIT_ROUNDOFF + rows["angle rounding"]))
 
 
 @every(
@@ -361,9 +361,9 @@ def test_place_chart_has_units_and_the_condition(table, place):
 
 def test_ours_are_the_lower_envelope(table):
     """No other method is nearer than ours by more than thirty roundings of the problem itself."""
-    left = table[(table["condition"] * UNIT < 1) & table["error"].notna()]
+    left = table[(table["condition"] * UNIT_ROUNDOFF < 1) & table["error"].notna()]
     others = left[~left["ours"]].groupby(["place", "number"])["error"].min()
     ours = left[left["ours"]].groupby(["place", "number"])["error"].max()
-    rounding = left.groupby(["place", "number"])["condition"].first() * UNIT
+    rounding = left.groupby(["place", "number"])["condition"].first() * UNIT_ROUNDOFF
     assert (ours <= np.maximum(others, 30 * rounding)).all()
     assert len(ours) > 20

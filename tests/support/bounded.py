@@ -10,9 +10,9 @@ from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.errors import KinetostaticsError
 from kinetostatics.machine.guide import Guide
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.numbers.parameter_tree import mapped
+from kinetostatics.numbers.parameter_tree import map_numbers
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
-from kinetostatics.studies.places import PLACES
+from kinetostatics.studies.stability import PLACES
 
 from . import chains
 from .case_files import shipped
@@ -71,7 +71,7 @@ def other_numbers(solution, seed, spread=0.02):
         return value * (1.0 + spread * rng.uniform(-1, 1)) if isinstance(value, float) else value
 
     parts = solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction
-    return _solved(*(mapped(part, number, {Guide: lambda own: own}) for part in parts), solution.crank_angle)
+    return _solved(*(map_numbers(part, number, {Guide: lambda own: own}) for part in parts), solution.crank_angle)
 
 
 def _solved(mechanism, speed, acceleration, given, friction, angles):

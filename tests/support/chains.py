@@ -6,7 +6,7 @@ from mpmath import mp
 import kinetostatics as ks
 from kinetostatics.machine.group import FRAME
 from kinetostatics.mechanics.quantities import components, of_mechanism
-from kinetostatics.studies.methods.global_system import configurations
+from kinetostatics.studies.methods.global_system import constraints
 from kinetostatics.studies.methods.global_system.constraints import Model
 from kinetostatics.studies.methods.high_precision.independent import Machine, working_digits
 
@@ -131,7 +131,7 @@ def error_beside_constraints(solution):
     missing = set(outputs) - set(model.readings)
     assert not missing, missing
     pairs = {
-        name: [np.array(configurations.components(model, solution, name, q)), np.array(components(solution, name))]
+        name: [np.array(constraints.components(model, solution, name, q)), np.array(components(solution, name))]
         for name in outputs
     }
     unit = max(np.abs(own).max() for _, own in pairs.values())

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.drive.one_dof import Driven
+from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.studies.methods import running
 
 from . import DATA
@@ -17,7 +17,7 @@ PUMP = ks.crank_slider(0.1, 0.4, slider=ks.Link(20.0))
 
 
 def driven(mechanism=DISC, *loads, motor=DISC_MOTOR, flywheel=0.5):
-    return Driven("test", ks.Scene(mechanism, 1.0, loads=loads), motor, flywheel)
+    return DrivenMachine("test", ks.Scene(mechanism, 1.0, loads=loads), motor, flywheel)
 
 
 REFERENCE = json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
@@ -28,7 +28,7 @@ FAN = ks.Torque(lambda motion: -2.0 * motion.crank_speed * motion.crank_speed, o
 CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
 IDLE = ks.Scene(SAW, 33.5, loads=ks.Gravity())
 ANGLES = np.arange(24) * np.pi / 12
-BY_NAME = {method.name: method for method in running.METHODS}
+BY_NAME = {method.name: method for method in running.RUNNING_METHODS}
 
 
 def saw(*loads):

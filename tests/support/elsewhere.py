@@ -5,7 +5,7 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.engines.program import program_of
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.numbers.parameter_tree import with_fields
+from kinetostatics.numbers.parameter_tree import replace_unchecked
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 
 from .bounded import Found
@@ -38,7 +38,7 @@ def exact_values(solution, names=None):
     from flint import arb, ctx
 
     with ctx.workprec(BITS):
-        exact = on_arb(arb, with_fields(solution, engine=solution.engine))
+        exact = on_arb(arb, replace_unchecked(solution, engine=solution.engine))
         return {name: components(exact, name) for name in names or of_scene(solution)}
 
 

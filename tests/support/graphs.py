@@ -9,7 +9,7 @@ from kinetostatics.engines.graph import INPUTS, Graph, Node, needed
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.numbers import arithmetic
-from kinetostatics.numbers.arithmetic import APART, UNIT, UNSEEN
+from kinetostatics.numbers.arithmetic import NEGLIGIBLE_LENGTH, RELATIVE_OFFSET, UNIT_ROUNDOFF
 
 PARAMETERS, UNITS = 5, 2
 DESIGNS, ANGLES = 6, 3
@@ -44,7 +44,7 @@ def recorded(steps, inputs):
             places = [place % PARAMETERS for place in places[:2]] + places[2:]
         if kind == "sum":
             parts = [values[place % len(values)] for place in range(places[0], places[0] + 2 + places[1] % 5)]
-            values.append(arithmetic.total(*parts))
+            values.append(arithmetic.compensated_sum(*parts))
         elif kind == "scaled":
             values.append(values[places[0]] * CONSTANTS[places[1] % len(CONSTANTS)])
         else:
@@ -64,7 +64,7 @@ def _recorded(kind, one, other, third, fourth, unit):
         "root": lambda: one.forgiving_root(unit),
         "guard": lambda: one.kept_off_zero(unit),
         "apart": lambda: one.moved_apart(unit),
-        "total": lambda: arithmetic.total(one, other, third),
+        "total": lambda: arithmetic.compensated_sum(one, other, third),
         "rest": lambda: _with_rest(one, other, third),
         "minus": lambda: -one,
         "abs": lambda: abs(one),
@@ -76,7 +76,7 @@ def _recorded(kind, one, other, third, fourth, unit):
 
 def _with_rest(x, y, other):
     length = (x * x + y * y).sqrt()
-    return arithmetic.total(length, arithmetic.rest(length, x, y), -other)
+    return arithmetic.compensated_sum(length, arithmetic.length_error(length, x, y), -other)
 
 
 def exactly(nodes, inputs):
@@ -109,7 +109,10 @@ def exactly(nodes, inputs):
 
 def _moves(part):
     factors = part.arguments if isinstance(part, Node) and part.operation == "*" else (part,)
-    return any(not isinstance(factor, Node) and factor in (APART, APART * UNSEEN) for factor in factors)
+    return any(
+        not isinstance(factor, Node) and factor in (RELATIVE_OFFSET, RELATIVE_OFFSET * NEGLIGIBLE_LENGTH)
+        for factor in factors
+    )
 
 
 def _root(square, unit=None):
@@ -144,7 +147,7 @@ def numbers(random, count):
         10.0 ** random.uniform(-323, -150, count),
         10.0 ** random.uniform(-170, -140, count),
         2.0 ** random.integers(-60, 60, count),
-        np.ones(count) + UNIT * random.integers(-4, 40, count),
+        np.ones(count) + UNIT_ROUNDOFF * random.integers(-4, 40, count),
         random.choice([0.0, -0.0, 1.0, 0.5, 2.0**100, 5e-324, 2.0**-54, 2.0**-511], count),
         10.0 ** random.uniform(-160, -100, count),
     ]
@@ -204,7 +207,7 @@ class Case:
 
         ctx.prec, before = DIGITS, ctx.prec
         try:
-            off = arb(self._off_row) * arb(UNIT) * arb(self._random.choice([-1, 1]).item())
+            off = arb(self._off_row) * arb(UNIT_ROUNDOFF) * arb(self._random.choice([-1, 1]).item())
             inputs = {("parameter", place): arb(number) for place, number in enumerate(parameters.tolist())}
             inputs |= {("angle",): arb(float(angle)), ("table", 0): arb(float(row)) + off}
             values = exactly(needed(self.program.outputs), inputs)

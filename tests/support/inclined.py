@@ -12,8 +12,8 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.machine.builders import cam_crank_slider, slotted_lever
-from kinetostatics.studies import places
-from kinetostatics.studies.places import DISTANCES, Place
+from kinetostatics.studies import stability
+from kinetostatics.studies.stability import DISTANCES, Place
 
 AHEAD = math.atan2(4.0, 3.0)
 """Direction of the long pivots, rad."""
@@ -31,11 +31,11 @@ def _around(angles, distance):
 def _exact(crank, coupler, rocker, ground):
     """Four-bar of lengths in 5/64 m, its ground inclined."""
     lengths = (5.0 * length / 64.0 for length in (crank, coupler, rocker))
-    return places._chain_unit(*lengths, (3.0 * ground / 64.0, 4.0 * ground / 64.0))
+    return stability._chain_unit(*lengths, (3.0 * ground / 64.0, 4.0 * ground / 64.0))
 
 
 def _folding(lengths, angles, distance):
-    return places._solution(_exact(*lengths), AHEAD + _around(angles, distance))
+    return stability._solution(_exact(*lengths), AHEAD + _around(angles, distance))
 
 
 def _ground(x, y):
@@ -58,7 +58,7 @@ def _toggle(distance):
             (mp.mpf(crank) ** 2 + ground**2 - reach**2) / (2 * crank * ground)
         )
     angles = float(angle) - distance * np.linspace(0.5, 1.0, 20)
-    return places._solution(places._chain_unit(crank, coupler, rocker * (1.0 + 2.0**-50), PIVOT), angles)
+    return stability._solution(stability._chain_unit(crank, coupler, rocker * (1.0 + 2.0**-50), PIVOT), angles)
 
 
 def _just_turning(distance, aside=0.0):
@@ -67,14 +67,14 @@ def _just_turning(distance, aside=0.0):
     with mp.workdps(50):
         least = _ground(crank, aside) + _ground(*PIVOT) - mp.mpf(coupler)
         rocker = _rounded(least * (1 + mp.mpf(distance)), 1)
-    four_bar = places._chain_unit(crank, coupler, rocker, PIVOT)
+    four_bar = stability._chain_unit(crank, coupler, rocker, PIVOT)
     opposite = math.atan2(PIVOT[1], PIVOT[0]) + math.pi
     if aside:
         group = ks.RockerGroup(coupler, rocker, PIVOT, coupler=BODY, rocker=BODY, on="C")
         pin = ks.Pin(on="crank", at=(crank, aside), name="C")
         four_bar = ks.Mechanism("on a pin beside the ray", ks.Crank(0.1), (pin, group))
         opposite -= math.atan2(aside, crank)
-    return places._solution(four_bar, opposite + math.sqrt(distance) * np.linspace(-2.0, 2.0, 21))
+    return stability._solution(four_bar, opposite + math.sqrt(distance) * np.linspace(-2.0, 2.0, 21))
 
 
 def _just_sliding(distance):
@@ -82,29 +82,29 @@ def _just_sliding(distance):
     with mp.workdps(50):
         offset = _rounded((_ground(*pivot) - mp.mpf(crank)) * (1 - mp.mpf(distance)), -1)
     lever = slotted_lever(crank, pivot=pivot, offset=offset, lever=BODY, block=ks.Link(1.0))
-    return places._solution(lever, math.atan2(*pivot[::-1]) + math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
+    return stability._solution(lever, math.atan2(*pivot[::-1]) + math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
 
 
 def _meeting(distance):
     """The block of a slotted lever passes by its pivot."""
     lever = slotted_lever(5.0 / 16.0, pivot=(3.0 / 16.0, 4.0 / 16.0), lever=BODY, block=ks.Link(1.0))
-    return places._solution(lever, AHEAD + _around([0.0], distance))
+    return stability._solution(lever, AHEAD + _around([0.0], distance))
 
 
 def _limit_position(distance):
     angle = math.radians(40.0)
-    saw = places._saw(crank_length=2.0, coupler_length=math.nextafter(2.0 * math.sin(angle), 3.0), guide_angle=SIDE)
-    return places._solution(saw, SIDE + angle - 2.0**-51 - distance * np.linspace(0.5, 1.0, 20))
+    saw = stability._saw(crank_length=2.0, coupler_length=math.nextafter(2.0 * math.sin(angle), 3.0), guide_angle=SIDE)
+    return stability._solution(saw, SIDE + angle - 2.0**-51 - distance * np.linspace(0.5, 1.0, 20))
 
 
 def _barely_long_enough(distance):
-    saw = places._saw(coupler_length=0.5 * (1.0 + distance), guide_offset=0.2, guide_angle=SIDE)
-    return places._solution(saw, SIDE + 1.5 * math.pi + np.linspace(-0.5, 0.5, 21))
+    saw = stability._saw(coupler_length=0.5 * (1.0 + distance), guide_offset=0.2, guide_angle=SIDE)
+    return stability._solution(saw, SIDE + 1.5 * math.pi + np.linspace(-0.5, 0.5, 21))
 
 
 def _equal_links(distance):
-    saw = places._saw(coupler_length=0.3, guide_angle=SIDE)
-    return places._solution(saw, SIDE + _around([0.5 * math.pi], distance))
+    saw = stability._saw(coupler_length=0.3, guide_angle=SIDE)
+    return stability._solution(saw, SIDE + _around([0.5 * math.pi], distance))
 
 
 def _cam(cam, length, **options):
@@ -113,20 +113,22 @@ def _cam(cam, length, **options):
 
 def _pressure_angle(distance):
     cam = ks.cams.Circle(0.5, (-0.3 * (1.0 - distance), -0.4 * (1.0 - distance)))
-    return places._solution(_cam(cam, 2.0), AHEAD + 0.5 * math.pi + np.linspace(-0.01, 0.01, 21))
+    return stability._solution(_cam(cam, 2.0), AHEAD + 0.5 * math.pi + np.linspace(-0.01, 0.01, 21))
 
 
 def _singular_angle(distance):
     cam = ks.cams.CosineLaw(0.3, 2.0, SIDE)
     angles = SIDE + float(cam.singular_angle) + distance * np.linspace(-1.0, 1.0, 21)
-    spring = ks.Spring.balancing(600.0, places.SPEED, 2.0)
+    spring = ks.Spring.balancing(600.0, stability.CRANK_SPEED, 2.0)
     mechanism = _cam(cam, cam.coupler_length, guide_angle=SIDE)
-    return places._solution(mechanism, angles, [ks.Gravity(), spring])
+    return stability._solution(mechanism, angles, [ks.Gravity(), spring])
 
 
 def _size(size):
     lengths = (size * length for length in (0.1, 0.4, 0.3))
-    return places._solution(places._chain_unit(*lengths, (0.35 * size, 0.1 * size)), np.linspace(0.0, 6.2, 40), ())
+    return stability._solution(
+        stability._chain_unit(*lengths, (0.35 * size, 0.1 * size)), np.linspace(0.0, 6.2, 40), ()
+    )
 
 
 OPEN, OPPOSITE = 0.0, math.pi

@@ -13,7 +13,7 @@ import pytest
 from kinetostatics import Gravity, Link, Spring
 from kinetostatics.machine.guide import Guide
 from kinetostatics.machine.links import arm, first_at
-from kinetostatics.numbers.parameter_tree import mapped, with_fields
+from kinetostatics.numbers.parameter_tree import map_numbers, replace_unchecked
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
 
 flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
@@ -26,7 +26,7 @@ def truly_magnified(solution):
     """Largest true magnification at each crank angle of a solution, and the largest error by that of a rounding."""
     with flint.ctx.workprec(BITS):
         run, step = on_arb(flint.arb, replace(solution, loads=())), flint.arb(STEP)
-        run = replace(run, loads=mapped(solution.loads, lambda value: flint.arb(float(value))))
+        run = replace(run, loads=map_numbers(solution.loads, lambda value: flint.arb(float(value))))
         exact = quantities(run)
         changes = dict.fromkeys(exact, 0.0)
         for number in range(lengths(run) + 1):
@@ -52,25 +52,25 @@ def changed(run, which, factor):
         return value * factor if count == which else value
 
     def link(own):
-        return with_fields(own, centre=mapped(own.centre, number, {flint.arb: number}))
+        return replace_unchecked(own, centre=map_numbers(own.centre, number, {flint.arb: number}))
 
     def guide(line):
-        return with_fields(line, guide_offset=mapped(line.guide_offset, number, {flint.arb: number}))
+        return replace_unchecked(line, guide_offset=map_numbers(line.guide_offset, number, {flint.arb: number}))
 
     def spring(own):
-        return with_fields(own, free_position=number(own.free_position))
+        return replace_unchecked(own, free_position=number(own.free_position))
 
     special = {Link: link, Guide: guide, Spring: spring, Gravity: lambda own: own, flint.arb: number}
-    mechanism, loads = (mapped(item, number, special) for item in (run.mechanism, run.loads))
+    mechanism, loads = (map_numbers(item, number, special) for item in (run.mechanism, run.loads))
     return replace(run, mechanism=mechanism, loads=loads, crank_angle=number(run.crank_angle))
 
 
 def lengths(run):
     """How many lengths there are."""
     count = []
-    special = {Link: lambda own: mapped(own.centre, count.append, {flint.arb: count.append})}
-    special |= {Guide: lambda line: mapped(line.guide_offset, count.append, {flint.arb: count.append})}
-    mapped(run.mechanism, count.append, special | {flint.arb: count.append})
+    special = {Link: lambda own: map_numbers(own.centre, count.append, {flint.arb: count.append})}
+    special |= {Guide: lambda line: map_numbers(line.guide_offset, count.append, {flint.arb: count.append})}
+    map_numbers(run.mechanism, count.append, special | {flint.arb: count.append})
     return len(count) + sum(isinstance(item, Spring) for item in run.loads)
 
 

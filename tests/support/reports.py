@@ -9,8 +9,8 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.views.report import html
-from kinetostatics.views.report.movement import unpacked
-from kinetostatics.views.report.subject import subject_of
+from kinetostatics.views.report.movement import from_base64
+from kinetostatics.views.report.report import subject_of
 
 COMMAND = "kinetostatics report CASE --out report.html"
 
@@ -39,7 +39,7 @@ def words(text):
 
 def series(data, name, row):
     """Values of a quantity of a machine in the page's unit, (1 or 2, N)."""
-    return unpacked(data["quantities"][name]["values"][row], "<f8").reshape(-1, data["counts"][row])
+    return from_base64(data["quantities"][name]["values"][row], "<f8").reshape(-1, data["counts"][row])
 
 
 def plain(**options):

@@ -7,7 +7,7 @@ import pandas as pd
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import value_of
-from kinetostatics.mechanics.quantities import sizes
+from kinetostatics.mechanics.quantities import component_sizes
 from kinetostatics.results.means import NODES, WEIGHTS
 from support.case_files import shipped
 
@@ -56,7 +56,7 @@ def ends(scene, name):
     width = np.diff(kinks, append=kinks[0] + scene.period)
     between = kinks[:, None] + width[:, None] * np.linspace(0.0, 1.0, 33)
     angle = np.concatenate([np.linspace(0.0, scene.period, 50_000), between.ravel()])
-    values = sizes(scene.solve(angle, engine="numpy"), name)[0]
+    values = component_sizes(scene.solve(angle, engine="numpy"), name)[0]
     return values.min(), values.max()
 
 
@@ -67,6 +67,6 @@ def means(scene, name):
     edges = np.sort(np.concatenate([edges[:-1] + np.diff(edges) * share for share in (0.0, 0.3, 0.6)] + [edges[-1:]]))
     width = np.diff(edges)
     angle = edges[:-1, None] + width[:, None] * NODES
-    values = sizes(scene.solve(angle.ravel(), engine="numpy"), name)[0].reshape(angle.shape)
+    values = component_sizes(scene.solve(angle.ravel(), engine="numpy"), name)[0].reshape(angle.shape)
     mean, square = (float(((part @ WEIGHTS) * width).sum() / scene.period) for part in (np.abs(values), values**2))
     return mean, np.sqrt(square)

@@ -135,4 +135,4 @@ def test_few_angles_are_raised_to_enough(angles):
     outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
     options = {"variant": "idle"}
     found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)
-    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=chunk.LEAST, **options))
+    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=chunk.MIN_ANGLES_PER_TURN, **options))

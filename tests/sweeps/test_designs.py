@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 import kinetostatics as ks
-from kinetostatics.casefile import parameters, schema
+from kinetostatics.casefile import build, schema
 from kinetostatics.numbers.formatting import si_columns
 from kinetostatics.sweeps import designs
 from support.case_files import shipped
@@ -153,12 +153,14 @@ def test_paths_are_the_variants_numbers_with_units():
 def test_what_the_file_fixes_otherwise_is_no_path():
     """Two points fix the guide of the mower, a table a process force."""
     table = shipped("mower_drive").variant("unbalanced").table
-    assert not {"guide_angle", "guide_offset"} & parameters.paths(table).keys()
+    assert not {"guide_angle", "guide_offset"} & build.places_by_path(table).keys()
     for force, there in (
         (schema.ProcessForceTable(force="2 N"), True),
         (schema.ProcessForceTable(table="f.csv"), False),
     ):
-        assert ("process_force.force" in parameters.paths(table.model_copy(update={"process_force": force}))) is there
+        assert (
+            "process_force.force" in build.places_by_path(table.model_copy(update={"process_force": force}))
+        ) is there
 
 
 def test_columns_are_read_with_units():

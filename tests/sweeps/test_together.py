@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.quantities import sizes
+from kinetostatics.mechanics.quantities import component_sizes
 from kinetostatics.sweeps import chunk
-from kinetostatics.sweeps.chunk import LEAST
+from kinetostatics.sweeps.chunk import MIN_ANGLES_PER_TURN
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support import sweeping as spikes
@@ -34,8 +34,8 @@ def test_as_many_designs_as_angles_is_no_batch():
     def made(shape):
         return lambda acceleration: ks.Scene(pump, 30.0, np.reshape(acceleration, shape))
 
-    designs = pd.DataFrame({"acceleration": np.linspace(100.0, 300.0, LEAST)})
-    column, flat = (sweep(made(shape), designs, "largest O", angles=LEAST) for shape in ((-1, 1), -1))
+    designs = pd.DataFrame({"acceleration": np.linspace(100.0, 300.0, MIN_ANGLES_PER_TURN)})
+    column, flat = (sweep(made(shape), designs, "largest O", angles=MIN_ANGLES_PER_TURN) for shape in ((-1, 1), -1))
     assert flat["largest O [N]"].to_numpy() == pytest.approx(column["largest O [N]"].to_numpy(), rel=1e-12)
 
 
@@ -209,7 +209,7 @@ def test_near_zero_reactions_are_resolved(seed):
         low, high, least, size = angle[:-1, 0], angle[1:, 0], np.inf, 0.0
         for _ in range(14):
             at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 5)
-            values = sizes(chunk.solution_of(scene, at.ravel()), name)[0].reshape(at.shape)
+            values = component_sizes(chunk.solution_of(scene, at.ravel()), name)[0].reshape(at.shape)
             least, size = min(least, values.min()), max(size, values.max())
             near = np.argsort(values.min(axis=1))[:20]
             place = np.clip(values[near].argmin(axis=1), 1, 3)

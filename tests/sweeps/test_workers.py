@@ -218,7 +218,7 @@ def test_stopped_sweep_drops_waiting_calls(tidy, monkeypatch, caplog, capfd):
     def stopped():
         with dispatch.Workers(count=1) as workers:
             workers.capacity = 9  # more than the processes are handed at a time
-            with closing(dispatch.computed(None, lambda number: 60 * number, range(9), workers)) as found:
+            with closing(dispatch.run_chunks(None, lambda number: 60 * number, range(9), workers)) as found:
                 next(found)
                 raise KeyboardInterrupt
 
@@ -276,6 +276,6 @@ def test_harmless_design_is_tried_again(monkeypatch):
     monkeypatch.setattr(dispatch, "rows", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
     monkeypatch.setattr(dispatch.pd, "concat", list)
     hands = Mortal(lambda names, times: 2 in names or (names == (3,) and times == 1))
-    found = dispatch._narrowed(SimpleNamespace(outputs=()), pd.DataFrame({"x": [0.0] * 4}), hands)
+    found = dispatch._isolate_deaths(SimpleNamespace(outputs=()), pd.DataFrame({"x": [0.0] * 4}), hands)
     assert found == [((0, 1),), [[2, "the worker died with this design"], ((3,),)]]
-    assert hands.tried.count((2,)) == dispatch.ALONE
+    assert hands.tried.count((2,)) == dispatch.MAX_DESIGN_RUNS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.design.constraints import demands
+from kinetostatics.design.constraints import parse_constraints
 from kinetostatics.design.optimise import true_excess
 from support.case_files import shipped
 
@@ -79,7 +79,7 @@ def test_shipped_designs_keep_limits_and_stroke(name):
         scene, source = case.variant(design.name).scene, case.variant(design.source).scene
         before, after = (ks.extremes(item.solve(90), "slider_position").range for item in (source, scene))
         np.testing.assert_allclose(after, before, rtol=0, atol=1e-9)
-        for limit in demands(design.table.limits, scene):
+        for limit in parse_constraints(design.table.limits, scene):
             assert true_excess(limit, scene) <= 1e-9 * abs(limit.value), limit
 
 

@@ -19,11 +19,11 @@ PUMP = ks.solve(ks.crank_slider(0.1, 0.5), TURN, crank_speed=1.0)
     [("N", 9e3, (1.0, "N")), ("N", -2e4, (1e-3, "kN")), ("N m", 1e4, (1e-3, "kN m")), ("m", 1e5, (1.0, "m"))],
 )
 def test_large_forces_read_in_kilonewtons(unit, largest, expected):
-    assert canvas.display(unit, [np.array([0.0, np.nan, largest])]) == expected
+    assert canvas.display_unit(unit, [np.array([0.0, np.nan, largest])]) == expected
 
 
 def test_angles_read_in_degrees():
-    assert canvas.display("rad", [np.ones(1)]) == (180 / np.pi, "deg")
+    assert canvas.display_unit("rad", [np.ones(1)]) == (180 / np.pi, "deg")
 
 
 def test_axes_given_are_those_drawn_on():
@@ -35,15 +35,15 @@ def test_axes_given_are_those_drawn_on():
 
 
 def test_single_solution_is_labelled_by_quantity():
-    (label,) = canvas.labelled(PUMP, "balancing_torque")
+    (label,) = canvas.solutions_by_label(PUMP, "balancing_torque")
     assert "torque" in label
-    named = canvas.labelled({"a": PUMP, "b": PUMP}, "balancing_torque")
-    assert [style for *_, style in canvas.styled(named)] == list(canvas.STYLES[:2])
-    assert canvas.single(PUMP) is PUMP
+    named = canvas.solutions_by_label({"a": PUMP, "b": PUMP}, "balancing_torque")
+    assert [style for *_, style in canvas.with_line_styles(named)] == list(canvas.STYLES[:2])
+    assert canvas.single_solution(PUMP) is PUMP
 
 
 def test_a_curve_over_the_turn_is_closed():
-    assert canvas.closed(np.array([[1, 2, 3], [4, 5, 6]])).tolist() == [[1, 2, 3, 1], [4, 5, 6, 4]]
+    assert canvas.close_curve(np.array([[1, 2, 3], [4, 5, 6]])).tolist() == [[1, 2, 3, 1], [4, 5, 6, 4]]
 
 
 def test_missing_columns_and_rows_are_named():
@@ -62,12 +62,12 @@ def test_equal_curves_share_a_label():
         "rounding": 1e-15 * np.cos(turn),
         "short": np.sin(turn[:9]),
     }
-    assert canvas.distinct(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
+    assert canvas.distinct_curves(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
 
 
 def test_small_curves_are_not_called_zero():
-    assert canvas.distinct({"a": np.array([0.0, 1e-12]), "b": np.array([1e-12, 0.0])}) == {"a": "a", "b": "b"}
-    assert canvas.distinct({"alone": np.zeros(3)}) == {"alone": "alone"}
+    assert canvas.distinct_curves({"a": np.array([0.0, 1e-12]), "b": np.array([1e-12, 0.0])}) == {"a": "a", "b": "b"}
+    assert canvas.distinct_curves({"alone": np.zeros(3)}) == {"alone": "alone"}
 
 
 def test_crank_angles_are_counted_there_and_back():
@@ -88,7 +88,7 @@ def test_crank_angles_are_counted_there_and_back():
     ],
 )
 def test_headings_of_tables_read_as_words_with_units(column, text):
-    assert canvas.readable(column) == text
+    assert canvas.axis_words(column) == text
 
 
 @pytest.mark.parametrize(
@@ -105,14 +105,14 @@ def test_headings_of_tables_read_as_words_with_units(column, text):
 )
 def test_few_unbounded_values_set_no_unit(values, largest, seen):
     arrays = [np.array(values, dtype=float)]
-    assert canvas.ordinary(arrays) == pytest.approx(largest, rel=1e-3)
-    assert canvas.in_sight(arrays) == pytest.approx(seen, rel=1e-3)
+    assert canvas.ordinary_size(arrays) == pytest.approx(largest, rel=1e-3)
+    assert canvas.drawn_limit(arrays) == pytest.approx(seen, rel=1e-3)
 
 
 def test_a_unit_is_chosen_by_ordinary_values():
     reaction = np.append(np.linspace(10.0, 20.0, 99), 8e16)
-    assert canvas.display("N", [reaction]) == (1.0, "N")
-    assert canvas.display("N", [1e4 * reaction]) == (1e-3, "kN")
+    assert canvas.display_unit("N", [reaction]) == (1.0, "N")
+    assert canvas.display_unit("N", [1e4 * reaction]) == (1e-3, "kN")
 
 
 @pytest.mark.parametrize(("width", "columns"), [(6.4, 3), (3.4, 2), (1.6, 1)])
@@ -120,7 +120,7 @@ def test_legend_stands_above_the_curves(width, columns):
     figure, ax = plt.subplots(figsize=(width, 4.0))
     for name in ("plain", "cam-circle", "cam-cosine", "plain-rolling", "cam-rolling"):
         ax.plot([0.0, 180.0, 360.0], [-1.0, 1.0, -1.0], label=name)
-    canvas.finished(ax, "force [N]", True)
+    canvas.finish_axes(ax, "force [N]", True)
     figure.canvas.draw()
     legend = ax.get_legend()
     box, frame = legend.get_window_extent(), ax.get_window_extent()

@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import charts
-from kinetostatics.views.peaks import with_peaks
+from kinetostatics.views.canvas import with_peaks
 from support.improved_saws import front
 from support.studied import FEW, torque_study
 
@@ -51,8 +51,8 @@ def test_zero_error_is_drawn_below_rounding(torque):
     figure, ax = plt.subplots()
     charts.work_precision(table, ax=ax)
     curves = {line.get_label(): line.get_ydata() for line in ax.lines}
-    assert list(curves["ours, NumPy"]) == [charts.EXACT]
-    assert ax.get_ylim()[0] < charts.EXACT
+    assert list(curves["ours, NumPy"]) == [charts.MIN_DRAWN_ERROR]
+    assert ax.get_ylim()[0] < charts.MIN_DRAWN_ERROR
     assert "two-mass coupler" not in curves
     plt.close(figure)
 

@@ -8,7 +8,7 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 import kinetostatics as ks
 from kinetostatics.casefile.starters import starter
 from kinetostatics.views import figures
-from kinetostatics.views.peaks import with_peaks
+from kinetostatics.views.canvas import with_peaks
 
 PLOTS = {
     "torque": ks.plots.torque,

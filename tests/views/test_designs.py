@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import designs
+from kinetostatics.views import figures
 from support.case_files import FRONT, STIFFER, saw_with
 
 
@@ -20,14 +20,14 @@ def found(case):
 
 @pytest.mark.slow
 def test_every_design_has_its_page(case, found, tmp_path):
-    paths = designs.draw_designs(case, found, tmp_path / "new", "svg")
+    paths = figures.draw_designs(case, found, tmp_path / "new", "svg")
     assert [path.name for path in paths] == ["saw_stiffer.svg", "saw_trade.svg"]
     assert sorted((tmp_path / "new").iterdir()) == paths
 
 
 @pytest.mark.slow
 def test_page_shows_curves_before_and_after(found):
-    figure = designs.before_and_after(found["stiffer"])
+    figure = figures.before_and_after(found["stiffer"])
     titles = [ax.get_title() for ax in figure.axes]
     assert {"pitch curve of the cam", "support reaction, before", "support reaction, after"} <= set(titles)
     for ax in figure.axes:
@@ -39,15 +39,15 @@ def test_page_shows_curves_before_and_after(found):
 def test_page_without_cam_shows_the_machine():
     vary = {"coupler_length": ("1.9 m", "2.1 m")}
     found = ks.design.optimise(ks.load_case("sawframe_2r63"), vary, "largest O", angles=36, variant="plain")
-    figure = designs.before_and_after(found)
+    figure = figures.before_and_after(found)
     assert [ax.get_title() for ax in figure.axes].count("after") == 1
-    assert designs.cam_of(found.scene) is None
+    assert figures.cam_of(found.scene) is None
     plt.close(figure)
 
 
 def test_radii_of_cams_are_those_of_the_cams():
     cams = {"one": ks.cams.Circle(0.3, (-0.02, 0.0)), "other": ks.cams.Circle(0.28)}
-    ax = designs.cam_radius(cams)
+    ax = figures.cam_radius(cams)
     one, other = (line.get_ydata() for line in ax.lines)
     assert one.min() == pytest.approx(280.0)
     assert one.max() == pytest.approx(320.0)
@@ -57,7 +57,7 @@ def test_radii_of_cams_are_those_of_the_cams():
 
 
 def test_curves_of_cams_lie_around_the_crank():
-    ax = designs.pitch_curves({"one": ks.cams.Circle(0.3, (-0.02, 0.0))})
+    ax = figures.pitch_curves({"one": ks.cams.Circle(0.3, (-0.02, 0.0))})
     x, y = ax.lines[0].get_data()
     assert ((x + 20) ** 2 + y**2) == pytest.approx(300.0**2)
     plt.close(ax.figure)
@@ -66,4 +66,4 @@ def test_curves_of_cams_lie_around_the_crank():
 def test_an_input_is_never_overwritten(case, found, tmp_path):
     (tmp_path / "file").write_text("old")
     with pytest.raises(ks.ParameterError, match="figures"):
-        designs.draw_designs(case, found, tmp_path / "file")
+        figures.draw_designs(case, found, tmp_path / "file")

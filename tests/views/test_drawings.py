@@ -11,10 +11,10 @@ from matplotlib.patches import Polygon
 from matplotlib.path import Path as CurvePath
 
 import kinetostatics as ks
-from kinetostatics.views import labels, symbols
+from kinetostatics.views import labels, strokes
 from kinetostatics.views.canvas import LOAD
 from kinetostatics.views.labels import label
-from kinetostatics.views.shape import Shape, own_strokes
+from kinetostatics.views.strokes import Shape, strokes_by_owner
 from support.chains import chain
 
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
@@ -65,9 +65,9 @@ def test_springs_and_dampers_join_their_points(axes):
     pose = drawn(FOUR_BAR, axes, loads)
     (spring,) = lines_between(axes, pose.position("B")[:, 0], (0.6, 0.5))
     (damper,) = lines_between(axes, pose.position(("coupler", 0.1))[:, 0], (0.35, 0.1))
-    assert len(spring) == len(symbols.SPRING)
-    assert len(damper) == len(symbols.DAMPER)
-    grounds = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is symbols.PIVOT]
+    assert len(spring) == len(strokes.SPRING)
+    assert len(damper) == len(strokes.DAMPER)
+    grounds = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is strokes.PIVOT]
     assert {(0.6, 0.5), (0.35, 0.1), (0.0, 0.0)} == {tuple(place) for place in grounds}
 
 
@@ -144,7 +144,7 @@ def test_a_couple_that_is_negative_is_drawn_clockwise(axes):
 
 def test_guide_spring_is_drawn_beyond_the_slider(axes):
     pose = drawn(SAW, axes, ks.Spring(100.0, 0.4))
-    springs = [line.get_xydata() for line in axes.lines if len(line.get_xdata()) == len(symbols.SPRING)]
+    springs = [line.get_xydata() for line in axes.lines if len(line.get_xdata()) == len(strokes.SPRING)]
     assert len(springs) == 1
     assert pose.position("B")[0, 0] < springs[0][0, 0]
     assert springs[0][-1, 0] > 0.5  # the end of the stroke
@@ -170,7 +170,7 @@ def test_three_joint_links_are_plates(axes):
 @pytest.mark.slow
 def test_only_links_with_mass_show_a_centre(axes):
     pose = drawn(FOUR_BAR, axes)
-    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is symbols.MASS_CENTRE_PATH]
+    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is strokes.MASS_CENTRE_PATH]
     assert np.allclose(marked, [pose.position(link)[:, 0] for link in ("coupler", "rocker")])
 
 
@@ -204,7 +204,7 @@ def test_pivots_stand_within_the_axes(axes):
     drawn(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, -0.2), **BARS), axes)
     axes.figure.canvas.draw()
     for line in axes.lines:
-        if line.get_marker() is symbols.PIVOT:
+        if line.get_marker() is strokes.PIVOT:
             (x, y) = axes.transData.transform(line.get_xydata()[0])
             assert axes.bbox.y0 + 0.5 * line.get_markersize() < y
             assert axes.bbox.x0 < x < axes.bbox.x1
@@ -255,21 +255,21 @@ def test_cam_on_the_crank_passes_its_roller():
 
 def test_sign_is_placed_by_origin_and_direction():
     origin, up = np.array([[1.0], [2.0]]), np.array([[0.0], [1.0]])
-    points = symbols.placed([(0, 0), (1, 0), (0, 1)], origin, up, 2.0)
+    points = strokes.place_sign([(0, 0), (1, 0), (0, 1)], origin, up, 2.0)
     assert points[..., 0].T.tolist() == [[1, 2], [1, 4], [-1, 2]]
-    assert symbols.placed([(0, 1)], origin, up, 2.0, -1.0)[:, 0, 0].tolist() == [3, 2]
+    assert strokes.place_sign([(0, 1)], origin, up, 2.0, -1.0)[:, 0, 0].tolist() == [3, 2]
 
 
-@pytest.mark.parametrize("shape", [symbols.SPRING, symbols.DAMPER, symbols.LINE])
+@pytest.mark.parametrize("shape", [strokes.SPRING, strokes.DAMPER, strokes.LINE])
 def test_what_joins_two_points_begins_and_ends_at_them(shape):
     start, end = np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([[4.0, 0.0], [5.0, 2.0]])
-    points = symbols.spanned(shape, start, end, 0.1)
+    points = strokes.span_sign(shape, start, end, 0.1)
     assert np.allclose(points[:, 0], start)
     assert np.allclose(points[:, -1], end)
 
 
 def test_ground_is_hatched_on_the_right_of_its_line():
-    points = symbols.hatched(np.array([0.0, 0.0]), np.array([1.0, 0.0]), 0.1)
+    points = strokes.hatched_line(np.array([0.0, 0.0]), np.array([1.0, 0.0]), 0.1)
     assert points[:, :2].T.tolist() == [[0, 0], [1, 0]]
     assert np.nanmin(points[1]) == pytest.approx(-0.1)
     assert np.nanmax(points[1]) == 0.0
@@ -290,7 +290,7 @@ WEIGHED = solved(ks.crank_slider(0.1, 0.4, crank=ks.Link(2.0, -0.06), slider=SLI
 
 
 def test_strokes_have_the_labels_of_all_that_bear_them():
-    found = own_strokes({"plain": PLAIN, "one": WEIGHED, "other": WEIGHED}, np.array([40.0]))
+    found = strokes_by_owner({"plain": PLAIN, "one": WEIGHED, "other": WEIGHED}, np.array([40.0]))
     assert {stroke.kind for stroke, _ in found} == {"counterweight", "spring"}
     assert all(owners == ["one", "other"] for _, owners in found)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import figures, symbols
+from kinetostatics.views import figures, strokes
 from kinetostatics.views.canvas import FROM_X, FROM_Y_CLOCKWISE
 from kinetostatics.views.figures import draw_case
 from support.case_files import shipped
@@ -134,5 +134,5 @@ def test_drawing_leaves_the_settings_of_others_alone(tmp_path):
 def test_overview_takes_the_variant_with_loads(case, name):
     ax = drawn(case, "overview", angles=36).axes[0]
     assert ax.get_title().startswith(f"{name}: ")
-    assert any(len(line.get_xdata()) == len(symbols.ARROW) for line in ax.lines) or case == "sawframe_2r63"
+    assert any(len(line.get_xdata()) == len(strokes.ARROW) for line in ax.lines) or case == "sawframe_2r63"
     plt.close(ax.figure)

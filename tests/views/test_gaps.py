@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import canvas, peaks
-from kinetostatics.views.peaks import with_peaks
+from kinetostatics.views import canvas
+from kinetostatics.views.canvas import with_peaks
 from support.every import every
 
 TURN = np.radians(np.arange(0.0, 360.0, 0.5))
@@ -78,7 +78,7 @@ def test_hodograph_beside_a_gap_is_readable(axes):
     solution = solved(four_bar, loads=ks.Gravity())
     ks.plots.hodograph(solution, ax=axes, marks=30)
     x, y = axes.lines[0].get_data()
-    assert np.nanmax(np.hypot(x, y)) <= canvas.in_sight([np.hypot(*solution.reaction("O"))])
+    assert np.nanmax(np.hypot(x, y)) <= canvas.drawn_limit([np.hypot(*solution.reaction("O"))])
     told = " ".join(text.get_text() for text in axes.texts)
     assert "beyond the frame: up to" in told
     assert "nan" not in told
@@ -93,7 +93,7 @@ def test_hodograph_ends_in_arrows_or_crosses(axes):
     ks.plots.hodograph(solution, ax=axes)
     solution = with_peaks({"": solution}, "O")[""]
     whole, drawn = solution.reaction("O"), np.array(axes.lines[0].get_data())[:, :-1]
-    found = list(peaks.ends(solution, whole, drawn))
+    found = list(canvas.curve_ends(solution, whole, drawn))
     there, missing = np.isfinite(drawn[0]), np.isnan(whole[0])
     assert len(found) == np.sum(there & ~np.roll(there, -1)) + np.sum(there & ~np.roll(there, 1)) > 2
     for end in found:
@@ -113,7 +113,7 @@ def test_the_head_of_an_arrow_points_along_the_curve():
     x = np.array([0.0, 1.0, 2.0, np.nan, np.nan, -1.0])
     curve = np.array([x, 0.5 * x])
     solution = solved(SHORT)
-    first, second = peaks.ends(solution, np.nan_to_num(curve, nan=9.0), curve)
+    first, second = canvas.curve_ends(solution, np.nan_to_num(curve, nan=9.0), curve)
     assert (first.row, second.row) == (2, 5)
     assert first.angle == pytest.approx(np.degrees(np.arctan2(0.5, 1.0)))
     assert second.angle == pytest.approx(np.degrees(np.arctan2(-0.5, -1.0)))

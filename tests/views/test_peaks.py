@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanics.load_values import given
+from kinetostatics.mechanics.load_values import user_value
 from kinetostatics.mechanics.quantities import values
-from kinetostatics.views.peaks import with_peaks
+from kinetostatics.views.canvas import with_peaks
 from support.every import every
 
 PRESS = ks.crank_slider(0.1, 0.4, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0))
@@ -34,14 +34,14 @@ def test_a_curve_reaches_as_far_as_the_table_says(name, quantity):
 def test_curve_points_are_its_table():
     s = with_peaks({"": solved(TABLES["narrow peak"])}, "balancing_torque")[""]
     load, dense = s.loads[1], np.linspace(0.0, 2 * np.pi, 20001)
-    drawn = np.interp(dense, s.crank_angle, given(load, s), period=2 * np.pi)
-    assert np.abs(drawn - given(load, s.at(dense))).max() < 1e-2 * 5e4
+    drawn = np.interp(dense, s.crank_angle, user_value(load, s), period=2 * np.pi)
+    assert np.abs(drawn - user_value(load, s.at(dense))).max() < 1e-2 * 5e4
 
 
 def test_both_sides_of_a_jump_are_drawn():
     s = with_peaks({"": solved(TABLES["jump"])}, "balancing_torque")[""]
     near = np.abs(s.crank_angle - np.pi) < 1e-12
-    assert {-4e3, 0.0} <= set(given(s.loads[1], s)[near])
+    assert {-4e3, 0.0} <= set(user_value(s.loads[1], s)[near])
 
 
 def test_curves_drawn_together_share_their_angles():

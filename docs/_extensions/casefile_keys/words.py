@@ -129,8 +129,8 @@ def words_of(function):
         texts.point: "pair of length [m]",
         variants._coefficient: "number, not negative",
         tables._ratio: f"number, {', '.join(f'`{json.dumps(word)}`' for word in tables.RATIOS)}",
-        parts._place: "point: joint, place on a link, or fixed",
-        parts._two_places: "two points",
+        parts._read_point: "point: joint, place on a link, or fixed",
+        parts._read_two_points: "two points",
     }.get(function, "")
 
 

@@ -12,9 +12,8 @@ validation  what is wrong with a table, in sentences
 from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
-from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable
+from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, key_path, validate
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
-from .validation import key_path, validated
 from .variants import (
     VARIANTS,
     CamVariant,

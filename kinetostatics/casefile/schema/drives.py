@@ -18,10 +18,10 @@ Power = Annotated[float, BeforeValidator(reader("W", low=0.0, strict=True))]
 MotorSpeed = Annotated[float, BeforeValidator(reader("rad/s", low=0.0, strict=True))]
 StandstillTorque = Annotated[float, BeforeValidator(reader("N m", low=0.0, strict=True))]
 Torque = Annotated[float, BeforeValidator(reader("N m"))]
-Turning = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0))]
+MomentOfInertia = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0))]
 
 
-def _row(unit):
+def _row_type(unit):
     """Type of a list of texts with units."""
 
     def read(value):
@@ -37,7 +37,7 @@ class MotorTable(Table):
 
     transmission: Factor = 1.0
     """Motor speed over crank speed; negative where they turn against each other."""
-    inertia: Turning = 0.0
+    inertia: MomentOfInertia = 0.0
     """Of the rotor, at its own shaft."""
 
     @property
@@ -89,9 +89,9 @@ class TorqueTable(MotorTable):
 
     kind: Literal["table"]
     """Torque over speed, by rows."""
-    speed: _row("rad/s") = None  # type: ignore[valid-type]
+    speed: _row_type("rad/s") = None  # type: ignore[valid-type]
     """Of the motor's shaft, a row of texts."""
-    torque: _row("N m") = None  # type: ignore[valid-type]
+    torque: _row_type("N m") = None  # type: ignore[valid-type]
     """At the motor's shaft, a row of texts."""
     file: str | None = None
     """CSV file with columns speed and torque, in place of the rows."""
@@ -125,5 +125,5 @@ class DriveTable(Table):
 
     motor: MotorOfKind
     """What drives."""
-    flywheel: Turning = 0.0
+    flywheel: MomentOfInertia = 0.0
     """Moment of inertia on the crank, beside its own link."""

@@ -18,13 +18,13 @@ from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide
 from ...machine.links import Link
 from ...machine.loads import KINDS, Gravity, ProcessForce, Spring
-from ...machine.loads.points import WORDS, Between, Place
+from ...machine.loads.points import PLACE_FORMS, PlacePairRule, PlaceRule
 from ...numbers import checks
 from ...numbers.units import quoted, to_si
 from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in
 from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
 
-GUIDE = {
+GUIDE_FIELDS = {
     "guide_angle": (Angle | None, None),
     "guide_offset": (Coordinate | None, None),
     "guide_through": (GuidePoints | None, None),
@@ -39,21 +39,21 @@ def field_of(rule) -> Any:
     if isinstance(rule, checks.Optional):
         return field_of(rule.rule)
     if isinstance(rule, checks.OrFunction):
-        return value_in(_spelled(rule.rule.unit))
+        return value_in(_case_unit(rule.rule.unit))
     if isinstance(rule, checks.Number):
-        unit = _spelled(rule.unit)
+        unit = _case_unit(rule.unit)
         return Annotated[float, BeforeValidator(reader(unit, low=rule.low, strict=rule.strict)), unit]
-    if isinstance(rule, checks.Pair | Place | Between):
-        return Annotated[Any, BeforeValidator(_numbers(rule)), rule]
-    return Annotated[Any, BeforeValidator(by(rule))]
+    if isinstance(rule, checks.Pair | PlaceRule | PlacePairRule):
+        return Annotated[Any, BeforeValidator(_numbers_reader(rule)), rule]
+    return Annotated[Any, BeforeValidator(value_reader(rule))]
 
 
-def _spelled(unit):
+def _case_unit(unit):
     """A unit as case files have it."""
     return unit.replace("**", "^").replace("*", " ")
 
 
-def by(rule):
+def value_reader(rule):
     """Function that takes a value by a rule."""
 
     def take(value):
@@ -68,43 +68,43 @@ def by(rule):
     return take
 
 
-def _numbers(rule):
+def _numbers_reader(rule):
     """Function that takes a pair, a point or two of them, numbers as text."""
-    if isinstance(rule, Between):
-        return _two_places
-    return _place if isinstance(rule, Place) else pair_of(_spelled(rule.unit))
+    if isinstance(rule, PlacePairRule):
+        return _read_two_points
+    return _read_point if isinstance(rule, PlaceRule) else pair_of(_case_unit(rule.unit))
 
 
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")
 """What begins as a number does, so that it names no link."""
-POINT = f'{WORDS}, such as "B", ["coupler", "0.5 m", "0.1 m"] or ["1 m", "0 m"]'
+POINT_FORMS = f'{PLACE_FORMS}, such as "B", ["coupler", "0.5 m", "0.1 m"] or ["1 m", "0 m"]'
 
 
-def _place(value):
+def _read_point(value):
     if isinstance(value, list) and len(value) in (2, 3):
         named = value[:1] if len(value) == 3 or not _NUMBER.match(str(value[0])) else []
         value = [*named, *(to_si(part, "m") for part in value[len(named) :])]
     elif not isinstance(value, str):
-        raise ValueError(f"must be {POINT}, found {quoted(value)}")
-    return by(Place())(value)
+        raise ValueError(f"must be {POINT_FORMS}, found {quoted(value)}")
+    return value_reader(PlaceRule())(value)
 
 
-def _two_places(value):
+def _read_two_points(value):
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f"must be a pair of points, each {POINT}, found {quoted(value)}")
-    return tuple(map(_place, value))
+        raise ValueError(f"must be a pair of points, each {POINT_FORMS}, found {quoted(value)}")
+    return tuple(map(_read_point, value))
 
 
-def _table(word, kind, **other) -> Any:
+def _table_model(word, kind, **other) -> Any:
     """Table of a kind, with other types of some fields; None leaves a field out."""
     defaults = {field.name: field.default for field in fields(kind)}
     found: dict[str, Any] = {"kind": (Literal[word], ...)}
     for name, rule in kind.RULES.rules.items():
         if other.get(name, rule) is None:
             continue
-        if isinstance(rule, checks.Made) and rule.kind is Guide:
-            found |= GUIDE
-        elif isinstance(rule, checks.Made) and rule.kind is Link:
+        if isinstance(rule, checks.InstanceOf) and rule.kind is Guide:
+            found |= GUIDE_FIELDS
+        elif isinstance(rule, checks.InstanceOf) and rule.kind is Link:
             found[name] = (LinkTable, LinkTable())
         else:
             default = ... if defaults[name] is MISSING else defaults[name]
@@ -125,7 +125,7 @@ GROUPS = {
     "pin": Pin,
     "cam roller": CamRoller,
 }
-OTHERS: dict[Any, dict[str, Any]] = {
+SPECIAL_FIELDS: dict[Any, dict[str, Any]] = {
     CamRoller: {"cam": Cam, "roller": RollerTable | None},
     Spring: {"stiffness": Stiffness},
     ProcessForce: {"period": None},  # a table has one, a constant none
@@ -134,12 +134,12 @@ OTHERS: dict[Any, dict[str, Any]] = {
 LOADS = {kind.PATH.replace("_", " "): kind for kind in KINDS if kind is not Gravity}
 
 
-def _tables(kinds):
-    return {word: _table(word, kind, **OTHERS.get(kind, {})) for word, kind in kinds.items()}
+def _table_models(kinds):
+    return {word: _table_model(word, kind, **SPECIAL_FIELDS.get(kind, {})) for word, kind in kinds.items()}
 
 
-Groups = list_of(one_of("group", _tables(GROUPS)), "groups", 1)
-Loads = list_of(one_of("load", _tables(LOADS)), "loads")
+Groups = list_of(one_of("group", _table_models(GROUPS)), "groups", 1)
+Loads = list_of(one_of("load", _table_models(LOADS)), "loads")
 
 MEANINGS = {
     "guide_angle": "Direction of the guide, from +x.",

@@ -1,13 +1,19 @@
-"""Tables within a variant: links, cams, counterweights, files of values, and how one of several kinds is told."""
+"""Tables within a variant: links, cams, counterweights, files of values, and how one of several kinds is told.
+
+Tables of a case file checked against their models: one sentence for each problem, with the key it stands at.
+"""
 
 import math
+import typing
 from typing import Annotated, Any, Literal
 
+import pydantic
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
-from ...design.balancing import RATIOS, ratio_problem
+from ...design.balancing import NAMED_RATIOS, ratio_problem
 from ...machine.cams.cams import Harmonic
-from ...machine.cams.roller import LARGEST_RATIO
+from ...machine.cams.roller import MAX_POISSONS_RATIO
+from ...numbers import checks
 from ...numbers.checks import choice, nearest
 from ...numbers.units import quoted
 from .texts import (
@@ -22,9 +28,9 @@ from .texts import (
     Period,
     Point,
     Weight,
-    or_else,
     reader,
     series_of,
+    with_alternative,
 )
 
 
@@ -113,7 +119,7 @@ TAGS |= {"value:text": Table, "value:file": ValuesTable}
 
 def value_in(unit) -> Any:
     """Type of what is a text with a unit, or a table that names a file."""
-    text = BeforeValidator(or_else(reader(unit), 'a table, { file = "values.csv" }'))
+    text = BeforeValidator(with_alternative(reader(unit), 'a table, { file = "values.csv" }'))
     choices = Annotated[float, text, Tag("value:text")] | Annotated[ValuesTable, Tag("value:file")]
     by_type = Discriminator(lambda raw: "value:file" if isinstance(raw, dict | ValuesTable) else "value:text")
     return Annotated[choices, by_type, unit]
@@ -164,7 +170,7 @@ Cam = one_of("cam", CAMS)
 
 # Rollers
 
-PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST_RATIO, allow_inf_nan=False), "1"]
+PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=MAX_POISSONS_RATIO, allow_inf_nan=False), "1"]
 
 
 class RollerTable(Table):
@@ -189,7 +195,7 @@ class RollerTable(Table):
 
 def _ratio(value):
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    problem = None if number else choice("ratio", value, tuple(RATIOS))
+    problem = None if number else choice("ratio", value, tuple(NAMED_RATIOS))
     if problem:
         raise ValueError(f"must be a number or a name: {problem}")
     if number and (problem := ratio_problem(value)):
@@ -229,3 +235,71 @@ class BalancingTable(Table):
     """Counterweight on the coupler."""
     rocker: CounterweightTable | None = None
     """Counterweight on the rocker."""
+
+
+def validate(model, raw, place):
+    """The model or None, and a line for each problem; `place` tells where in the file a key stands."""
+    try:
+        return model.model_validate(raw), []
+    except pydantic.ValidationError as error:
+        return None, [_sentence(model, item, place) for item in error.errors()]
+
+
+NOT_A_TABLE = ("model_type", "dict_type")
+"""What is wrong, as pydantic calls it, where a table should stand."""
+
+
+def _sentence(model, item, place):
+    keys = tuple(key for key in item["loc"] if key not in TAGS)
+    path = key_path(place(keys))
+    found = item["input"]
+    if item["type"] == "missing":
+        return f"{path} is missing"
+    if item["type"] == "extra_forbidden":
+        allowed = _allowed(model, item["loc"][:-1])
+        return f"{path} is not a key here{checks.hint(keys[-1], allowed)} (allowed: {', '.join(allowed)})"
+    if item["type"] == "kind":
+        allowed = kinds(item["msg"])
+        if not isinstance(found, dict):
+            return f"{path} must be a table with a kind, of {', '.join(map(repr, allowed))}, found {quoted(found)}"
+        if "kind" not in found:
+            return f"{path}.kind is missing; allowed: {', '.join(map(repr, allowed))}"
+        return checks.choice(f"{path}.kind", found["kind"], allowed)
+    if item["type"] == "literal_error" and keys[-1] == "kind":
+        return checks.choice(path, found, kinds(item["loc"][-2]))
+    if item["type"] in NOT_A_TABLE:
+        return f"{path} must be a table of keys and values, found {quoted(found)}"
+    if item["type"] == "value_error":
+        return f"{path} {item['ctx']['error']}"
+    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {quoted(found)}"
+
+
+def key_path(keys):
+    """Keys as a file has them: "variants.plain.cam.centre[1]"."""
+    text = ""
+    for key in keys:
+        text += f"[{key + 1}]" if isinstance(key, int) else f".{key}" if text else str(key)
+    return text
+
+
+def _allowed(model, keys):
+    """Keys allowed in the table at a path of the model."""
+    return [key for table in _tables_at(model, keys) for key in table.model_fields]
+
+
+def _tables_at(model, keys):
+    """Tables that may stand at a path of the model."""
+    candidates = [model]
+    for key in keys:
+        if key in TAGS:
+            candidates = [TAGS[key]]
+        elif any(key in table.model_fields for table in candidates):  # others are numbers in a list, and names
+            fields = [table.model_fields[key].annotation for table in candidates if key in table.model_fields]
+            candidates = [inner for annotation in fields for inner in _tables(annotation)]
+    return candidates
+
+
+def _tables(annotation):
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return [annotation]
+    return [table for part in typing.get_args(annotation) for table in _tables(part)]

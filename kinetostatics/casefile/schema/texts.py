@@ -40,7 +40,7 @@ _STIFFNESS = reader("N/m", low=0.0)
 _COORDINATE = reader("m")
 
 
-def or_else(read, words):
+def with_alternative(read, words):
     """Function that reads a text, and says what else might be written."""
 
     def read_or_say(text):
@@ -53,7 +53,7 @@ def or_else(read, words):
 
 
 def _stiffness(text):
-    return text if text == BALANCE_THE_SLIDER else or_else(_STIFFNESS, f'"{BALANCE_THE_SLIDER}"')(text)
+    return text if text == BALANCE_THE_SLIDER else with_alternative(_STIFFNESS, f'"{BALANCE_THE_SLIDER}"')(text)
 
 
 def pair_of(unit):
@@ -84,7 +84,7 @@ point = pair_of("m")
 def _centre(value):
     if isinstance(value, str) and value == MID_LENGTH:
         return value
-    return point(value) if isinstance(value, list) else (or_else(_COORDINATE, f'"{MID_LENGTH}"')(value), 0.0)
+    return point(value) if isinstance(value, list) else (with_alternative(_COORDINATE, f'"{MID_LENGTH}"')(value), 0.0)
 
 
 def _sampling(text):

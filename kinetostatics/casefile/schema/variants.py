@@ -12,7 +12,7 @@ from ...machine.groups.yoke import YokeGroup
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable
-from .parts import Groups, Loads, by
+from .parts import Groups, Loads, value_reader
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
@@ -28,11 +28,11 @@ from .texts import (
     Stiffness,
 )
 
-SliderAssembly = Annotated[Any, BeforeValidator(by(SliderGroup.RULES.rules["assembly"]))]
-RockerAssembly = Annotated[Any, BeforeValidator(by(RockerGroup.RULES.rules["assembly"]))]
-LeverAssembly = Annotated[Any, BeforeValidator(by(LeverGroup.RULES.rules["assembly"]))]
-Sense = Annotated[Any, BeforeValidator(by(checks.Sign()))]
-Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
+SliderAssembly = Annotated[Any, BeforeValidator(value_reader(SliderGroup.RULES.rules["assembly"]))]
+RockerAssembly = Annotated[Any, BeforeValidator(value_reader(RockerGroup.RULES.rules["assembly"]))]
+LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rules["assembly"]))]
+Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
+Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
 
 
 class SpringTable(Table):

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan
-from ...numbers.planar import minus, plus, polar_curvature, product, turned, unturned
+from ...numbers.planar import minus, plus, polar_curvature, product, rotate, rotate_back
 from ..crank import ray as ray_at
 from ..links import present
 
@@ -55,7 +55,7 @@ class Cam:
         r, r', r'' : tuple of arrays
             In m, m/rad, m/rad2.
         """
-        phi = _array(phi)
+        phi = _angle_array(phi)
         return self.polar(phi, ray_at(phi))
 
     def pressure_angle(self, phi):
@@ -163,12 +163,12 @@ class Cam:
         export(self, path, roller_radius, cutter_radius, points, units, side, clockwise)
 
 
-def _array(phi):
-    phi = checks.converted("cam", "crank angle", phi, "rad")
+def _angle_array(phi):
+    phi = checks.to_plain_named("cam", "crank angle", phi, "rad")
     return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi
 
 
-GRID = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 """Crank angles at which the smallest radius is looked for, rad."""
 
 
@@ -222,7 +222,7 @@ class Harmonic(checks.Checked, Cam):
     @property
     def smallest_radius(self):
         """Smallest distance of the roller centre from O at 720 crank angles, m."""
-        return np.min(self.polar(GRID, ray_at(GRID))[0])
+        return np.min(self.polar(RADIUS_ANGLES, ray_at(RADIUS_ANGLES))[0])
 
     def polar(self, angle, ray):
         mean, farther, slope, second = self.about_mean(angle, ray)
@@ -233,7 +233,7 @@ class Harmonic(checks.Checked, Cam):
 
         Their sines and cosines follow from each other; they mostly grow smaller, so that little is lost by rounding.
         """
-        psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
+        psi = ray if present(self.guide_angle) is None else rotate_back(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine
         terms, wave = [], psi
         for order in range(1, 1 + max(len(even), len(self.sine))):
@@ -243,6 +243,6 @@ class Harmonic(checks.Checked, Cam):
                 term = plus(product(a, cosine), product(b, sine))
                 slope = float(order) * minus(product(b, cosine), product(a, sine))
                 terms.append((term, slope, float(-order * order) * term))
-            wave = turned(wave, psi)
+            wave = rotate(wave, psi)
         found = (reduce(add, reversed(parts)) for parts in zip(*terms, strict=True))
         return mean, *(found if terms else [0.0 * psi[0]] * 3)

@@ -13,17 +13,17 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, sign, sqrt
-from ...numbers.parameter_tree import say_together
-from ...numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
+from ...numbers.parameter_tree import come_from_one_class
+from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..group import FRAME, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
-from ..links import Joint, Led, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
-from .roller import Roller, Touch
+from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
+from .roller import LineContact, Roller
 
-FINE = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+CURVATURE_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 """Crank angles at which the curvature of cams is looked at, rad."""
-GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 """Crank angles at which cams of the user's own are looked at, rad."""
 OUTPUTS = {
     "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
@@ -67,7 +67,7 @@ def place(ray, radius, slope, curvature):
     return Joint(
         (along, across),
         (slope * x - across, slope * y + along),
-        subtracted(departure(ray, slope, curvature), (along, across)),
+        subtract_vectors(departure(ray, slope, curvature), (along, across)),
     )
 
 
@@ -84,7 +84,7 @@ def resolve(ray, radius, slope, load):
 
     `load` is what acts on the block, its own and what hangs on it, a wrench about A.
     """
-    force = vector(load.force)
+    force = vector_or_zero(load.force)
     lean = slope / radius
     outward = dot(force, ray)
     cam = outward * sqrt(1.0 + lean * lean)
@@ -128,9 +128,9 @@ class CamRoller(checks.Checked, Group):
     TRUSTED = True
     RULES = checks.Rules(
         "cam roller",
-        cam=checks.Own(("polar",), "one of ks.cams or alike"),
-        block=checks.Made(Link, "a Link"),
-        roller=checks.Optional(checks.Made(Roller, "a Roller")),
+        cam=checks.HasMembers(("polar",), "one of ks.cams or alike"),
+        block=checks.InstanceOf(Link, "a Link"),
+        roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
     )
 
     @property
@@ -153,13 +153,13 @@ class CamRoller(checks.Checked, Group):
     def reaches(self):
         """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
         found = getattr(self.cam, "smallest_radius", None)
-        return (np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found,)
+        return (np.min(self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))[0]) if found is None else found,)
 
     @cached_property
     def tightest(self):
         """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
         with np.errstate(divide="ignore"):
-            curved = abs(1.0 / polar_curvature(*self.cam.polar(FINE, ray(FINE))))
+            curved = abs(1.0 / polar_curvature(*self.cam.polar(CURVATURE_ANGLES, ray(CURVATURE_ANGLES))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
@@ -176,7 +176,7 @@ class CamRoller(checks.Checked, Group):
 
     @property
     def led(self):
-        return (Led("block", "A", FRAME, "cam_force"),)
+        return (CamDriven("block", "A", FRAME, "cam_force"),)
 
     @property
     def curves(self):
@@ -200,7 +200,7 @@ class CamRoller(checks.Checked, Group):
 
     @property
     def contacts(self):
-        return {} if self.roller is None else {"contact_pressure": Touch(self.roller, "cam_force")}
+        return {} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
         return self.contacts[name].body.relative_radius(polar_curvature(*placement.details["cam"]), side)
@@ -214,7 +214,7 @@ class CamRoller(checks.Checked, Group):
 
     def place(self, placement):
         orbit = None
-        if say_together(type(self.cam), "about_mean", "polar"):
+        if come_from_one_class(type(self.cam), "about_mean", "polar"):
             mean, farther, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
             polar, orbit = (mean + farther, *derivatives), Orbit(mean, farther)
         else:
@@ -240,7 +240,7 @@ class CamRoller(checks.Checked, Group):
     def follow(self, placement, joints):
         """Place the block at joints found in another way."""
         joint = joints["A"]
-        radius, slope, outward = (dot(vector(part), placement.ray) for part in joint)
+        radius, slope, outward = (dot(vector_or_zero(part), placement.ray) for part in joint)
         self._set(placement, joint, (radius, slope, outward + radius))
 
     def _set(self, placement, joint, polar):

@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import namespace, sqrt, total
+from ...numbers.arithmetic import compensated_sum, namespace, sqrt
 from ...numbers.lazy import cached_property
-from ...numbers.planar import length_and_rest, minus
+from ...numbers.planar import length_with_error, minus
 from ..crank import ray as ray_at
-from ..groups.near_dead_centre import CLOSE, directed, spread
+from ..groups.near_dead_centre import CLOSE_SHARE, direction_and_length, squared_distances
 from .cam import Cam, Harmonic
 from .from_law import LawCam, from_law
 from .profile import Profile
@@ -82,15 +82,15 @@ class Circle(Cam):
         """Whether O lies close to the circle, in any design."""
         (x, y), radius = self.centre, self.pitch_radius
         if type(x) is type(y) is type(radius) is float:
-            return radius - math.hypot(x, y) < CLOSE * radius
+            return radius - math.hypot(x, y) < CLOSE_SHARE * radius
         smallest = self.smallest_radius
-        return checks.known(smallest) and bool(np.any(smallest < CLOSE * radius))
+        return checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
 
     def _around_origin(self):
         """Say where O lies outside the circle, or on it."""
         (x, y), radius = self.centre, self.pitch_radius
         distance = sqrt(x * x + y * y)
-        if checks.known(distance - radius) and np.any(distance >= radius):
+        if checks.has_known_values(distance - radius) and np.any(distance >= radius):
             text = (
                 f"O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O and its radius "
                 f"{np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
@@ -133,9 +133,9 @@ class Circle(Cam):
         There r, along and the root are such that r (root - along) is the product of the smallest and largest radius.
         """
         (x, y), radius = self.centre, self.pitch_radius
-        (away, rest), (direction, reach) = length_and_rest(self.centre), directed((y, -x))
-        least, share = total(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
-        _, near_by, far_off = spread(ray, direction, reach)
+        (away, rest), (direction, reach) = length_with_error(self.centre), direction_and_length((y, -x))
+        least, share = compensated_sum(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
+        _, near_by, far_off = squared_distances(ray, direction, reach)
         root = sqrt((least + share * near_by) * (least + share * far_off))
         r = along + root
         return r, across / root * r, radius * radius * least * (radius + away) / (root * root * root) - r
@@ -197,7 +197,7 @@ class CosineLaw(checks.Checked, Cam):
     def _clear_of_origin(self):
         """Say where the slider would run over O."""
         mean, amplitude = self.mean, self.amplitude
-        if checks.known(mean - amplitude) and np.any(mean <= amplitude):
+        if checks.has_known_values(mean - amplitude) and np.any(mean <= amplitude):
             text = (
                 f"mean must exceed the amplitude, or the slider would run over O; got mean {mean} m and amplitude "
                 f"{amplitude} m"

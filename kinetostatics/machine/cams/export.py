@@ -11,15 +11,15 @@ import numpy as np
 
 from ...errors import FileError, MissingLibraryError
 from ...numbers import checks
-from ...numbers.files import unwritable, written_whole
+from ...numbers.files import write_atomically, write_problem
 from ...numbers.lazy import cached_property
-from .profile import POSITIVE, SIDES, Profile, profile
+from .profile import POSITIVE, SIDE_SIGNS, Profile, profile
 
-MM = 1000.0
+MM_PER_M = 1000.0
 """Millimetres in a metre: what the drawing is measured in, so that it prints one to one."""
-CLASSES = {"surface": "cam", "pitch": "pitch", "cutter": "cutter"}
+CURVE_CLASSES = {"surface": "cam", "pitch": "pitch", "cutter": "cutter"}
 """How each curve is drawn."""
-INK = (
+SVG_STYLE = (
     "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
     ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"
     ".pitch{stroke:#c22;stroke-width:.3;stroke-dasharray:8 1.5 1 1.5}"
@@ -31,17 +31,17 @@ INK = (
 
 def drawn(sheet):
     """Text of the drawing."""
-    return _Drawing(sheet).text()
+    return SvgDrawing(sheet).text()
 
 
-class _Drawing:
+class SvgDrawing:
     """Collects what is drawn, in mm with y upward; the file has y downward."""
 
     def __init__(self, sheet):
         self.sheet, self.items = sheet, []
-        self.radius = MM * sheet.radius
-        self.curves = {name: MM * points for name, points in sheet.paths.items()}
-        self.roller = MM * sheet.made.roller_radius
+        self.radius = MM_PER_M * sheet.radius
+        self.curves = {name: MM_PER_M * points for name, points in sheet.paths.items()}
+        self.roller = MM_PER_M * sheet.made.roller_radius
         every = np.concatenate(list(self.curves.values()), axis=1)
         self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
         self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
@@ -72,7 +72,7 @@ class _Drawing:
                 f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
                 f'viewBox="{box}">',
                 f"<title>{escape(self.sheet.notes[0])}</title>",
-                f"<style>{INK}</style>",
+                f"<style>{SVG_STYLE}</style>",
                 *self.items,
                 "</svg>",
                 "",
@@ -88,7 +88,7 @@ class _Drawing:
             self.items.append(f'<circle class="cam" cx="0" cy="0" r="{reach:.6g}"/>')
         for name in ("surface", "pitch", "cutter"):
             if name in self.curves:
-                kind = "hole" if name == "surface" and self.sheet.made.side == "ring" else CLASSES[name]
+                kind = "hole" if name == "surface" and self.sheet.made.side == "ring" else CURVE_CLASSES[name]
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
     def _axes(self):
@@ -121,14 +121,16 @@ class _Drawing:
         base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
         for x in (left, right):
             self._line((x, 0.0), (x, base - size), "thin")
-        self._measure((left, base), (right, base), sheet.written((right - left) / MM))
+        self._measure((left, base), (right, base), sheet.written((right - left) / MM_PER_M))
         for y in (below, above):
             self._line((0.0, y), (side + size, y), "thin")
-        self._measure((side, below), (side, above), sheet.written((above - below) / MM))
+        self._measure((side, below), (side, above), sheet.written((above - below) / MM_PER_M))
         for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
             self._ray(place, name)
         x, y = self.curves["pitch"][:, 0]
-        self._words((x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.written(2 * self.roller / MM)}")
+        self._words(
+            (x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.written(2 * self.roller / MM_PER_M)}"
+        )
 
     def _ray(self, place, name):
         """A radius of the pitch curve, from O to where it is largest or smallest."""
@@ -136,7 +138,7 @@ class _Drawing:
         self._line((0.0, 0.0), end, "thin")
         self._tip(end, end)
         degrees = np.degrees(self.sheet.made.crank_angle[place])
-        text = f"{name} R {self.sheet.written(self.radius[place] / MM)} at {degrees:.4g}°"
+        text = f"{name} R {self.sheet.written(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
         share = 0.3 if name == "largest" else 0.45
         self._words(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size], text)
 
@@ -176,7 +178,7 @@ def _path(points, closed=True):
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 """Metres in each unit of what is written."""
 DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
-MOST_POINTS = 100_000
+MAX_POINTS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,29 +244,29 @@ class Sheet:
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
     """Write a cam; what ``cam.export`` does, where it is told."""
     radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
-    found = checks.singles(
+    found = checks.single_numbers(
         "cam export",
         _points_problem(points),
         checks.choice("units", units, tuple(UNITS)),
-        checks.choice("side", side, tuple(SIDES)),
+        checks.choice("side", side, tuple(SIDE_SIGNS)),
         checks.truth("clockwise", clockwise),
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
         **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )
-    problem = unwritable(path, endings=tuple(WRITERS))
+    problem = write_problem(path, endings=tuple(WRITERS))
     if problem or Path(path).suffix.lower() not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
     made = profile(cam, found["roller_radius"], int(points), side)
     sheet = Sheet(made, found.get("cutter_radius"), units, clockwise)
-    with written_whole(path) as temporary:
+    with write_atomically(path) as temporary:
         WRITERS[Path(path).suffix.lower()](sheet, temporary)
 
 
 def _points_problem(points):
     wrong = checks.count("points", points)
-    if wrong or 8 <= points <= MOST_POINTS:
+    if wrong or 8 <= points <= MAX_POINTS:
         return wrong
-    return f"points must be from 8 to {MOST_POINTS}, got {points}"
+    return f"points must be from 8 to {MAX_POINTS}, got {points}"
 
 
 def _to_csv(sheet, path):

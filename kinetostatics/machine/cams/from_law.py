@@ -27,27 +27,29 @@ import numpy as np
 from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.lazy import cached_property
-from ..laws.law import TURN, bends_of, knots_of, law_problem
+from ..laws.law import TURN, breakpoints_of, knots_of, law_problem
 from .cam import Cam
 
-GRID = np.linspace(-np.pi, np.pi, 2881)
+SEARCH_ANGLES = np.linspace(-np.pi, np.pi, 2881)
 """Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
-NEAR = 0.5
+SINGULAR_REACH = 0.5
 """Distance from a singular angle, rad, up to which L -+ d are found by quadrature; farther they lose no digits."""
-PANELS = np.linspace(-NEAR, NEAR, 5)
-TINY = 1e-60
+PANEL_EDGES = np.linspace(-SINGULAR_REACH, SINGULAR_REACH, 5)
+MIN_DISTANCE = 1e-60
 """Distance from a singular angle, rad, below which there is only the angle itself."""
-PLACES, WEIGHTS = (part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True))
+GAUSS_POINTS, GAUSS_WEIGHTS = (
+    part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True)
+)
 
 
-class Turning(NamedTuple):
+class SingularPosition(NamedTuple):
     """A place where the coupler is across the ray: crank angle from the guide, rad, and d there, without sign, m."""
 
     angle: float
     length: float
 
 
-class Across(NamedTuple):
+class RayDistance(NamedTuple):
     """d with three derivatives by the crank angle, m."""
 
     value: np.ndarray
@@ -56,11 +58,11 @@ class Across(NamedTuple):
     third: np.ndarray
 
 
-def across(law, offset, phi):
+def ray_distance(law, offset, phi):
     """How far the slider is off the crank ray, d = x sin(phi) - e cos(phi), and its derivatives."""
     x, v, a, j = law(phi)
     s, c = np.sin(phi), np.cos(phi)
-    return Across(
+    return RayDistance(
         x * s - offset * c,
         v * s + x * c + offset * s,
         (a - x) * s + 2.0 * v * c + offset * c,
@@ -94,8 +96,8 @@ class LawCam(Cam):
     coupler_length: float
     guide_angle: float
     guide_offset: float
-    far: Turning
-    near: Turning
+    far: SingularPosition
+    near: SingularPosition
 
     TABULATED = True
     RULES = checks.Rules("cam from a law")  # no number of it is a parameter by itself
@@ -107,7 +109,7 @@ class LawCam(Cam):
 
     @cached_property
     def knots(self):
-        return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in bends_of(self.law))
+        return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in breakpoints_of(self.law))
 
     @property
     def force_error(self):
@@ -117,12 +119,12 @@ class LawCam(Cam):
     @property
     def lengths(self):
         """What the pitch curve is made of, m."""
-        return (self.coupler_length, float(np.max(np.abs(self.law(GRID)[0]))))
+        return (self.coupler_length, float(np.max(np.abs(self.law(SEARCH_ANGLES)[0]))))
 
     @cached_property
     def smallest_radius(self):
         """Smallest distance of the roller centre from O on a grid of an eighth of a degree, m."""
-        return float(np.min(self.radius(GRID)[0]))
+        return float(np.min(self.radius(SEARCH_ANGLES)[0]))
 
     def polar(self, angle, ray):
         shape = np.shape(angle)
@@ -135,7 +137,7 @@ class LawCam(Cam):
 
     def _reach(self, phi):
         """Signed reach w and two derivatives: by d itself, and near each singular angle from there."""
-        d, first, second, _ = across(self.law, self.guide_offset, phi)
+        d, first, second, _ = ray_distance(self.law, self.guide_offset, phi)
         one, other = self.far, self.near
         square = (one.length - d) * (other.length + d)
         sign = np.where((phi < one.angle) & (phi > other.angle), 1.0, -1.0)
@@ -145,7 +147,7 @@ class LawCam(Cam):
             found = [w, slope, -(first * first + d * second + slope * slope) / w]
         for turning, side in ((one, 1.0), (other, -1.0)):
             h = np.mod(phi - turning.angle + np.pi, TURN) - np.pi
-            here = np.abs(h) < NEAR
+            here = np.abs(h) < SINGULAR_REACH
             if np.any(here):
                 around = self._around(turning, side, h[here], d[here], first[here], second[here])
                 for part, value in zip(found, around, strict=True):
@@ -173,13 +175,13 @@ class LawCam(Cam):
         ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
         start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)
         whole, bent, sloped, curved = sums[:, start] + self._moments_between(turning, edges[start], h)
-        middle = np.abs(h) < TINY
+        middle = np.abs(h) < MIN_DISTANCE
         span = np.where(middle, 1.0, h)
         q = -side * (span * whole - bent) / span**2
         slope = -side * (span * sloped - curved) / span**3
         bend = -side * (3.0 * curved - 2.0 * span * sloped) / span**3
         if np.any(middle):
-            at = across(self.law, self.guide_offset, np.array(turning.angle))
+            at = ray_distance(self.law, self.guide_offset, np.array(turning.angle))
             q, slope = np.where(middle, -side * at.second / 2, q), np.where(middle, -side * at.third / 6, slope)
             bend = np.where(middle, 0.0, bend)
         return q, slope, bend
@@ -190,7 +192,7 @@ class LawCam(Cam):
         found = {}
         for turning in (self.far, self.near):
             knots = np.mod(np.array(knots_of(self.law)) - turning.angle + np.pi, TURN) - np.pi
-            edges = np.unique(np.concatenate([PANELS, knots[np.abs(knots) < NEAR]]))
+            edges = np.unique(np.concatenate([PANEL_EDGES, knots[np.abs(knots) < SINGULAR_REACH]]))
             each = self._moments_between(turning, edges[:-1], edges[1:])
             sums = np.concatenate([np.zeros((4, 1)), np.cumsum(each, axis=-1)], axis=-1)
             found[turning] = edges, sums - sums[:, [np.searchsorted(edges, 0.0)]]
@@ -199,13 +201,13 @@ class LawCam(Cam):
     def _moments_between(self, turning, start, stop):
         """Integrals of d'', u d'', u d''' and u^2 d''' from `start` to `stop`, distances u from a singular angle."""
         width = (stop - start)[..., None]
-        u = start[..., None] + width * PLACES
-        found = across(self.law, self.guide_offset, turning.angle + u)
-        second, third = found.second * WEIGHTS * width, found.third * WEIGHTS * width
+        u = start[..., None] + width * GAUSS_POINTS
+        found = ray_distance(self.law, self.guide_offset, turning.angle + u)
+        second, third = found.second * GAUSS_WEIGHTS * width, found.third * GAUSS_WEIGHTS * width
         return np.sum([second, u * second, u * third, u * u * third], axis=-1)
 
 
-SAME = 1e-10
+LENGTH_TOLERANCE = 1e-10
 """How far the two lengths may differ, relative to them."""
 
 
@@ -246,7 +248,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     >>> round(float(ks.solve(saw, 1.0, crank_speed=30.0).slider_position), 9)  # 2 + 0.3 cos(1)
     2.162090692
     """
-    values = checks.singles(
+    values = checks.single_numbers(
         "from_law",
         law_problem(law),
         guide_angle=(guide_angle, "rad", {}),
@@ -254,9 +256,9 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
         coupler_length=(1.0 if coupler_length is None else coupler_length, "m", {"low": 0.0, "strict": True}),
     )
     offset = values["guide_offset"]
-    far, near = turnings(law, offset)
-    if abs(far.length - near.length) > SAME * far.length:
-        raise ParameterError(_of_two_lengths(law, offset, far, near))
+    far, near = singular_positions(law, offset)
+    if abs(far.length - near.length) > LENGTH_TOLERANCE * far.length:
+        raise ParameterError(_two_lengths_message(law, offset, far, near))
     length = (far.length + near.length) / 2
     if coupler_length is not None and abs(values["coupler_length"] - length) > 1e-9 * length:
         raise ParameterError(
@@ -265,29 +267,29 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
             "coupler_length out to have it computed"
         )
     cam = LawCam(law, length, values["guide_angle"], offset, far, near)
-    checks.require("from_law", *_no_cam(cam))
+    checks.require("from_law", *_cam_problems(cam))
     return cam
 
 
-def turnings(law, offset):
+def singular_positions(law, offset):
     """Where d is largest, and where least."""
-    grid = np.unique(np.concatenate([GRID, np.mod(np.array(knots_of(law)) + np.pi, TURN) - np.pi]))
-    values = across(law, offset, grid).value
-    return _extreme(law, offset, grid, values, 1.0), _extreme(law, offset, grid, values, -1.0)
+    grid = np.unique(np.concatenate([SEARCH_ANGLES, np.mod(np.array(knots_of(law)) + np.pi, TURN) - np.pi]))
+    values = ray_distance(law, offset, grid).value
+    return _singular_position(law, offset, grid, values, 1.0), _singular_position(law, offset, grid, values, -1.0)
 
 
-def _extreme(law, offset, grid, values, side):
+def _singular_position(law, offset, grid, values, side):
     from scipy.optimize import brentq
 
     def slope(angle):
-        return float(across(law, offset, np.array(angle)).first)
+        return float(ray_distance(law, offset, np.array(angle)).first)
 
     place = int(np.argmax(side * values))
     angle, low, high = grid[place], grid[place - 1], grid[(place + 1) % grid.size]
     low, high = (low - TURN if low > angle else low), (high + TURN if high < angle else high)
     if slope(low) * slope(high) < 0:
         angle = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
-    return Turning(float(angle), float(side * across(law, offset, np.array(angle)).value))
+    return SingularPosition(float(angle), float(side * ray_distance(law, offset, np.array(angle)).value))
 
 
 def phase_of(law, offset, most=np.pi / 4):
@@ -295,7 +297,7 @@ def phase_of(law, offset, most=np.pi / 4):
     from scipy.optimize import brentq
 
     def excess(phase):
-        far, near = turnings(lambda phi: law(phi - phase), offset)
+        far, near = singular_positions(lambda phi: law(phi - phase), offset)
         return far.length - near.length
 
     start = excess(0.0)
@@ -306,7 +308,7 @@ def phase_of(law, offset, most=np.pi / 4):
     return None
 
 
-def _of_two_lengths(law, offset, far, near):
+def _two_lengths_message(law, offset, far, near):
     phase = phase_of(law, offset)
     remedy = "no phase of the law repairs it"
     if phase is not None:
@@ -324,31 +326,31 @@ def _degrees(turning):
     return f"{np.degrees(turning.angle) % 360:.6g}"
 
 
-def _no_cam(cam):
+def _cam_problems(cam):
     """Why the law is no motion of a slider ahead of a roller that goes around O, as sentences."""
-    radius = cam.radius(GRID + cam.guide_angle)[0]
-    position = cam.law(GRID)[0]
-    ahead = np.array(position - radius * np.cos(GRID))
+    radius = cam.radius(SEARCH_ANGLES + cam.guide_angle)[0]
+    position = cam.law(SEARCH_ANGLES)[0]
+    ahead = np.array(position - radius * np.cos(SEARCH_ANGLES))
     worst = int(np.argmin(radius))
     if not np.all(np.isfinite(radius)):
         place = int(np.argmax(~np.isfinite(radius)))
-        yield f"the law has no cam at {np.degrees(GRID[place]) % 360:.4g} deg from the guide"
+        yield f"the law has no cam at {np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide"
     elif radius[worst] <= 0:
         yield (
             f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
-            f"{np.degrees(GRID[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
+            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
         )
     elif np.min(ahead) <= 0:
         place = int(np.argmin(ahead))
         yield (
             f"the slider must stay ahead of the roller along the guide, but is {-ahead[place]:.6g} m behind it at "
-            f"{np.degrees(GRID[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn the guide"
+            f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn the guide"
         )
 
 
 def _remedy(position):
     """What leads the pitch curve of a law around O: the roller, and with it the slider, is farthest on the guide."""
-    farthest = GRID[int(np.argmax(position))]
+    farthest = SEARCH_ANGLES[int(np.argmax(position))]
     if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
         return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"
     return (

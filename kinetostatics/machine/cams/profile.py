@@ -20,16 +20,16 @@ from .. import plausibility
 from ..crank import ray as ray_at
 from ..laws.law import TURN
 
-SAMPLES = 1440
+PEAK_SAMPLES = 1440
 """Crank angles a turn at which extremes are bracketed."""
-GRID = np.linspace(0.0, TURN, SAMPLES, endpoint=False)
+PROFILE_ANGLES = np.linspace(0.0, TURN, PEAK_SAMPLES, endpoint=False)
 """Crank angles at which a chain of points is looked at, rad."""
-RIVALS = 4
+PEAK_CANDIDATES = 4
 """Highest samples between whose neighbours the peak is sought."""
-SIDES = {"disk": -1.0, "ring": 1.0}
+SIDE_SIGNS = {"disk": -1.0, "ring": 1.0}
 """Side of the pitch curve on which the cam is: inside, outside."""
 POSITIVE = {"low": 0.0, "strict": True}
-CUT = 1e-3
+CUT_TOLERANCE = 1e-3
 """Share of the roller by which it may reach into another part of the cam: what a chain of points leaves open."""
 
 
@@ -53,12 +53,12 @@ def highest(function, start=0.0, span=TURN):
     """Largest value of a function of arrays of crank angles over the turn, between samples too."""
     from scipy.optimize import minimize_scalar
 
-    step = span / SAMPLES
-    angle = start + step * np.arange(SAMPLES)
+    step = span / PEAK_SAMPLES
+    angle = start + step * np.arange(PEAK_SAMPLES)
     values = np.asarray(function(angle), dtype=float)
     tops = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
     found = []
-    for place in tops[np.argsort(-values[tops])][:RIVALS]:
+    for place in tops[np.argsort(-values[tops])][:PEAK_CANDIDATES]:
         best = minimize_scalar(
             lambda x: -float(function(np.array([x]))[0]),
             bounds=(angle[place] - step, angle[place] + step),
@@ -128,17 +128,17 @@ class Profile:
         >>> abs(made.cutter_path(0.02)[:, 0]).round(6)  # m: the disk's 0.25 m and the cutter's radius
         array([0.27, 0.  ])
         """
-        radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, "m", POSITIVE))["cutter_radius"]
+        radius = checks.single_numbers("cutter_path", cutter_radius=(cutter_radius, "m", POSITIVE))["cutter_radius"]
         hollow = self.smallest_hollow
         if hollow is not None and radius >= -hollow.value:
             raise ParameterError(
                 f"cutter_path: a cutter of radius {radius:.6g} m does not fit into the hollow of the {self.side} at "
                 f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
             )
-        side = SIDES[self.side]
-        _, normal, made = _curves(self.cam, self.roller_radius, GRID, self.side)
+        side = SIDE_SIGNS[self.side]
+        _, normal, made = _curves(self.cam, self.roller_radius, PROFILE_ANGLES, self.side)
         nearest = _nearest(made - side * radius * normal, made)
-        if nearest.value < radius * (1.0 - CUT):
+        if nearest.value < radius * (1.0 - CUT_TOLERANCE):
             raise ParameterError(
                 f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}: its centre "
                 f"comes as near as {nearest.value:.6g} m to the working curve at crank angle "
@@ -166,7 +166,7 @@ class Profile:
     @cached_property
     def largest_roller_radius(self):
         """Radius of the roller from which the cam would be undercut, m, by the pitch curve's curvature; inf without."""
-        sharpest = highest(lambda angle: _toward(self.cam, angle, self.side))
+        sharpest = highest(lambda angle: _roller_side_curvature(self.cam, angle, self.side))
         return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
@@ -175,7 +175,9 @@ class Profile:
             "pressure_angle": (pressure_angle, "rad", POSITIVE),
             "curvature_radius": (curvature_radius, "m", POSITIVE),
         }
-        given = checks.singles("exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None})
+        given = checks.single_numbers(
+            "exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None}
+        )
         pressure_angle, curvature_radius = map(given.get, limits)
         found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
         if pressure_angle is not None and peak.value > pressure_angle:
@@ -191,7 +193,7 @@ class Profile:
         return tuple(found)
 
     def _surface_curvature(self, angle):
-        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDES[self.side])
+        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDE_SIGNS[self.side])
 
 
 def curvature(cam, angle):
@@ -204,22 +206,22 @@ def surface_curvature(bend, roller_radius, side):
     return -side * bend / (1.0 + side * bend * roller_radius)
 
 
-def _toward(cam, angle, side):
+def _roller_side_curvature(cam, angle, side):
     """Curvature of the pitch curve toward the side of the cam, which the roller must fit into, 1/m."""
-    return -SIDES[side] * curvature(cam, angle)
+    return -SIDE_SIGNS[side] * curvature(cam, angle)
 
 
 def profile(cam, roller_radius, angle, side="disk"):
     """Working curve of a cam; what ``cam.profile`` returns, where it is told."""
-    radius = checks.singles(
-        "cam profile", checks.choice("side", side, tuple(SIDES)), roller_radius=(roller_radius, "m", POSITIVE)
+    radius = checks.single_numbers(
+        "cam profile", checks.choice("side", side, tuple(SIDE_SIGNS)), roller_radius=(roller_radius, "m", POSITIVE)
     )["roller_radius"]
     angle = _angles(angle)
-    checks.require("cam profile", *_cut_away(cam, radius, side))
+    checks.require("cam profile", *_undercut_problems(cam, radius, side))
     pitch, normal, made = _curves(cam, radius, angle, side)
     r, slope, _ = cam.radius(angle)
     with np.errstate(divide="ignore"):
-        curved = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDES[side])
+        curved = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDE_SIGNS[side])
     return Profile(cam, radius, angle, side, pitch, made, normal, np.arctan2(slope, r), curved)
 
 
@@ -230,21 +232,21 @@ def _curves(cam, radius, angle, side):
     length = np.hypot(r, slope)
     normal = np.stack([r * x + slope * y, r * y - slope * x]) / length
     pitch = np.stack([r * x, r * y])
-    return pitch, normal, pitch + SIDES[side] * radius * normal
+    return pitch, normal, pitch + SIDE_SIGNS[side] * radius * normal
 
 
 def _angles(angle):
     if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
-        checks.require("cam profile", checks.count("angle", angle, size=checks.ANGLE))
+        checks.require("cam profile", checks.count("angle", angle, size=checks.BYTES_PER_ANGLE))
         return np.linspace(0.0, TURN, int(angle), endpoint=False)
-    found = checks.examined("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
+    found = checks.check_values("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
     angles = np.atleast_1d(np.asarray(found["angle"], dtype=float))
-    for text in plausibility.of_angles(angles):
+    for text in plausibility.angle_hints(angles):
         warnings.warn(HintWarning("cam profile", text), stacklevel=4)
     return angles
 
 
-def _cut_away(cam, radius, side):
+def _undercut_problems(cam, radius, side):
     """Why a roller cannot run on this side of the pitch curve, as sentences, with the crank angles."""
     least = lowest(lambda angle: cam.radius(angle)[0])
     if not least.value > 0:
@@ -253,18 +255,21 @@ def _cut_away(cam, radius, side):
             f"{np.degrees(least.angle):.6g} deg"
         )
         return
-    sharpest = highest(lambda angle: _toward(cam, angle, side))
+    sharpest = highest(lambda angle: _roller_side_curvature(cam, angle, side))
     if sharpest.value * radius >= 1.0:
-        where = " and ".join(_intervals(GRID, _toward(cam, GRID, side) * radius >= 1.0)) or "there alone"
+        where = (
+            " and ".join(_intervals(PROFILE_ANGLES, _roller_side_curvature(cam, PROFILE_ANGLES, side) * radius >= 1.0))
+            or "there alone"
+        )
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
             f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
             "the roller's must be less"
         )
         return
-    pitch, _, made = _curves(cam, radius, GRID, side)
+    pitch, _, made = _curves(cam, radius, PROFILE_ANGLES, side)
     nearest = _nearest(pitch, made)
-    if nearest.value < radius * (1.0 - CUT):
+    if nearest.value < radius * (1.0 - CUT_TOLERANCE):
         yield (
             f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
             f"{np.degrees(nearest.angle):.6g} deg its centre comes as near as {nearest.value:.6g} m later; "
@@ -283,7 +288,7 @@ def _nearest(centres, made):
 
     distance, _ = cKDTree(centres.T).query(made.T)
     worst = int(np.argmin(distance))
-    return Peak(float(distance[worst]), float(GRID[worst]))
+    return Peak(float(distance[worst]), float(PROFILE_ANGLES[worst]))
 
 
 def _intervals(grid, marked):
@@ -301,7 +306,7 @@ def _intervals(grid, marked):
 def base_radius(cam, pressure_angle):
     """Smallest base circle of a cam of the same rise; what ``cam.base_radius`` returns, where it is told."""
     rule = {**POSITIVE, "high": np.pi / 2}
-    largest = checks.singles("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
+    largest = checks.single_numbers("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
 
     def lacking(angle):
         r, slope, _ = cam.radius(angle)

@@ -18,7 +18,7 @@ from ...numbers.arithmetic import sqrt
 from ...numbers.lazy import cached_property
 
 
-def modulus(one, other):
+def contact_modulus(one, other):
     """E* of two materials together, Pa, from (Young's modulus, Poisson's ratio) of each."""
     return 1.0 / (_compliance(*one) + _compliance(*other))
 
@@ -46,26 +46,28 @@ def relative_radius(bend, roller_radius, side):
     return roller_radius * (1.0 + side * bend * roller_radius)
 
 
-SIZE = checks.Number("m", low=0.0, strict=True)
-MODULUS = checks.Number("Pa", low=0.0, strict=True, usual=checks.Usual(1e13, "is it in GPa, or in N/mm2?", least=1e6))
-RATIO = checks.Number("1", low=0.0)
-MATERIALS = {
-    "youngs_modulus": MODULUS,
-    "poissons_ratio": RATIO,
-    "cam_youngs_modulus": checks.Optional(MODULUS),
-    "cam_poissons_ratio": checks.Optional(RATIO),
+SIZE_RULE = checks.Number("m", low=0.0, strict=True)
+MODULUS_RULE = checks.Number(
+    "Pa", low=0.0, strict=True, usual=checks.PlausibleRange(1e13, "is it in GPa, or in N/mm2?", least=1e6)
+)
+POISSON_RULE = checks.Number("1", low=0.0)
+MATERIAL_RULES = {
+    "youngs_modulus": MODULUS_RULE,
+    "poissons_ratio": POISSON_RULE,
+    "cam_youngs_modulus": checks.Optional(MODULUS_RULE),
+    "cam_poissons_ratio": checks.Optional(POISSON_RULE),
 }
-LARGEST_RATIO = 0.5
+MAX_POISSONS_RATIO = 0.5
 
 
-class Touch(NamedTuple):
+class LineContact(NamedTuple):
     """A line contact of a group: `body`, a `Roller` or `Face`, pressed by the force of that name."""
 
     body: Any
     force: str
 
 
-class Pressed(checks.Checked):
+class PressedBody(checks.Checked):
     """What both have in common: a width, and materials of their own and of the cam."""
 
     width: Any
@@ -78,15 +80,19 @@ class Pressed(checks.Checked):
         """Say where a material would grow under pressure."""
         for name in ("poissons_ratio", "cam_poissons_ratio"):
             ratio = getattr(self, name)
-            if ratio is not None and checks.known(ratio) and np.any(over := np.asarray(ratio) > LARGEST_RATIO):
-                yield checks.Problem(f"{name} must be at most {LARGEST_RATIO:g}, got {np.max(ratio):.6g}", over)
+            if (
+                ratio is not None
+                and checks.has_known_values(ratio)
+                and np.any(over := np.asarray(ratio) > MAX_POISSONS_RATIO)
+            ):
+                yield checks.Problem(f"{name} must be at most {MAX_POISSONS_RATIO:g}, got {np.max(ratio):.6g}", over)
 
     @cached_property
     def modulus(self):
         """E* of both materials together, Pa; what is not told of the cam is as of this."""
         own = self.youngs_modulus, self.poissons_ratio
         of_cam = self.cam_youngs_modulus, self.cam_poissons_ratio
-        return modulus(own, [mine if other is None else other for mine, other in zip(own, of_cam, strict=True)])
+        return contact_modulus(own, [mine if other is None else other for mine, other in zip(own, of_cam, strict=True)])
 
     def pressure(self, force, radius):
         """Largest Hertz pressure, Pa, under a force, N, from the radius of the relative curvature, m."""
@@ -94,7 +100,7 @@ class Pressed(checks.Checked):
 
 
 @dataclass(frozen=True, eq=False)
-class Roller(Pressed):
+class Roller(PressedBody):
     """Roller on a cam, of what its contact pressure takes: with it a cam has the output "contact_pressure".
 
     Parameters
@@ -131,7 +137,7 @@ class Roller(Pressed):
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("roller", Pressed._compressible, radius=SIZE, width=SIZE, **MATERIALS)
+    RULES = checks.Rules("roller", PressedBody._compressible, radius=SIZE_RULE, width=SIZE_RULE, **MATERIAL_RULES)
 
     def relative_radius(self, bend, side):
         """Of both curvatures together, m, from that of the pitch curve; the cam is inside it (-1) or around it (+1)."""
@@ -139,7 +145,7 @@ class Roller(Pressed):
 
 
 @dataclass(frozen=True, eq=False)
-class Face(Pressed):
+class Face(PressedBody):
     """Flat face on a cam, of what its contact pressure takes; as `Roller`, without a radius.
 
     Parameters
@@ -168,4 +174,4 @@ class Face(Pressed):
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("face", Pressed._compressible, width=SIZE, **MATERIALS)
+    RULES = checks.Rules("face", PressedBody._compressible, width=SIZE_RULE, **MATERIAL_RULES)

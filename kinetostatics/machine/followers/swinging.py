@@ -17,10 +17,20 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, cos, sin
-from ...numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
+from ...numbers.planar import (
+    add_vectors,
+    cross,
+    dot,
+    left,
+    length,
+    number_or_zero,
+    rotate,
+    scale_vector,
+    subtract_vectors,
+)
 from ..cams.roller import Roller
 from ..group import FRAME, Bar, Output, Point, Resolved
-from ..links import Joint, Link, LinkMotion, Turning, Wrench, between
+from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
 from . import follower
 
 TERMS = {
@@ -53,31 +63,31 @@ def place(swing, pivot, arm_length, side):
     angle, first, second = swing
     distance = length(pivot)
     inward = (-pivot[0] / distance, -pivot[1] / distance)
-    direction = turned(inward, (cos(angle), -side * sin(angle)))
+    direction = rotate(inward, (cos(angle), -side * sin(angle)))
     ratio, slope = -side * first, -side * second
-    reach = stretched(arm_length, direction)
+    reach = scale_vector(arm_length, direction)
     aside = left(reach)
     roller = Joint(
-        added(pivot, reach),
-        stretched(ratio, aside),
-        subtracted(stretched(slope, aside), stretched(ratio * ratio, reach)),
+        add_vectors(pivot, reach),
+        scale_vector(ratio, aside),
+        subtract_vectors(scale_vector(slope, aside), scale_vector(ratio * ratio, reach)),
     )
     arm = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
     return _met(arm, roller, side * distance * sin(angle))
 
 
 def _met(arm, roller, lever):
-    return SwingingMotion(arm, roller, left(subtracted(roller.first, left(roller.position))), lever)
+    return SwingingMotion(arm, roller, left(subtract_vectors(roller.first, left(roller.position))), lever)
 
 
 def resolve(motion, arm_length, load):
     """Forces on the arm (kernel); `load` is all that acts on it but they, a wrench about the pivot."""
-    couple = number(load.moment)
+    couple = number_or_zero(load.moment)
     force = couple / (arm_length * motion.lever)
-    pressed = stretched(force, motion.across)
+    pressed = scale_vector(force, motion.across)
     return SwingingForces(
         contact=force * length(motion.across),
-        pivot=subtracted(subtracted(None, pressed), load.force),
+        pivot=subtract_vectors(subtract_vectors(None, pressed), load.force),
         on_arm=Wrench(pressed, -couple * motion.arm.ratio),
     )
 
@@ -145,7 +155,7 @@ class SwingingFollower(follower.Follower):
     def _pivot_apart(self):
         """Say where the pivot is at O."""
         x, y = self.pivot
-        if checks.known(x * x + y * y) and np.any(at := np.hypot(x, y) == 0.0):
+        if checks.has_known_values(x * x + y * y) and np.any(at := np.hypot(x, y) == 0.0):
             yield checks.Problem("the follower's pivot must not be at O", at)
 
     TRUSTED = True
@@ -158,9 +168,9 @@ class SwingingFollower(follower.Follower):
         arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
         pivot=checks.Pair("m", "follower pivot"),
         assembly=checks.Sign(),
-        arm=checks.Made(Link, "a Link"),
+        arm=checks.InstanceOf(Link, "a Link"),
         pivot_name=checks.Name(),
-        roller=checks.Optional(checks.Made(Roller, "a Roller")),
+        roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
     )
 
     @property
@@ -227,7 +237,7 @@ class SwingingFollower(follower.Follower):
     def follow(self, placement, joints):
         """Place the arm at its roller centre found in another way."""
         roller = joints[self.pin]
-        arm = between(Joint(self.pivot, None, None), roller, self.arm_length)
+        arm = link_between(Joint(self.pivot, None, None), roller, self.arm_length)
         self._set(placement, _met(arm, roller, cross(self.pivot, arm.direction)))
 
     def _set(self, placement, motion):

@@ -31,9 +31,20 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.arithmetic import apart, cos, divisor, root, sin, sqrt, total
-from ...numbers.parameter_tree import with_fields
-from ...numbers.planar import added, cross, dot, length_and_rest, minus, number, stretched, subtracted, turned, unturned
+from ...numbers.arithmetic import clamped_sqrt, compensated_sum, cos, guarded_divisor, offset_from_zero, sin, sqrt
+from ...numbers.parameter_tree import replace_unchecked
+from ...numbers.planar import (
+    add_vectors,
+    cross,
+    dot,
+    length_with_error,
+    minus,
+    number_or_zero,
+    rotate,
+    rotate_back,
+    scale_vector,
+    subtract_vectors,
+)
 from ..links import Joint, LinkMotion, present, tip
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
@@ -43,11 +54,11 @@ BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
 OPPOSITE = "opposite"
 """Slotted lever like one of the kind "near", mirrored."""
-TWICE = (FAR, NEAR, MEETING, OPPOSITE)
+TWO_TURN_KINDS = (FAR, NEAR, MEETING, OPPOSITE)
 """Kinds of which a branch closes after two turns."""
-ULPS = 8
+MAX_ULPS = 8
 """Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
-CALLED = {
+FOUR_BAR_KINDS = {
     "": "none",
     FAR: "a + d = b + h",
     NEAR: "|d - a| = |b - h|",
@@ -57,15 +68,15 @@ CALLED = {
     RHOMBUS: "a = b = h = d",
 }
 """Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
-SLIDING = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
+SLIDER_KINDS = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
 """Kinds of slider groups: crank a, coupler l, offset e of the guide."""
-SLOTTED = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+LEVER_KINDS = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
 """Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
-FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
+QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
 
 
-def of_rocker_group(group, throws):
+def rocker_passage(group, throws):
     """How a rocker group on a pin of a crank passes its change points: its kind, and where O2 stands; "" without any.
 
     Raises
@@ -82,20 +93,20 @@ def of_rocker_group(group, throws):
     kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
     cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
     kind = np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], "")
-    return _joined("rocker group", kind, CALLED, _facing(x, y))
+    return _joined("rocker group", kind, FOUR_BAR_KINDS, _facing(x, y))
 
 
-def of_slider_group(group, throws):
+def slider_passage(group, throws):
     """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
     x, y = group.guide.direction
     a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
     unit = _unit(a, b, abs(e))
     far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
     kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
-    return _joined("slider group", kind, SLIDING, _facing(x, y))
+    return _joined("slider group", kind, SLIDER_KINDS, _facing(x, y))
 
 
-def of_lever_group(group, throws):
+def lever_passage(group, throws):
     """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
     a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
     d = np.sqrt(x * x + y * y)
@@ -103,7 +114,7 @@ def of_lever_group(group, throws):
     near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
     near, opposite = near & (d > unit), opposite & (d > unit)
     kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
-    return _joined("lever group", kind, SLOTTED, _facing(x, y))
+    return _joined("lever group", kind, LEVER_KINDS, _facing(x, y))
 
 
 def _known(owner, group, throws, start, *lengths):
@@ -112,20 +123,20 @@ def _known(owner, group, throws, start, *lengths):
     if throw is None:
         where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
         problem = f"assembly {group.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
-    elif not all(map(checks.known, (*throw.at, *start, *lengths))):
+    elif not all(map(checks.has_known_values, (*throw.at, *start, *lengths))):
         problem = f"assembly {group.assembly!r} needs lengths that are known when the mechanism is made"
     checks.require(owner, f"{problem}; give +1 or -1" if problem else None)
     parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
     *at, x, y = np.broadcast_arrays(*parts)[:4]
     radius, direction = throw._replace(at=at).polar
-    x, y = unturned((x, y), direction)
+    x, y = rotate_back((x, y), direction)
     if direction is not None:
         y = np.where(abs(y) <= _unit(x), 0.0, y)
     return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
 
 
 def _unit(*lengths):
-    return ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
+    return MAX_ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
 
 
 def _facing(x, y):
@@ -136,7 +147,7 @@ def _joined(owner, kind, called, facing):
     """Kind and facing in one text, where all designs have the same."""
     problems = [_several(kind, "change points", called)]
     if kind.flat[0]:
-        problems.append(_several(facing, "directions", FACING))
+        problems.append(_several(facing, "directions", QUADRANTS))
     checks.require(owner, *problems)
     return f"{kind.flat[0]} {facing.flat[0]}" if kind.flat[0] else ""
 
@@ -148,13 +159,13 @@ def _several(found, what, called):
         return None
     texts = "; ".join(called[kind] for kind in kinds.tolist())
     return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {ULPS} ulp "
+        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {MAX_ULPS} ulp "
         "of the longest length); make a batch of each",
         found != kinds[counts.argmax()],
     )
 
 
-def kink(group, throws):
+def kink_sentence(group, throws):
     """What a chosen side makes of the motion at change points, in words; "" where there are none."""
     if type(group.assembly) is not int or group.on not in throws:
         return ""
@@ -166,7 +177,7 @@ def kink(group, throws):
     if not angles:
         return ""
     named = dict.fromkeys(angles, "a kink")
-    if parted(passing.passage)[0] in (MEETING, RHOMBUS):
+    if parse_passage(passing.passage)[0] in (MEETING, RHOMBUS):
         at = angles[0] if len(angles) == 1 else _first(throws[group.on], group.pivot) % (2 * math.pi)
         named[at] = f"a jump, as {group.on} meets the pivot"
     texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
@@ -175,29 +186,29 @@ def kink(group, throws):
 
 def _first(throw, start):
     """Crank angle at which a pin of the crank stands in a direction, rad."""
-    x, y = unturned(start, throw.polar[1])
+    x, y = rotate_back(start, throw.polar[1])
     return math.atan2(y, x)
 
 
-def parted(passage):
+def parse_passage(passage):
     """Kind, and where the direction from which the crank angle is halved points."""
     kind, facing = passage.split()
     return kind, int(facing)
 
 
-def turns(passage):
+def turns_of_branch(passage):
     """Turns after which a branch closes."""
-    return 2 if passage and parted(passage)[0] in TWICE else 1
+    return 2 if passage and parse_passage(passage)[0] in TWO_TURN_KINDS else 1
 
 
-def angles(group, throws, start):
+def crank_angles(group, throws, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
     if not group.passage:
         return ()
     throw = throws[group.on]
     several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
     checks.require("change points", several if any(map(np.ndim, (*start, *throw.at))) else None)
-    kind, first = parted(group.passage)[0], _first(throw, start)
+    kind, first = parse_passage(group.passage)[0], _first(throw, start)
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
     turn = 2 * math.pi
     return tuple(
@@ -231,26 +242,26 @@ class Passer:
         is_close = not passage and throw is not None and self.comes_close(throw)
         if passage == self.passage and is_close is self.is_close:
             return self
-        return with_fields(self, passage=passage, is_close=is_close)
+        return replace_unchecked(self, passage=passage, is_close=is_close)
 
     def comes_close(self, throw):
         """Whether it only just clears a limit position, where other formulas save digits."""
         return False
 
     def kink(self, throws):
-        return kink(self, throws)
+        return kink_sentence(self, throws)
 
     @property
     def turns(self):
-        return turns(self.passage)
+        return turns_of_branch(self.passage)
 
     def change_points(self, throws):
-        return angles(self, throws, self.start)
+        return crank_angles(self, throws, self.start)
 
 
-SMALLEST = 2.0**-27
+MIN_ROOT = 2.0**-27
 """Root of a margin that is not divided by less."""
-UNSEEN = 2.0**-984
+MIN_DISTANCE = 2.0**-984
 """Distance that makes the smallest number there is of a zero, and changes no other."""
 TERMS = {
     "cosine": ("c", "cosine of half the crank angle from the line to the pivot, or of a quarter"),
@@ -291,8 +302,8 @@ class _Half(NamedTuple):
 def _half(angle, pivot, ground, facing):
     half = 0.5 * angle
     ray, start = (cos(half), sin(half)), _start(pivot, ground, facing)
-    cosine, sine = unturned(ray, start)
-    return _Half(cosine, sine, turned(ray, start))
+    cosine, sine = rotate_back(ray, start)
+    return _Half(cosine, sine, rotate(ray, start))
 
 
 def _start(pivot, ground, facing):
@@ -309,23 +320,23 @@ def _quarter(angle, pivot, ground, facing):
     """A quarter of the crank angle from O -> O2 as a unit vector."""
     quarter = 0.25 * angle
     ray, start = (cos(quarter), sin(quarter)), _start(pivot, ground, facing)
-    return unturned(ray, start and _start(start, 1.0, 0))
+    return rotate_back(ray, start and _start(start, 1.0, 0))
 
 
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
-    throw, (d, rest) = placement.course(on).throw, length_and_rest(pivot)
+    throw, (d, rest) = placement.course(on).throw, length_with_error(pivot)
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
-    b, h, fixed, pivot = coupler_length, rocker_length, pivot, unturned(pivot, direction)
+    b, h, fixed, pivot = coupler_length, rocker_length, pivot, rotate_back(pivot, direction)
     less, short = minus(None, rest), minus(None, slack)
-    m = total(d, -a, rest, short)
-    kind, facing = parted(passage)
-    if kind in TWICE:
+    m = compensated_sum(d, -a, rest, short)
+    kind, facing = parse_passage(passage)
+    if kind in TWO_TURN_KINDS:
         half = _half(placement.angle, pivot, d, facing)
         if kind == FAR:
-            constant = total(d, h, -a, -b, rest, short) * total(d, b, -a, -h, rest, short)
+            constant = compensated_sum(d, h, -a, -b, rest, short) * compensated_sum(d, b, -a, -h, rest, short)
         else:
-            constant = total(b, h, -d, -a, less, short) * (b + h + d + a)
+            constant = compensated_sum(b, h, -d, -a, less, short) * (b + h + d + a)
         lengths = a, b, h, d, constant
         found = _meeting(half, *lengths, side) if kind == MEETING else _single(half, kind, *lengths, m, side)
     elif side > 0 and kind != KITE:
@@ -335,7 +346,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     else:
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
-    coupler, rocker = ((turned(link[0], direction), *link[1:]) for link in (coupler, rocker))
+    coupler, rocker = ((rotate(link[0], direction), *link[1:]) for link in (coupler, rocker))
     return _placed(placement.joints[on], fixed, h, coupler, rocker, *rest)
 
 
@@ -347,7 +358,7 @@ def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, dista
         tip(pivot, rocker_length, *rocker),
         closure,
         factor,
-        apart(distance, UNSEEN),
+        offset_from_zero(distance, MIN_DISTANCE),
     )
 
 
@@ -357,28 +368,28 @@ def slid(placement, on, coupler_length, guide, passage, side):
     With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
     sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
     """
-    kind, facing = parted(passage)
+    kind, facing = parse_passage(passage)
     throw = placement.course(on).throw
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
-    b, e = coupler_length, number(guide.offset)
-    x, y = unturned((1.0, 0.0) if guide.direction is None else guide.direction, direction)
+    b, e = coupler_length, number_or_zero(guide.offset)
+    x, y = rotate_back((1.0, 0.0) if guide.direction is None else guide.direction, direction)
     if kind == BOTH:
         along = dot((x, y), placement.ray)
         ratio = -1.0 if side > 0 else 1.0
-        return side * a * along, ratio, None, (float(side), apart(along, UNSEEN)), 1.0
+        return side * a * along, ratio, None, (float(side), offset_from_zero(along, MIN_DISTANCE)), 1.0
     half = _half(placement.angle, (y, -x), 1.0, facing)
-    constant = total(b, e if kind == NEAR else -e, -a, minus(None, slack))
+    constant = compensated_sum(b, e if kind == NEAR else -e, -a, minus(None, slack))
     passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
     square, size = constant + 2.0 * a * other * other, 2.0 * b
-    height = root(square, size)
-    divided = divisor(height, SMALLEST * sqrt(size))
+    height = clamped_sqrt(square, size)
+    divided = guarded_divisor(height, MIN_ROOT * sqrt(size))
     reach = side * sqrt(2.0 * a)
     bend = 0.5 * reach * constant / (divided * divided * divided) * passed
     return (
         reach * passed * height,
         -reach * other / divided,
         -bend if kind == FAR else bend,
-        (reach / b * divided, apart(passed, UNSEEN)),
+        (reach / b * divided, offset_from_zero(passed, MIN_DISTANCE)),
         square / size,
     )
 
@@ -392,9 +403,9 @@ def slotted(placement, on, pivot, offset, passage, side):
     With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
     by a quarter of the angle: it is small where A passes close by the pivot.
     """
-    kind, facing = parted(passage)
+    kind, facing = parse_passage(passage)
     a, ahead = placement.course(on).throw.polar
-    d, pivot = length_and_rest(pivot)[0], unturned(pivot, ahead)
+    d, pivot = length_with_error(pivot)[0], rotate_back(pivot, ahead)
     half = _half(placement.angle, pivot, d, facing)
     if kind == MEETING:
         direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
@@ -408,11 +419,11 @@ def slotted(placement, on, pivot, offset, passage, side):
         lag = 0.25 * way * offset / near
         slope = -0.5 * way * side * middle * half.sine / near * lag
         factor, closure = 2.0 * side * middle, near / (a + d)
-    divided = factor, apart(half.sine, UNSEEN)
-    return turned(turned(direction, half.frame), ahead), minus(0.5, lag), slope, factor * half.sine, divided, closure
+    divided = factor, offset_from_zero(half.sine, MIN_DISTANCE)
+    return rotate(rotate(direction, half.frame), ahead), minus(0.5, lag), slope, factor * half.sine, divided, closure
 
 
-def grown(parts, divisor):
+def divide_by_factors(parts, divisor):
     """Components of a force over a factor and the distance from a change point (kernel).
 
     Each by itself: there the whole is infinite, but a component that vanishes stays zero.
@@ -440,14 +451,14 @@ def _mirrored(half, kind, a, d, m, side):
     x, y = m * cosine, n * sine
     square = x * x + y * y
     mirror = ((x * x - y * y) / square, -2.0 * x * y / square)
-    ground, crank = turned(turned(mirror, (cosine, sine)), frame), turned(turned(mirror, (cosine, -sine)), frame)
+    ground, crank = rotate(rotate(mirror, (cosine, sine)), frame), rotate(rotate(mirror, (cosine, -sine)), frame)
     turning = -m * n / square
     slope = -4.0 * a * d * sine * cosine / square * turning
     as_ground, as_crank = (1.0 + turning, slope), (turning, slope)
     if kind == PARALLEL:
         coupler, rocker = (ground, *as_ground), (crank, *as_crank)
     else:
-        coupler, rocker = (subtracted(None, crank), *as_crank), (subtracted(None, ground), *as_ground)
+        coupler, rocker = (subtract_vectors(None, crank), *as_crank), (subtract_vectors(None, ground), *as_ground)
     return coupler, rocker, square / (n * n), 2.0 * side, sine * cosine
 
 
@@ -460,8 +471,8 @@ def _swung(kind, half, a, d, size, constant, side):
     cosine, sine, _ = half
     passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
     square = constant + 4.0 * a * d * other * other
-    height = root(square, size)
-    divided = divisor(height, SMALLEST * sqrt(size))
+    height = clamped_sqrt(square, size)
+    divided = guarded_divisor(height, MIN_ROOT * sqrt(size))
     reach = sqrt(a * d)
     rate = side * reach * other / divided
     bend = 0.5 * side * reach * constant / (divided * divided * divided) * passed
@@ -484,12 +495,12 @@ def _single(half, kind, a, b, h, d, constant, m, side):
     turning, change = -0.5 * m * n / square, 4.0 * a * d * sine * cosine / square
     lost = change * share * rate
     coupler = (
-        turned((reach[0] / (2.0 * b), reach[1] / (2.0 * b)), frame),
+        rotate((reach[0] / (2.0 * b), reach[1] / (2.0 * b)), frame),
         0.5 + turning - (1.0 - share) * rate,
         -change * turning - (1.0 - share) * bend - lost,
     )
     rocker = (
-        turned((arm[0] / (2.0 * h), arm[1] / (2.0 * h)), frame),
+        rotate((arm[0] / (2.0 * h), arm[1] / (2.0 * h)), frame),
         0.5 + turning + (1.0 + share) * rate,
         -change * turning + (1.0 + share) * bend - lost,
     )
@@ -500,8 +511,8 @@ def _meeting(half, a, b, h, d, constant, side):
     """Deltoid of equal crank and ground: A meets O2, but B goes on."""
     height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, constant, side)
     x, y = side * height, (d + a) * half.sine
-    coupler = turned((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
-    rocker = turned((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
+    coupler = rotate((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
+    rocker = rotate((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
     return coupler, rocker, closure, factor, passed
 
 
@@ -513,10 +524,10 @@ def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     q, p = motion.coupler.direction, motion.rocker.direction
     along = rocker_load.moment, coupler_load.moment
     parts = (
-        stretched(None if moment is None else moment / length, direction)
+        scale_vector(None if moment is None else moment / length, direction)
         for moment, length, direction in zip(along, (rocker_length, coupler_length), (q, p), strict=True)
     )
-    whole = added(*parts)
+    whole = add_vectors(*parts)
     if whole is None:
         return (0.0, 0.0)
-    return grown(whole, (motion.factor, motion.distance))
+    return divide_by_factors(whole, (motion.factor, motion.distance))

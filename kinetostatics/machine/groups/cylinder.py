@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from ...numbers import checks
-from ...numbers.parameter_tree import with_fields
-from ...numbers.planar import number, stretched
+from ...numbers.parameter_tree import replace_unchecked
+from ...numbers.planar import number_or_zero, scale_vector
 from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from ..links import Link, Slide, Sliding, Slot, Turning, Wrench
 from . import lever, near_dead_centre
@@ -68,8 +68,8 @@ class CylinderGroup(checks.Checked, Group):
         "cylinder group",
         pivot=checks.Pair("m", "cylinder pivot"),
         on=checks.Name(),
-        rod=checks.Made(Link, "a Link"),
-        cylinder=checks.Made(Link, "a Link"),
+        rod=checks.InstanceOf(Link, "a Link"),
+        cylinder=checks.InstanceOf(Link, "a Link"),
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
     )
@@ -137,8 +137,8 @@ class CylinderGroup(checks.Checked, Group):
     def on_crank(self, throws):
         """The group as it is on the pins of a crank: whether its pin comes close to the pivot."""
         throw = throws.get(self.on)
-        is_close = throw is not None and near_dead_centre.is_near(throw, 0.0, self.pivot)
-        return self if is_close is self.is_close else with_fields(self, is_close=is_close)
+        is_close = throw is not None and near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
+        return self if is_close is self.is_close else replace_unchecked(self, is_close=is_close)
 
     def place(self, placement):
         """Add the pivot, rod and cylinder."""
@@ -147,7 +147,7 @@ class CylinderGroup(checks.Checked, Group):
         else:
             motion = lever.place(placement.joints[self.on], self.pivot, None, 1)
         placement.joints[self.pivot_name] = motion.lever.joint
-        placement.links[self._rod] = motion.block._replace(direction=stretched(-1.0, motion.block.direction))
+        placement.links[self._rod] = motion.block._replace(direction=scale_vector(-1.0, motion.block.direction))
         placement.links[self._cylinder] = motion.lever
         placement.details[self._cylinder] = motion
 
@@ -168,7 +168,7 @@ class CylinderGroup(checks.Checked, Group):
             {self.on + self.label: found.inner, self.pivot_name: found.pivot},
             {
                 "cylinder_force" + self.label: found.slot,
-                "cylinder_moment" + self.label: number(on_cylinder.moment),
+                "cylinder_moment" + self.label: number_or_zero(on_cylinder.moment),
             },
             {self.on: Wrench(found.inner, None)},
         )

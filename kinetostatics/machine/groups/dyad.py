@@ -10,21 +10,21 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.planar import added, cross, dot, subtracted
+from ...numbers.planar import add_vectors, cross, dot, subtract_vectors
 from ..group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
-from ..links import Joint, Link, Turning, Wrench, between
+from ..links import Joint, Link, Turning, Wrench, link_between
 from . import rocker
 from .rocker import RockerMotion
 
 
-class Ends:
+class TwoJoints:
     """Rule of the two joints that a dyad hangs on."""
 
     rule = checks.Name()
 
     def quick(self, value):
         named = type(value) is tuple and len(value) == 2 and all(self.rule.quick(name) is name for name in value)
-        return value if named and value[0] != value[1] else checks.UNSURE
+        return value if named and value[0] != value[1] else checks.UNDECIDED
 
     def taken(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
@@ -38,9 +38,11 @@ class Ends:
 
 def place(first, second, length1, length2, assembly):
     """Both links for the joints that they begin at (kernel)."""
-    passing = (subtracted(first.first, second.first), subtracted(first.second, second.second))
+    passing = (subtract_vectors(first.first, second.first), subtract_vectors(first.second, second.second))
     seen = rocker.place(Joint(first.position, *passing), length1, length2, second.position, assembly)
-    pin = Joint(seen.pin.position, added(seen.pin.first, second.first), added(seen.pin.second, second.second))
+    pin = Joint(
+        seen.pin.position, add_vectors(seen.pin.first, second.first), add_vectors(seen.pin.second, second.second)
+    )
     return seen._replace(coupler=seen.coupler._replace(joint=first), rocker=seen.rocker._replace(joint=second), pin=pin)
 
 
@@ -99,11 +101,11 @@ class Dyad(checks.Checked, Group):
         "dyad",
         length1=checks.Number("m", low=0.0, strict=True),
         length2=checks.Number("m", low=0.0, strict=True),
-        on=Ends(),
+        on=TwoJoints(),
         pin=checks.Name(),
         assembly=checks.Sign(),
-        dyad1=checks.Made(Link, "a Link"),
-        dyad2=checks.Made(Link, "a Link"),
+        dyad1=checks.InstanceOf(Link, "a Link"),
+        dyad2=checks.InstanceOf(Link, "a Link"),
         label=checks.Name(may_be_empty=True),
     )
 
@@ -175,7 +177,7 @@ class Dyad(checks.Checked, Group):
         """Place both links at joints found in another way."""
         pin = joints[self.pin]
         first, second = (
-            between(placement.joints[name], pin, length)
+            link_between(placement.joints[name], pin, length)
             for name, length in zip(self.on, (self.length1, self.length2), strict=True)
         )
         sine, cosine = cross(first.direction, second.direction), dot(first.direction, second.direction)

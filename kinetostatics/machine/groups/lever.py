@@ -14,13 +14,25 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import apart, divisor, root, sqrt
-from ...numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
+from ...numbers.planar import (
+    cross,
+    dot,
+    left,
+    minus,
+    number_or_zero,
+    plus,
+    product,
+    rotate_back,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
 from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench, present
 from . import change_points, near_dead_centre
 
-SMALLEST = 2.0**-53
+MIN_REACH_SHARE = 2.0**-53
 """Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""
 TERMS = {
     "d": ("d", "from the pivot to the joint"),
@@ -64,7 +76,7 @@ class LeverForces(NamedTuple):
 
 def place(joint, pivot, offset, assembly):
     """Lever and block for a given joint (kernel); an offset of None is zero."""
-    d = (apart(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
+    d = (offset_from_zero(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
     if offset is None:
@@ -73,11 +85,11 @@ def place(joint, pivot, offset, assembly):
         direction = (d[0] / reach, d[1] / reach)
     else:
         reach_square = (distance - offset) * (distance + offset)
-        size = root(reach_square, square)
-        reach, divided = assembly * size, assembly * divisor(size, SMALLEST * distance)
-        direction = unturned((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
-    first, second = vector(joint.first), vector(joint.second)
-    along, across = unturned(first, direction)
+        size = clamped_sqrt(reach_square, square)
+        reach, divided = assembly * size, assembly * guarded_divisor(size, MIN_REACH_SHARE * distance)
+        direction = rotate_back((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
+    first, second = vector_or_zero(joint.first), vector_or_zero(joint.second)
+    along, across = rotate_back(first, direction)
     ratio = across / divided
     sliding = plus(along, product(offset, ratio))
     swing = minus(2.0 * sliding, product(offset, ratio)) * ratio
@@ -100,16 +112,16 @@ def resolve(motion, lever_load, block_load):
     Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
     together about the pivot give the force across the slot.
     """
-    moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
+    moment, across = number_or_zero(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
     if isinstance(motion.divisor, tuple):
-        slot, *on_block = change_points.grown((moment, *stretched(moment, across)), motion.divisor)
+        slot, *on_block = change_points.divide_by_factors((moment, *scale_vector(moment, across)), motion.divisor)
     else:
         slot = moment / motion.divisor
-        on_block = stretched(slot, across)
+        on_block = scale_vector(slot, across)
     return LeverForces(
-        inner=subtracted(subtracted(None, on_block), block_load.force),
+        inner=subtract_vectors(subtract_vectors(None, on_block), block_load.force),
         slot=slot,
-        pivot=subtracted(on_block, lever_load.force),
+        pivot=subtract_vectors(on_block, lever_load.force),
     )
 
 
@@ -188,8 +200,8 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
         pivot=checks.Pair("m", "lever pivot"),
         on=checks.Name(),
         offset=checks.Number("m", "slot offset"),
-        lever=checks.Made(Link, "a Link"),
-        block=checks.Made(Link, "a Link"),
+        lever=checks.InstanceOf(Link, "a Link"),
+        block=checks.InstanceOf(Link, "a Link"),
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
         assembly=checks.Sign(tuple(change_points.SIDES)),
@@ -197,11 +209,11 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
 
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
-        return change_points.of_lever_group(self, throws)
+        return change_points.lever_passage(self, throws)
 
     def comes_close(self, throw):
         """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
-        return near_dead_centre.is_near(throw, self.offset, self.pivot)
+        return near_dead_centre.passes_near_pivot(throw, self.offset, self.pivot)
 
     @property
     def start(self):
@@ -300,7 +312,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
             {self.on + self.label: found.inner, self.pivot_name: found.pivot},
             {
                 "slot_force" + self.label: found.slot,
-                "slot_moment" + self.label: number(minus(None, loads[self._block].moment)),
+                "slot_moment" + self.label: number_or_zero(minus(None, loads[self._block].moment)),
             },
             {self.on: Wrench(found.inner, None)},
         )
@@ -308,4 +320,4 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
 
 def slid(motion):
     """Rate of the pin along the lever."""
-    return dot(vector(motion.block.joint.first), motion.lever.direction)
+    return dot(vector_or_zero(motion.block.joint.first), motion.lever.direction)

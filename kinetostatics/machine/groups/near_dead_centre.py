@@ -42,26 +42,34 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import APART, UNSEEN, apart, divisor, root, sign, total
+from ...numbers.arithmetic import (
+    NEGLIGIBLE_LENGTH,
+    RELATIVE_OFFSET,
+    clamped_sqrt,
+    compensated_sum,
+    guarded_divisor,
+    offset_from_zero,
+    sign,
+)
 from ...numbers.parameter_tree import FLOATS
 from ...numbers.planar import (
     cross,
     length,
-    length_and_rest,
+    length_with_error,
     minus,
-    number,
+    number_or_zero,
     plus,
     product,
     quotient,
-    subtracted,
-    turned,
-    unturned,
+    rotate,
+    rotate_back,
+    subtract_vectors,
 )
 from ..links import present
 
-SMALLEST = 2.0**-100
+MIN_ROOT = 2.0**-100
 """Roots of closure, sines and cosines, that are not divided by less."""
-CLOSE = 2.0**-5
+CLOSE_SHARE = 2.0**-5
 """Share of the longest length up to which a length differs little from what others leave it."""
 TERMS = {
     "ground": ("g", "from O to the pivot"),
@@ -92,7 +100,7 @@ TERMS = {
 """What hand calculations call lines of the kernels, and what they are."""
 
 
-class Seen(NamedTuple):
+class PivotFromPin(NamedTuple):
     """The line from a pin of the crank to a pivot.
 
     Attributes
@@ -127,25 +135,25 @@ class Seen(NamedTuple):
     square: Any
 
 
-def directed(start):
+def direction_and_length(start):
     """Direction of a vector that may vanish: by its components, none of whose digits is lost, and their length.
 
     Along an axis it is a sign, of length 1.
     """
     x, y = map(present, start)
     if y is None:
-        return (_sign(number(x)), None), 1.0
+        return (_sign(number_or_zero(x)), None), 1.0
     if x is None:
         return (None, _sign(y)), 1.0
-    start = apart(x, UNSEEN), y
+    start = offset_from_zero(x, NEGLIGIBLE_LENGTH), y
     return start, length(start)
 
 
 def _sign(part):
-    return sign(apart(part, UNSEEN))
+    return sign(offset_from_zero(part, NEGLIGIBLE_LENGTH))
 
 
-def spread(ray, direction, reach):
+def squared_distances(ray, direction, reach):
     """Cross product of a direction, of some length, with a ray, and squared distances of its tip from the ray's.
 
     The ray is taken as long as the direction, and pointing ahead and backward. A distance that is small has only what
@@ -157,13 +165,20 @@ def spread(ray, direction, reach):
     return across, less * less + aside, more * more + aside
 
 
-def seen(placement, on, pivot, is_close):
+def pivot_from_pin(placement, on, pivot, is_close):
     """The pivot as a pin of the crank sees it, which may come close to it (kernel)."""
-    throw, (ground, rest), (direction, size) = placement.course(on).throw, length_and_rest(pivot), directed(pivot)
+    throw, (ground, rest), (direction, size) = (
+        placement.course(on).throw,
+        length_with_error(pivot),
+        direction_and_length(pivot),
+    )
     a, slack = throw.radius_and_rest
-    start, reach = (direction, size) if throw.ahead else directed(unturned(pivot, throw.at))
-    turn, near_by, far_off = spread(placement.ray, start, reach)
-    gap, unit = apart(total(ground, rest, -a, minus(None, slack)), UNSEEN), reach * reach
+    start, reach = (direction, size) if throw.ahead else direction_and_length(rotate_back(pivot, throw.at))
+    turn, near_by, far_off = squared_distances(placement.ray, start, reach)
+    gap, unit = (
+        offset_from_zero(compensated_sum(ground, rest, -a, minus(None, slack)), NEGLIGIBLE_LENGTH),
+        reach * reach,
+    )
     if is_close:
         along, across = gap + 0.5 * a / unit * near_by, a / reach * turn
         x, y = (quotient(part, size) for part in direction)
@@ -171,28 +186,30 @@ def seen(placement, on, pivot, is_close):
         near_by = a / ground * (turn * turn) + near_by * (gap / ground + 0.25 * a / (ground * unit) * near_by)
         square = along * along + across * across
     else:
-        d = subtracted(pivot, placement.joints[on].position)
+        d = subtract_vectors(pivot, placement.joints[on].position)
         square = gap * gap + a * ground / unit * near_by
-    return Seen(a, slack, ground, rest, gap, turn, near_by, far_off, reach, d, square)
+    return PivotFromPin(a, slack, ground, rest, gap, turn, near_by, far_off, reach, d, square)
 
 
 def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_close):
     """Direction, ratio and slope of coupler and of rocker, and what follows in `RockerMotion`, for a pin (kernel)."""
     b, h = coupler_length, rocker_length
     gap, both, product = b - h, b + h, 2.0 * b * h
-    line = seen(placement, on, pivot, is_close)
+    line = pivot_from_pin(placement, on, pivot, is_close)
     (a, slack, ground, rest), near_by, far_off = line[:4], line.near_by, line.far_off
     (less, short), unit = (minus(None, rest), minus(None, slack)), 4.0 * product * line.reach * line.reach
-    near_c = total(ground, h, -a, -b, rest, short) * total(ground, b, -a, -h, rest, short)
-    near_c = apart(near_c, APART * UNSEEN * UNSEEN) / unit  # where A meets the pivot
-    near_s = total(ground, a, h, -b, rest, slack) * total(ground, a, b, -h, rest, slack) / unit
-    far_c = total(a, b, h, -ground, less, slack) * total(ground, b, h, -a, rest, short) / unit
-    far_s = total(b, h, -ground, -a, less, short) * (both + ground + a) / unit
+    near_c = compensated_sum(ground, h, -a, -b, rest, short) * compensated_sum(ground, b, -a, -h, rest, short)
+    near_c = (
+        offset_from_zero(near_c, RELATIVE_OFFSET * NEGLIGIBLE_LENGTH * NEGLIGIBLE_LENGTH) / unit
+    )  # where A meets the pivot
+    near_s = compensated_sum(ground, a, h, -b, rest, slack) * compensated_sum(ground, a, b, -h, rest, slack) / unit
+    far_c = compensated_sum(a, b, h, -ground, less, slack) * compensated_sum(ground, b, h, -a, rest, short) / unit
+    far_s = compensated_sum(b, h, -ground, -a, less, short) * (both + ground + a) / unit
     near = near_c * far_off + near_s * near_by
     far = far_c * far_off + far_s * near_by
     closure = far * near
-    size = root(closure, 1.0)
-    sine, divided = assembly * size, assembly * divisor(size, SMALLEST)
+    size = clamped_sqrt(closure, 1.0)
+    sine, divided = assembly * size, assembly * guarded_divisor(size, MIN_ROOT)
 
     d, square, over = line.d, line.square, 1.0 / line.square
     share, aside = 0.5 * gap * both * over, assembly * b * h * size * over
@@ -218,18 +235,18 @@ def slid(placement, on, coupler_length, guide, assembly):
     """
     throw = placement.course(on).throw
     (r, ahead), slack = throw.polar, throw.radius_and_rest[1]
-    length, offset, short = coupler_length, number(guide.offset), minus(None, slack)
-    x, y = unturned(placement.ray if ahead is None else turned(placement.ray, ahead), guide.direction)
+    length, offset, short = coupler_length, number_or_zero(guide.offset), minus(None, slack)
+    x, y = rotate_back(placement.ray if ahead is None else rotate(placement.ray, ahead), guide.direction)
     aside, less, more = x * x, 1.0 - y, 1.0 + y
     near_by, far_off = less * less + aside, more * more + aside
     unit = 4.0 * length
-    low, high = (total(length, side, -r, short) / unit for side in (-offset, offset))
+    low, high = (compensated_sum(length, side, -r, short) / unit for side in (-offset, offset))
     low, high = low * near_by, high * far_off
-    near = low + total(length, -offset, r, slack) / unit * far_off
-    far = high + total(length, offset, r, slack) / unit * near_by
+    near = low + compensated_sum(length, -offset, r, slack) / unit * far_off
+    far = high + compensated_sum(length, offset, r, slack) / unit * near_by
     closure = near * far
-    size = root(closure, 1.0)
-    divided = assembly * divisor(size, SMALLEST)
+    size = clamped_sqrt(closure, 1.0)
+    divided = assembly * guarded_divisor(size, MIN_ROOT)
     inverse, share = 1.0 / divided, r / length
     bend = share * (high * near - low * far) * (inverse * inverse * inverse)
     return assembly * length * size, -share * x * inverse, bend, divided, closure
@@ -237,15 +254,15 @@ def slid(placement, on, coupler_length, guide, assembly):
 
 def slotted(placement, on, pivot, offset, assembly):
     """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel)."""
-    line, o = seen(placement, on, pivot, True), number(offset)
+    line, o = pivot_from_pin(placement, on, pivot, True), number_or_zero(offset)
     (a, slack, ground, rest), near_by, far_off = line[:4], line.near_by, line.far_off
     d, square, over = line.d, line.square, 1.0 / line.square
     short, unit, swept = minus(None, slack), 4.0 * line.reach * line.reach, a * ground / line.reach * line.turn
-    near_c = total(ground, -a, -o, rest, short) * total(ground, -a, o, rest, short) / unit
-    near_s = total(ground, a, -o, rest, slack) * total(ground, a, o, rest, slack) / unit
+    near_c = compensated_sum(ground, -a, -o, rest, short) * compensated_sum(ground, -a, o, rest, short) / unit
+    near_s = compensated_sum(ground, a, -o, rest, slack) * compensated_sum(ground, a, o, rest, slack) / unit
     near = near_c * far_off + near_s * near_by
-    size = root(near, square)
-    reach, divided = assembly * size, assembly * divisor(size, SMALLEST * ground)
+    size = clamped_sqrt(near, square)
+    reach, divided = assembly * size, assembly * guarded_divisor(size, MIN_ROOT * ground)
     along, across = reach * over, o * over
     direction = (-along * d[0] - across * d[1], across * d[0] - along * d[1])
     inverse = 1.0 / divided
@@ -257,28 +274,28 @@ def slotted(placement, on, pivot, offset, assembly):
     return direction, ratio, slope, reach, divided, near / (square + a * a)
 
 
-def is_near(throw, offset, pivot):
+def passes_near_pivot(throw, offset, pivot):
     """Whether a pin comes close to a pivot, or to where a slot passes it at an offset, in any design.
 
     It chooses formulas that keep all digits there, for all designs together: one has the last bits of its batch.
     """
     x, y = pivot
     if type(x) is type(y) is float:
-        return is_small(throw, offset, math.hypot(x, y))
-    return all(map(checks.known, pivot)) and is_small(throw, offset, np.hypot(x, y))
+        return has_small_clearance(throw, offset, math.hypot(x, y))
+    return all(map(checks.has_known_values, pivot)) and has_small_clearance(throw, offset, np.hypot(x, y))
 
 
-def is_small(throw, offset, length):
+def has_small_clearance(throw, offset, length):
     """Whether the difference of a length, more or less an offset, and the radius of a pin is small, in any design."""
     radius = throw.at[0] if throw.ahead else None
     if type(radius) is type(offset) is type(length) is float:
-        unit = CLOSE * (length + radius)
+        unit = CLOSE_SHARE * (length + radius)
         return abs(abs(length + offset) - radius) < unit or abs(abs(length - offset) - radius) < unit
-    if not all(map(checks.known, (*throw.at, offset, length))):
+    if not all(map(checks.has_known_values, (*throw.at, offset, length))):
         return False
     radius, offset, length = map(np.asarray, (throw.polar[0], offset, length))
     far, near = abs(length + offset) - radius, abs(length - offset) - radius
-    unit = CLOSE * (length + radius)
+    unit = CLOSE_SHARE * (length + radius)
     return bool(np.any((abs(far) < unit) | (abs(near) < unit)))
 
 
@@ -294,17 +311,17 @@ def elongation(placement, joint, direction, reach, short):
     """
     swing = placement.course(joint).swing
     if swing is None:
-        return unturned(placement.joints[joint].position, direction)[0] + (reach - short)
-    cosine, sine = unturned(swing.direction, direction)
+        return rotate_back(placement.joints[joint].position, direction)[0] + (reach - short)
+    cosine, sine = rotate_back(swing.direction, direction)
     way = sign(cosine)
-    turning = unturned(swing.centre, direction)[0] + way * swing.radius
+    turning = rotate_back(swing.centre, direction)[0] + way * swing.radius
     return turning + reach - (way * shortfall(swing.radius, sine, abs(cosine)) + short)
 
 
 def across(swing, guide):
     """From a joint that swings about a fixed place across to a guide: all by the swing if that place is on it."""
-    apart = minus(guide.offset, unturned(swing.centre, guide.direction)[1])
-    return minus(apart, swing.radius * unturned(swing.direction, guide.direction)[1])
+    apart = minus(guide.offset, rotate_back(swing.centre, guide.direction)[1])
+    return minus(apart, swing.radius * rotate_back(swing.direction, guide.direction)[1])
 
 
 def departure(placement, drawn_in, joint, direction, reach, short):
@@ -318,7 +335,7 @@ def departure(placement, drawn_in, joint, direction, reach, short):
         return reach - short - drawn_in
     if course.departure is None:
         return None
-    departing = unturned(course.departure, direction)[0]
+    departing = rotate_back(course.departure, direction)[0]
     return departing - drawn_in + (reach - short)
 
 
@@ -332,7 +349,7 @@ def outward(placement, joint, direction, reach, short):
     if orbit is None:
         return None
     length, farther = orbit
-    cosine, sine = unturned(placement.ray, direction)
+    cosine, sine = rotate_back(placement.ray, direction)
     size = abs(cosine)
     return length, farther * size - shortfall(length, sine, size) + sign(cosine) * (reach - short)
 
@@ -367,14 +384,14 @@ class Reaching:
         return self.on, self.guide.line.direction, side * length - position, short
 
 
-BESIDE = 2.0**-5
+MAX_PIVOT_OFFSET = 2.0**-5
 """Share of the rocker's length by which its pivot may be off the line."""
-REACH, LONGEST = 0.25, 2.0
+MIN_COUPLER_REACH, MAX_COUPLER_RATIO = 0.25, 2.0
 """Least share of its length that the coupler reaches along the axis, and how many times the rocker's it is at most."""
 AXES = ("x", "y")
 
 
-def axis_of(rocker, groups, throws):
+def toggle_axis(rocker, groups, throws):
     """Axis, "x" or "y", across the line of what hangs on the pin of a rocker, if that is a knuckle; "" else."""
     throw = throws.get(rocker.on)
     if throw is None:
@@ -387,16 +404,20 @@ def _axis_reached(group, guide, throw):
     """Axis along which the coupler reaches across a guide that is the other one's, through the pivot; "" for others."""
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
-    are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.known, given))
+    are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.has_known_values, given))
     if not (are_known and guide.is_along_an_axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])
-    reached = (abs(off) <= BESIDE * h) & (away - throw.polar[0] - h >= REACH * b) & (b <= LONGEST * h)
+    reached = (
+        (abs(off) <= MAX_PIVOT_OFFSET * h)
+        & (away - throw.polar[0] - h >= MIN_COUPLER_REACH * b)
+        & (b <= MAX_COUPLER_RATIO * h)
+    )
     return AXES[axis] if np.all(reached) else ""
 
 
-def straightened(direction, coupler, joint, coupler_length, rocker_length, pivot, knuckle):
+def straighten_rocker(direction, coupler, joint, coupler_length, rocker_length, pivot, knuckle):
     """Direction of the rocker, its component along the axis `knuckle` by way of the coupler (kernel)."""
     axis = AXES.index(knuckle)
     along, lean = coupler[axis], coupler[1 - axis]

@@ -14,16 +14,25 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import apart, divisor, root, sqrt
-from ...numbers.parameter_tree import with_fields
-from ...numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
+from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
+from ...numbers.parameter_tree import replace_unchecked
+from ...numbers.planar import (
+    add_vectors,
+    cross,
+    dot,
+    number_or_zero,
+    quotient,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
 from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from ..kinematic_state import Course, Swing
-from ..links import Joint, Link, LinkMotion, Turning, Wrench, between, tip
+from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between, tip
 from . import change_points, near_dead_centre
-from .near_dead_centre import axis_of, straightened
+from .near_dead_centre import straighten_rocker, toggle_axis
 
-SMALLEST = 2.0**-53
+MIN_SINE = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
 TERMS = {
     "d": ("d", "from the inner joint to the pivot"),
@@ -70,15 +79,15 @@ class RockerForces(NamedTuple):
 def place(joint, coupler_length, rocker_length, pivot, assembly):
     """Coupler and rocker for a given inner joint (kernel)."""
     c, h = coupler_length, rocker_length
-    d = (apart(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
+    d = (offset_from_zero(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
     square = dot(d, d)
     a = sqrt(square)
     gap = c - h
     heron = (a + c + h) * (a + gap) * (a - gap) * (c + h - a)
     product = 2.0 * c * h
     unit = product * product
-    size = root(heron, unit)
-    area, divided = assembly * size, assembly * divisor(size, SMALLEST * product) / product
+    size = clamped_sqrt(heron, unit)
+    area, divided = assembly * size, assembly * guarded_divisor(size, MIN_SINE * product) / product
     along, across = (square + gap * (c + h)) / (2.0 * square), area / (2.0 * square)
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
@@ -86,7 +95,7 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     sine = area / product
     cosine = (c * c + h * h - square) / product
 
-    first, second = vector(joint.first), vector(joint.second)
+    first, second = vector_or_zero(joint.first), vector_or_zero(joint.second)
     ratio = -dot(first, p) / (c * divided)
     swing = -dot(first, q) / (h * divided)
     lag, swing_lag = c * ratio * ratio, h * swing * swing
@@ -104,7 +113,7 @@ def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembl
     joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
     coupler, (p, *rates), *rest = near_dead_centre.place(placement, on, *given, assembly, is_close)
     if knuckle:
-        p = straightened(p, coupler[0], joint, *given, knuckle)
+        p = straighten_rocker(p, coupler[0], joint, *given, knuckle)
     pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
     return RockerMotion(LinkMotion(joint, *coupler), LinkMotion(fixed, p, *rates), pin, *rest)
 
@@ -116,15 +125,17 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     about A and of the rocker about O2 give the pin force by its parts along both links.
     """
     q, p = motion.coupler.direction, motion.rocker.direction
-    along_coupler = number(quotient(rocker_load.moment, rocker_length)) / motion.divisor
-    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
-    return balanced(added(stretched(along_coupler, q), stretched(along_rocker, p)), coupler_load, rocker_load)
+    along_coupler = number_or_zero(quotient(rocker_load.moment, rocker_length)) / motion.divisor
+    along_rocker = number_or_zero(quotient(coupler_load.moment, coupler_length)) / motion.divisor
+    return balanced(
+        add_vectors(scale_vector(along_coupler, q), scale_vector(along_rocker, p)), coupler_load, rocker_load
+    )
 
 
 def balanced(pin, coupler_load, rocker_load):
     """All forces for a given pin force."""
-    pivot = subtracted(subtracted(None, pin), rocker_load.force)
-    return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
+    pivot = subtract_vectors(subtract_vectors(None, pin), rocker_load.force)
+    return RockerForces(subtract_vectors(pin, coupler_load.force), pin, pivot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +200,8 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
         pivot=checks.Pair("m", "rocker pivot"),
         assembly=checks.Sign(tuple(change_points.SIDES)),
-        coupler=checks.Made(Link, "a Link"),
-        rocker=checks.Made(Link, "a Link"),
+        coupler=checks.InstanceOf(Link, "a Link"),
+        rocker=checks.InstanceOf(Link, "a Link"),
         on=checks.Name(),
         pin=checks.Name(),
         pivot_name=checks.Name(),
@@ -199,16 +210,16 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
 
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
-        return change_points.of_rocker_group(self, throws)
+        return change_points.rocker_passage(self, throws)
 
     def comes_close(self, throw):
         """Whether the pin comes close to the pivot."""
-        return near_dead_centre.is_near(throw, 0.0, self.pivot)
+        return near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
 
     def beside(self, groups, throws):
         """The group as it is beside others: whether it is a knuckle with one, and along which axis."""
-        knuckle = axis_of(self, groups, throws)
-        return self if knuckle == self.knuckle else with_fields(self, knuckle=knuckle)
+        knuckle = toggle_axis(self, groups, throws)
+        return self if knuckle == self.knuckle else replace_unchecked(self, knuckle=knuckle)
 
     @property
     def start(self):
@@ -276,8 +287,8 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""
         pin, pivot = joints[self.pin], Joint(self.pivot, None, None)
-        coupler = between(placement.joints[self.on], pin, self.coupler_length)
-        rocker = between(pivot, pin, self.rocker_length)
+        coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
+        rocker = link_between(pivot, pin, self.rocker_length)
         sine, cosine = cross(coupler.direction, rocker.direction), dot(coupler.direction, rocker.direction)
         self._set(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
 

@@ -14,27 +14,27 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import divisor, root
+from ...numbers.arithmetic import clamped_sqrt, guarded_divisor
 from ...numbers.planar import (
-    added,
+    add_vectors,
     cross,
     dot,
     minus,
-    number,
+    number_or_zero,
     plus,
     product,
     quotient,
-    subtracted,
-    turned,
-    unturned,
-    vector,
+    rotate,
+    rotate_back,
+    subtract_vectors,
+    vector_or_zero,
 )
 from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
-from ..guide import Guide, guide_outputs, slid
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, between
+from ..guide import Guide, guide_outputs, slider_motion
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, link_between
 from . import change_points, near_dead_centre
 
-SMALLEST = 2.0**-27
+MIN_COSINE = 2.0**-27
 """Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
 TERMS = {
     "position": ("p", "inner joint along the guide (x) and across it (y)"),
@@ -80,14 +80,14 @@ class SliderForces(NamedTuple):
 
 def place(joint, coupler_length, guide, assembly, swing=None):
     """Coupler and slider for a given inner joint, and its swing (kernel); None is +x, no offset, no swing."""
-    position = unturned(joint.position, guide.direction)
-    first = unturned(vector(joint.first), guide.direction)
-    second = unturned(vector(joint.second), guide.direction)
+    position = rotate_back(joint.position, guide.direction)
+    first = rotate_back(vector_or_zero(joint.first), guide.direction)
+    second = rotate_back(vector_or_zero(joint.second), guide.direction)
 
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
-    reach = root(square, unit)
-    along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
+    reach = clamped_sqrt(square, unit)
+    along, divided = assembly * reach, assembly * guarded_divisor(reach, MIN_COSINE * coupler_length)
     ratio = -first[1] / divided
     ratio_slope = (ratio * ratio * across - second[1]) / divided
     reached = along, ratio, ratio_slope, divided / coupler_length, square / unit
@@ -97,8 +97,8 @@ def place(joint, coupler_length, guide, assembly, swing=None):
 def passed(placement, on, coupler_length, guide, slid, *branch):
     """The same for the pin `on` of a crank, from what `slid` finds on a branch (kernel)."""
     joint = placement.joints[on]
-    position = unturned(joint.position, guide.direction)
-    first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
+    position = rotate_back(joint.position, guide.direction)
+    first, second = rotate_back(joint.first, guide.direction), rotate_back(joint.second, guide.direction)
     reached = slid(placement, on, coupler_length, guide, *branch)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
@@ -110,8 +110,8 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
     sine, cosine = across / coupler_length, along / coupler_length
     drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
     travel = Joint(position[0] + along, first[0] - ratio * across, second[0] - drawn_in)
-    coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
-    slider = slid(joint.position, (along, across), travel, guide)
+    coupler = LinkMotion(joint, rotate((cosine, sine), guide.direction), ratio, ratio_slope)
+    slider = slider_motion(joint.position, (along, across), travel, guide)
     return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel, drawn_in)
 
 
@@ -122,24 +122,24 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     of further groups among them. The slider's balance along the guide gives the pin force along it, moments of the
     coupler about its inner joint the pin force across; the guide carries the rest.
     """
-    on_slider = unturned(vector(slider_load.force), guide.direction)
+    on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
-    across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
+    across = number_or_zero(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
     if isinstance(motion.divisor, tuple):
-        aside = change_points.grown(turned((0.0, across), guide.direction), motion.divisor)
-        (across,) = change_points.grown((across,), motion.divisor)
-        pin = added(turned((along, 0.0), guide.direction), aside)
-        carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
+        aside = change_points.divide_by_factors(rotate((0.0, across), guide.direction), motion.divisor)
+        (across,) = change_points.divide_by_factors((across,), motion.divisor)
+        pin = add_vectors(rotate((along, 0.0), guide.direction), aside)
+        carried = subtract_vectors(rotate((0.0, -on_slider[1]), guide.direction), aside)
     else:
         across = across / motion.divisor
-        pin = turned((along, across), guide.direction)
-        carried = turned((0.0, -(on_slider[1] + across)), guide.direction)
+        pin = rotate((along, across), guide.direction)
+        carried = rotate((0.0, -(on_slider[1] + across)), guide.direction)
     return SliderForces(
-        inner=subtracted(pin, coupler_load.force),
+        inner=subtract_vectors(pin, coupler_load.force),
         pin=pin,
         guide=carried,
         guide_force=-(on_slider[1] + across),
-        guide_moment=number(minus(None, slider_load.moment)),
+        guide_moment=number_or_zero(minus(None, slider_load.moment)),
     )
 
 
@@ -197,10 +197,10 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
     RULES = checks.Rules(
         "slider group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
-        guide=checks.Made(Guide, "made by Guide.at or .through"),
+        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         assembly=checks.Sign(tuple(change_points.SIDES)),
-        coupler=checks.Made(Link, "a Link"),
-        slider=checks.Made(Link, "a Link"),
+        coupler=checks.InstanceOf(Link, "a Link"),
+        slider=checks.InstanceOf(Link, "a Link"),
         on=checks.Name(),
         pin=checks.Name(),
         label=checks.Name(may_be_empty=True),
@@ -208,11 +208,11 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
 
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
-        return change_points.of_slider_group(self, throws)
+        return change_points.slider_passage(self, throws)
 
     def comes_close(self, throw):
         """Whether the coupler, nearly as long as it must be, comes to stand nearly across the guide."""
-        return near_dead_centre.is_small(throw, self.guide.guide_offset, self.coupler_length)
+        return near_dead_centre.has_small_clearance(throw, self.guide.guide_offset, self.coupler_length)
 
     @property
     def start(self):
@@ -285,7 +285,7 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
         pin, direction = joints[self.pin], self.guide.direction
-        coupler = between(placement.joints[self.on], pin, self.coupler_length)
+        coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
         sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
         travel = Joint(*(dot(direction, part) for part in pin))
         slider = LinkMotion(pin, direction, None, None)

@@ -11,12 +11,21 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import cos, sin
-from ...numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
+from ...numbers.planar import (
+    minus,
+    number_or_zero,
+    plus,
+    rotate,
+    rotate_back,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
 from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction
-from ..guide import Guide, guide_outputs, slid
+from ..guide import Guide, guide_outputs, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench
 
-PARALLEL = 1e-9
+MIN_SLOT_SINE = 1e-9
 """Sine of the slot's angle from which on it counts as parallel to the guide."""
 TERMS = {
     "lean": ("lambda", "cotangent of the angle of the slot"),
@@ -52,16 +61,16 @@ def place(joint, guide, slot_angle):
     """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None zero."""
     slot = cos(slot_angle), sin(slot_angle)
     lean = slot[0] / slot[1]
-    (x, y), first, second = (unturned(vector(part), guide.direction) for part in joint)
+    (x, y), first, second = (rotate_back(vector_or_zero(part), guide.direction) for part in joint)
     rise = minus(y, guide.offset)
     back = -lean * rise
     travel = Joint(x + back, first[0] - lean * first[1], second[0] - lean * second[1])
-    slider = slid(joint.position, (back, -rise), travel, guide)
+    slider = slider_motion(joint.position, (back, -rise), travel, guide)
     return YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot)
 
 
 def _block(joint, slot, guide):
-    return LinkMotion(joint, turned(slot, guide.direction), None, None)
+    return LinkMotion(joint, rotate(slot, guide.direction), None, None)
 
 
 def resolve(motion, guide, block_load, slider_load, push):
@@ -72,14 +81,14 @@ def resolve(motion, guide, block_load, slider_load, push):
     slot; the block hands its couple to the slot, the slider both to the guide.
     """
     cosine, sine = motion.slot
-    along, across = unturned(vector(slider_load.force), guide.direction)
+    along, across = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     slot = -plus(along, push) / sine
     couple = minus(None, block_load.moment)
-    on_block = stretched(slot, turned((-sine, cosine), guide.direction))
+    on_block = scale_vector(slot, rotate((-sine, cosine), guide.direction))
     return YokeForces(
-        inner=subtracted(subtracted(None, on_block), block_load.force),
+        inner=subtract_vectors(subtract_vectors(None, on_block), block_load.force),
         slot_force=slot,
-        slot_moment=number(couple),
+        slot_moment=number_or_zero(couple),
         guide_force=cosine * slot - across,
         guide_moment=plus(minus(couple, slider_load.moment), motion.rise / sine * slot),
     )
@@ -136,7 +145,9 @@ class YokeGroup(checks.Checked, Group):
 
     def _slot_across(self):
         """Say where the slot is parallel to the guide."""
-        if checks.known(self.slot_angle) and np.any(parallel := np.abs(np.sin(self.slot_angle)) < PARALLEL):
+        if checks.has_known_values(self.slot_angle) and np.any(
+            parallel := np.abs(np.sin(self.slot_angle)) < MIN_SLOT_SINE
+        ):
             angle = np.broadcast_to(self.slot_angle, np.shape(parallel))[parallel].flat[0]
             yield checks.Problem(
                 f"slot_angle {angle:.6g} rad makes the slot parallel to the guide; it must differ from 0 and pi, as "
@@ -149,12 +160,12 @@ class YokeGroup(checks.Checked, Group):
     RULES = checks.Rules(
         "yoke group",
         _slot_across,
-        guide=checks.Made(Guide, "made by Guide.at or .through"),
+        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         slot_angle=checks.Number("rad"),
         on=checks.Name(),
         pin=checks.Name(),
-        slider=checks.Made(Link, "a Link"),
-        block=checks.Made(Link, "a Link"),
+        slider=checks.InstanceOf(Link, "a Link"),
+        block=checks.InstanceOf(Link, "a Link"),
         label=checks.Name(may_be_empty=True),
     )
 
@@ -213,7 +224,7 @@ class YokeGroup(checks.Checked, Group):
         motion = placement.details[self._slider]
         if name == "guide" + self.label:
             return Slide(self.guide.line.direction, motion.travel.first)
-        climbing = unturned(vector(motion.block.joint.first), self.guide.line.direction)[1]
+        climbing = rotate_back(vector_or_zero(motion.block.joint.first), self.guide.line.direction)[1]
         return Slide(motion.block.direction, climbing / motion.slot[1])
 
     def place(self, placement):
@@ -222,8 +233,8 @@ class YokeGroup(checks.Checked, Group):
     def follow(self, placement, joints):
         """Place block and slider at joints found in another way."""
         joint, pin, guide = placement.joints[self.on], joints[self.pin], self.guide.line
-        travel = Joint(*(unturned(vector(part), guide.direction)[0] for part in pin))
-        rise = minus(unturned(joint.position, guide.direction)[1], guide.offset)
+        travel = Joint(*(rotate_back(vector_or_zero(part), guide.direction)[0] for part in pin))
+        rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
         slider = LinkMotion(pin, self.guide.direction, None, None)
         self._set(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
@@ -246,7 +257,7 @@ class YokeGroup(checks.Checked, Group):
     def elongation(self, placement, free_position):
         """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
         motion = placement.details[self._slider]
-        along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
+        along = rotate_back(placement.joints[self.on].position, self.guide.line.direction)[0]
         return (along - free_position) - motion.slot[0] / motion.slot[1] * motion.rise
 
     def resolve(self, placement, loads, along) -> Resolved:
@@ -255,7 +266,7 @@ class YokeGroup(checks.Checked, Group):
             placement.details[self._slider], guide, loads[self._block], loads[self._slider], along.get(self._slider)
         )
         scalars = {name + label: value for name, value in found._asdict().items() if name != "inner"}
-        on_slider = turned((0.0, found.guide_force), guide.direction)
+        on_slider = rotate((0.0, found.guide_force), guide.direction)
         return Resolved(
             {self.on + label: found.inner, "guide" + label: on_slider}, scalars, {self.on: Wrench(found.inner, None)}
         )

@@ -14,21 +14,24 @@ from ...numbers.panels import Panels
 from .curves import Motion
 
 TURN = 2 * np.pi
-STEPS = 720
+TEST_STEPS = 720
 """Parts of the turn in which the derivatives of a law are added up."""
-PLACES, WEIGHTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]), np.array([5.0, 8.0, 5.0]) / 18.0
+GAUSS_POINTS, GAUSS_WEIGHTS = (
+    np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]),
+    np.array([5.0, 8.0, 5.0]) / 18.0,
+)
 """Of Gauss's quadrature over a part of 1."""
-MOST_JUMPS = 0.1
+MAX_JUMP_SHARE = 0.1
 """Share of these parts in which something may jump."""
 
 
-BESIDE = 1e-7
+KNOT_OFFSET = 1e-7
 """Angles on both sides of a knot, rad, at which it is looked at."""
-JUMP = 1e-4
+MIN_JUMP = 1e-4
 """Share of its largest value by which an acceleration or a jerk jumps at a knot that is none by rounding."""
 
 
-class Knot(NamedTuple):
+class Breakpoint(NamedTuple):
     """A crank angle, rad, at which the jerk of a law `jumps`, or its acceleration does too."""
 
     angle: float
@@ -70,11 +73,11 @@ class Law:
         >>> round(float(law.shifted(0.5)(0.5).position), 9), round(float(law(0.0).position), 9)
         (2.3, 2.3)
         """
-        return Shifted(self, **checks.singles("law", phase=(phase, "rad", {})))
+        return ShiftedLaw(self, **checks.single_numbers("law", phase=(phase, "rad", {})))
 
 
 @dataclass(frozen=True, eq=False)
-class Shifted(Law):
+class ShiftedLaw(Law):
     """A law that comes later by a phase, rad."""
 
     law: Any
@@ -89,7 +92,7 @@ class Shifted(Law):
         return getattr(self.law, "force_error", None)
 
     def __call__(self, phi):
-        return self.law(angles(phi) - self.phase)
+        return self.law(angle_array(phi) - self.phase)
 
 
 def knots_of(law):
@@ -97,20 +100,22 @@ def knots_of(law):
     return tuple(getattr(law, "knots", ()))
 
 
-def bends_of(law):
+def breakpoints_of(law):
     """Knots of a law at which its acceleration or its jerk jumps, each a `Knot`; not those that are smooth."""
     angle = np.unique(np.mod(np.array(knots_of(law), dtype=float), TURN))
     if not angle.size:
         return ()
-    largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, STEPS))[2:]]
-    before, after = (_parts(law, np.mod(angle + side * BESIDE, TURN))[2:] for side in (-1.0, 1.0))
-    jumps = [np.abs(there - here) > JUMP * size for here, there, size in zip(before, after, largest, strict=True)]
-    return tuple(Knot(float(place), bool(jumps[0][k])) for k, place in enumerate(angle) if jumps[0][k] or jumps[1][k])
+    largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, TEST_STEPS))[2:]]
+    before, after = (_parts(law, np.mod(angle + side * KNOT_OFFSET, TURN))[2:] for side in (-1.0, 1.0))
+    jumps = [np.abs(there - here) > MIN_JUMP * size for here, there, size in zip(before, after, largest, strict=True)]
+    return tuple(
+        Breakpoint(float(place), bool(jumps[0][k])) for k, place in enumerate(angle) if jumps[0][k] or jumps[1][k]
+    )
 
 
-def angles(phi):
+def angle_array(phi):
     """Crank angles as an array, one for a single number."""
-    phi = checks.converted("law", "crank angle", phi, "rad")
+    phi = checks.to_plain_named("law", "crank angle", phi, "rad")
     if isinstance(phi, np.ndarray) and phi.size:
         checks.require("law", checks.count("the number of crank angles", phi.size, size=phi.itemsize))
     try:
@@ -147,16 +152,16 @@ def _parts(law, angle):
 
 def _derivative_problem(law):
     """Whether each part of a law is what the next adds up to, but for a few steps with a jump between them."""
-    edges = np.linspace(0.0, TURN, STEPS + 1)
+    edges = np.linspace(0.0, TURN, TEST_STEPS + 1)
     width = edges[1]
     ends = _parts(law, edges)
-    inner = _parts(law, np.add.outer(PLACES * width, edges[:-1]))
+    inner = _parts(law, np.add.outer(GAUSS_POINTS * width, edges[:-1]))
     for order, (kind, changes) in enumerate(zip(Motion._fields, Motion._fields[1:], strict=False)):
-        sums = width * WEIGHTS @ inner[order + 1]
+        sums = width * GAUSS_WEIGHTS @ inner[order + 1]
         grown = np.diff(ends[order])
         allowed = 0.05 * width * np.max(np.abs(inner[order + 1])) + 1e-12 * np.max(np.abs(ends[order]))
         wrong = np.abs(grown - sums) > allowed
-        if np.mean(wrong) > MOST_JUMPS:
+        if np.mean(wrong) > MAX_JUMP_SHARE:
             place = int(np.argmax(np.abs(grown - sums)))
             return (
                 f"law must give exact derivatives by the crank angle in rad, but at {np.degrees(edges[place]):.4g} deg "
@@ -180,4 +185,4 @@ class PanelLaw(Law):
         return f"<Law in {len(self.panels.coefficients)} pieces>"
 
     def __call__(self, phi):
-        return Motion(*self.panels.at(angles(phi), 3))
+        return Motion(*self.panels.at(angle_array(phi), 3))

@@ -20,10 +20,10 @@ from ...errors import ParameterError
 from ...numbers import checks
 from . import curves
 from .curves import Motion
-from .law import TURN, Law, angles
+from .law import TURN, Law, angle_array
 from .turn_table import TurnTable
 
-WHOLE = 1e-12
+TURN_TOLERANCE = 1e-12
 """How far segments may be from a whole turn, relative to it."""
 POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
 
@@ -58,8 +58,8 @@ class Segment:
 
     def __call__(self, phi) -> Motion:
         """Motion at angles from the start of the segment, rad."""
-        phi = angles(phi)
-        beyond = WHOLE * TURN
+        phi = angle_array(phi)
+        beyond = TURN_TOLERANCE * TURN
         if np.any((phi < -beyond) | (phi > self.angle + beyond)):
             raise ParameterError(
                 f"segment: angles must lie from 0 to its {self.angle:.9g} rad, got {np.min(phi):.6g} to "
@@ -82,7 +82,7 @@ def _segment(owner, start, end, angle, rise):
         "end": (end, "m", {}),
         "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
     }
-    return Segment(**checks.singles(owner, **given), rise=rise)
+    return Segment(**checks.single_numbers(owner, **given), rise=rise)
 
 
 def harmonic(start, end, angle):
@@ -265,7 +265,7 @@ def dwell(position, angle):
         "position": (position, "m", {}),
         "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
     }
-    found = checks.singles("dwell", **given)
+    found = checks.single_numbers("dwell", **given)
     return Segment(found["position"], found["position"], found["angle"], curves.Rest())
 
 
@@ -284,9 +284,9 @@ __all__ = [
     "table",
 ]
 
-JUMP = 1e-9
+JUMP_TOLERANCE = 1e-9
 """Jump between segments, relative to the largest of its kind, that counts as rounding."""
-KINDS = {"velocity": "m/rad", "acceleration": "m/rad2"}
+DERIVATIVE_UNITS = {"velocity": "m/rad", "acceleration": "m/rad2"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,7 +298,7 @@ class Cosine(Law):
     phase: float = 0.0
 
     def __call__(self, phi):
-        psi = angles(phi) - self.phase
+        psi = angle_array(phi) - self.phase
         even, odd = self.amplitude * np.cos(psi), self.amplitude * np.sin(psi)
         return Motion(self.mean + even, -odd, -even, odd)
 
@@ -335,14 +335,14 @@ def cosine(amplitude, mean, phase=0.0):
         "mean": (mean, "m", {}),
         "phase": (phase, "rad", {}),
     }
-    return Cosine(**checks.singles("cosine law", **rules))
+    return Cosine(**checks.single_numbers("cosine law", **rules))
 
 
 # Segments one after the other
 
 
 @dataclass(frozen=True, eq=False)
-class Joined(Law):
+class JoinedLaw(Law):
     """Segments that fill a turn; made by `joined`."""
 
     segments: tuple[Segment, ...]
@@ -358,7 +358,7 @@ class Joined(Law):
         )
 
     def __call__(self, phi):
-        phi = np.mod(angles(phi), TURN)
+        phi = np.mod(angle_array(phi), TURN)
         starts = self.starts
         place = np.clip(np.searchsorted(starts, phi, side="right") - 1, 0, len(self.segments) - 1)
         found = np.empty((4, *phi.shape))
@@ -405,21 +405,23 @@ def joined(*segments, smooth="acceleration"):
         for n, part in enumerate(segments, 1)
         if not isinstance(part, Segment)
     ]
-    checks.require("joined", *wrong, checks.choice("smooth", smooth, tuple(KINDS)), None if segments else "no segments")
+    checks.require(
+        "joined", *wrong, checks.choice("smooth", smooth, tuple(DERIVATIVE_UNITS)), None if segments else "no segments"
+    )
     total = sum(part.angle for part in segments)
-    if abs(total - TURN) > WHOLE * TURN:
+    if abs(total - TURN) > TURN_TOLERANCE * TURN:
         remedy = f"a dwell of {TURN - total:.9g} rad is missing" if total < TURN else "shorten them"
         raise ParameterError(
             f"joined: segments must fill a turn of {TURN:.9g} rad, but take {total:.9g} ({np.degrees(total):.6g} deg); "
             f"{remedy}"
         )
     checks.require("joined", *_jumps(segments, smooth))
-    return Joined(segments)
+    return JoinedLaw(segments)
 
 
 def _jumps(segments, smooth):
     """What jumps from each segment to the next, the first again behind the last, as sentences."""
-    angle, kinds = 0.0, {"position": "m", **KINDS}
+    angle, kinds = 0.0, {"position": "m", **DERIVATIVE_UNITS}
     largest = [
         max(float(np.max(np.abs(part))) for part in parts)
         for parts in zip(*(segment.at(np.linspace(0.0, segment.angle, 65)) for segment in segments), strict=True)
@@ -428,7 +430,7 @@ def _jumps(segments, smooth):
         angle += one.angle
         before, after = one.at(np.array(one.angle)), other.at(np.array(0.0))
         for (kind, unit), here, there, size in zip(kinds.items(), before, after, largest, strict=False):
-            if abs(there - here) > JUMP * size:
+            if abs(there - here) > JUMP_TOLERANCE * size:
                 yield (
                     f"the {kind} jumps at {np.degrees(angle):.6g} deg, from {here:.9g} to {there:.9g} {unit}, behind "
                     f"segment {number} of {len(segments)}" + _remedy(kind)
@@ -449,7 +451,7 @@ def _remedy(kind):
 
 
 @dataclass(frozen=True, eq=False)
-class Tabled(Law):
+class TableLaw(Law):
     """A spline through a table over the turn; made by `table`."""
 
     rows: TurnTable
@@ -468,7 +470,7 @@ class Tabled(Law):
         return f"<Law through {self.rows.angle.size} points, forces within {self.force_error:.2g} of the largest>"
 
     def __call__(self, phi):
-        phi = angles(phi)
+        phi = angle_array(phi)
         return Motion(*(spline(phi) for spline in self.rows.splines))
 
 
@@ -512,7 +514,7 @@ def table(angle, position, noise=None):
     -0.252441295
     """
     rows = TurnTable.of("table of a law", angle, position, "position", noise)
-    law = Tabled(rows)
+    law = TableLaw(rows)
     rows.warn_if_uncertain("table of a law", "x''", "positions", law.force_error)
     return law
 

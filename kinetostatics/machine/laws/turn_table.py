@@ -15,12 +15,12 @@ from ...numbers.lazy import cached_property
 
 NOISE_IN_SECOND_DERIVATIVE = 16.0
 """Largest error of r'' that noise of 1 makes at points 1 apart: a standard deviation of 4.8, exceeded 3.3 times."""
-DEGREE = 5
-LEFT_BY_BALANCING = 7.0
+SPLINE_DEGREE = 5
+BALANCING_RATIO = 7.0
 """How many times inertia forces exceed what springs or counterweights leave of them."""
-TRIALS = 6
+NOISE_TRIALS = 6
 """Tables with other noise of the same size that tell how far a smoothed one can be trusted."""
-UNLIKE = 3.0
+MAX_NOISE_RATIO = 3.0
 """How many times the noise that a table shows may differ from the noise stated."""
 
 
@@ -42,7 +42,7 @@ class TurnTable:
             Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
         """
         rules = {"angle": checks.Number("rad", table=True), name: checks.Number("m", table=True)}
-        found = checks.examined(owner, rules, {"angle": angle, name: values})
+        found = checks.check_values(owner, rules, {"angle": angle, name: values})
         angle, values = (np.array(part, dtype=float) for part in found.values())
         low = values.min(initial=np.inf) if positive else np.inf
         checks.require(
@@ -71,7 +71,7 @@ class TurnTable:
         for part in (angle, values):
             part.setflags(write=False)
         if smoothing is not None:
-            smoothing = checks.singles(owner, noise=(smoothing, "m", {"low": 0.0, "strict": True}))["noise"]
+            smoothing = checks.single_numbers(owner, noise=(smoothing, "m", {"low": 0.0, "strict": True}))["noise"]
         made = cls(angle, values, smoothing)
         made._check_noise(owner, name)
         return made
@@ -85,7 +85,7 @@ class TurnTable:
                 f"{owner}: no smooth curve comes within a noise of {self.smoothing:.3g} m of the {name} values, which "
                 f"scatter by {self.noise:.3g} m; state the noise that they have, or none to pass through every point"
             )
-        if not self.noise / UNLIKE <= self.smoothing <= self.noise * UNLIKE:
+        if not self.noise / MAX_NOISE_RATIO <= self.smoothing <= self.noise * MAX_NOISE_RATIO:
             more = self.smoothing > self.noise
             warnings.warn(
                 f"{owner}: the noise stated, {self.smoothing:.3g} m, is {'more' if more else 'less'} than the "
@@ -97,7 +97,7 @@ class TurnTable:
     @cached_property
     def splines(self):
         """The spline and its first three derivatives."""
-        spline = _through(self.angle, self.values) if self.smoothing is None else self._fit(self.values)
+        spline = _interpolate(self.angle, self.values) if self.smoothing is None else self._fit(self.values)
         return spline, *(spline.derivative(order) for order in (1, 2, 3))
 
     @property
@@ -110,7 +110,7 @@ class TurnTable:
 
         goal = values.size * self._stated**2
         (t, c, k), _, status, _ = splrep(
-            *_closed(self.angle, values), k=DEGREE, s=goal, per=True, full_output=1, quiet=1
+            *_periodic(self.angle, values), k=SPLINE_DEGREE, s=goal, per=True, full_output=1, quiet=1
         )
         return BSpline(t, c, k, extrapolate="periodic") if status <= 0 else None
 
@@ -132,12 +132,12 @@ class TurnTable:
         something for coarse tables); where it is more than `noise` can cause, the rest is truncation. A smoothed table
         errs by what other noise of the same size makes of the smooth curve itself.
         """
-        nodes, _ = _closed(self.angle, self.values)
+        nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
         second = self.splines[2](places)
         if self.smoothing is not None:
             return self._smoothing_error(places, second)
-        coarse = _through(self.angle[::2], self.values[::2]).derivative(2)
+        coarse = _interpolate(self.angle[::2], self.values[::2]).derivative(2)
         difference = float(np.max(np.abs(second - coarse(places))))
         caused = NOISE_IN_SECOND_DERIVATIVE * self.noise / np.diff(nodes).min() ** 2
         return min(difference, caused + difference / 12)
@@ -149,7 +149,7 @@ class TurnTable:
         Springs or counterweights that balance them leave a fraction, but the error whole: the figure is for a machine
         in which they leave a seventh, and on the safe side for others.
         """
-        return LEFT_BY_BALANCING * self.second_derivative_error / float(largest) if largest > 0 else math.inf
+        return BALANCING_RATIO * self.second_derivative_error / float(largest) if largest > 0 else math.inf
 
     def warn_if_uncertain(self, owner, symbol, name, force_error):
         """Warn of a table that leaves forces uncertain by a hundredth or more."""
@@ -165,16 +165,16 @@ class TurnTable:
 
     def _smoothing_error(self, places, second):
         random, smooth = np.random.default_rng(0), self.splines[0](self.angle)
-        scatter = self.noise if self._stated * UNLIKE < self.noise else self._stated
+        scatter = self.noise if self._stated * MAX_NOISE_RATIO < self.noise else self._stated
         errors = []
-        for _ in range(TRIALS):
+        for _ in range(NOISE_TRIALS):
             fitted = self._fit(smooth + random.normal(0.0, scatter, smooth.size))
             if fitted is not None:
                 errors.append(float(np.max(np.abs(fitted.derivative(2)(places) - second))))
         return 1.5 * max(errors, default=math.inf)
 
 
-def _closed(angle, values):
+def _periodic(angle, values):
     """Angles and values with the first again behind the last."""
     return np.append(angle, angle[0] + 2 * np.pi), np.append(values, values[0])
 
@@ -196,7 +196,7 @@ def _roughness(angle, radius, reach):
     return float(np.sqrt(np.mean(rest * rest / gain)))
 
 
-def _through(angle, values):
+def _interpolate(angle, values):
     from scipy.interpolate import make_interp_spline
 
-    return make_interp_spline(*_closed(angle, values), k=DEGREE, bc_type="periodic")
+    return make_interp_spline(*_periodic(angle, values), k=SPLINE_DEGREE, bc_type="periodic")

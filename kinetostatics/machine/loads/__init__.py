@@ -14,21 +14,21 @@ period      turns after which loads repeat
 from .gravity import Gravity
 from .load import (
     Load,
-    bends_of,
-    by_sense,
-    is_bent,
-    is_given,
-    kinked,
+    depends_on_sense,
+    has_no_user_code,
+    has_significant_kinks,
+    kink_sources,
     kinks_of,
     may_refuse,
     period_on,
     refusals,
+    significant_kinks,
     value_of,
 )
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring
 from .table import Table
-from .table_pieces import MOST_TURNS, STRAIGHT, TURN, WholeTurns, in_rows, period_of
+from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...numbers import checks
 from ...numbers.lazy import cached_property
-from ...numbers.planar import added, dot, plus, product
+from ...numbers.planar import add_vectors, dot, plus, product
 from ..crank import ray
 from ..links import arm
 from .load import Load
@@ -44,7 +44,7 @@ class Gravity(Load):
     PATH = "gravity"
     RULES = checks.Rules(
         "gravity",
-        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.Usual(100.0, "is it in mm/s2?", 1e-3)),
+        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.PlausibleRange(100.0, "is it in mm/s2?", 1e-3)),
         direction=checks.Number("rad"),
     )
 
@@ -60,5 +60,5 @@ class Gravity(Load):
         return reduce(plus, (self._of_link(links[name], link.body) for name, link in motion.mechanism.links.items()))
 
     def _of_link(self, motion, body):
-        centre = added(motion.joint.position, arm(motion.direction, body.along, body.across))
+        centre = add_vectors(motion.joint.position, arm(motion.direction, body.along, body.across))
         return product(body.mass, -dot(self.vector, centre))

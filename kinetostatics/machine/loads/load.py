@@ -39,7 +39,7 @@ from .table import Table
 from .table_pieces import TURN
 
 
-class Sign(NamedTuple):
+class Symbol(NamedTuple):
     """How a load is drawn, in the poses of a motion.
 
     Attributes
@@ -141,7 +141,7 @@ def _read(table, motion):
         return 0.0
 
 
-def is_given(item):
+def has_no_user_code(item):
     """Whether a load is numbers, checked when it was made, and no code of the user's."""
     return isinstance(item, Load) and item.is_given
 
@@ -151,7 +151,7 @@ def value_of(item):
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
 
 
-def by_sense(item):
+def depends_on_sense(item):
     """Whether a load declares that it depends on which way the crank turns."""
     return getattr(value_of(item), "by_sense", False)
 
@@ -166,12 +166,12 @@ def may_refuse(item):
     return isinstance(item, Load) and item.REFUSES
 
 
-def valued(unit):
+def value_rule(unit):
     """Rule of what is a number, an array over the crank angles, a table, or a function of the motion."""
     return checks.OrFunction(checks.Number(unit, table=True))
 
 
-def kinked(loads):
+def kink_sources(loads):
     """Parts of loads that declare kinks: loads themselves, or their values."""
     parts = (part for item in loads for part in (item, value_of(item)))
     return [part for part in parts if hasattr(part, "kinks")]
@@ -200,12 +200,12 @@ def kinks_of(part, motion):
     return np.mod(kinks, period), np.mod(jumps, period)
 
 
-def is_bent(part, straight):
+def has_significant_kinks(part, straight):
     """Whether what declares kinks has some that bend by so much."""
     return not hasattr(part, "is_bent") or part.is_bent(straight)
 
 
-def bends_of(part, motion, straight):
+def significant_kinks(part, motion, straight):
     """Crank angles (1 or designs, K), NaN where a design has fewer, which (K,) jump, by what share it bends besides."""
     if hasattr(part, "bends"):
         return part.bends(motion, straight)

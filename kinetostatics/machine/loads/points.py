@@ -10,32 +10,32 @@ from typing import Any
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import divisor, sqrt
-from ...numbers.planar import added, dot, length, moment, stretched, subtracted, turned, vector
+from ...numbers.arithmetic import guarded_divisor, sqrt
+from ...numbers.planar import add_vectors, dot, length, moment, rotate, scale_vector, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
-from .load import Load, Sign, valued
+from .load import Load, Symbol, value_rule
 
-NUMBER = checks.Number("m")
-WORDS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
+COORDINATE = checks.Number("m")
+PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
 
 
-class Place:
+class PlaceRule:
     """Rule of a place; kept as a name, as (link, along, across), or as (x, y)."""
 
     def quick(self, value):
         if type(value) is str and value and value.isprintable():
             return value
         if type(value) is tuple and len(value) in (2, 3) and (len(value) == 3) == (type(value[0]) is str):
-            numbers = [NUMBER.quick(part) for part in value[-2:]]
-            return checks.UNSURE if checks.UNSURE in numbers else (*value[:-2], *numbers)
-        return checks.UNSURE
+            numbers = [COORDINATE.quick(part) for part in value[-2:]]
+            return checks.UNDECIDED if checks.UNDECIDED in numbers else (*value[:-2], *numbers)
+        return checks.UNDECIDED
 
     def taken(self, value, field=""):
         if isinstance(value, str):
             return checks.Name().taken(value, field)
-        wrong = f"{field} must be {WORDS}, got {checks.shown(value)}"
+        wrong = f"{field} must be {PLACE_FORMS}, got {checks.shown(value)}"
         try:
             parts = list(value)
         except TypeError:
@@ -47,7 +47,7 @@ class Place:
         if len(numbers) != 2 or any(isinstance(part, str) for part in numbers):
             return value, wrong
         of = ("along", "across") if names else ("x", "y")
-        found = [NUMBER.taken(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
+        found = [COORDINATE.taken(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
         return (*names, *(part for part, _ in found)), found[0][1] or found[1][1]
 
     def numbers(self, value):
@@ -56,23 +56,23 @@ class Place:
             return
         names = ("along", "across") if isinstance(value[0], str) else ("x", "y")
         for place, name in enumerate(names, len(value) - 2):
-            yield name, (place,), NUMBER
+            yield name, (place,), COORDINATE
 
 
-class Between:
+class PlacePairRule:
     """Rule of a pair of places."""
 
-    rule = Place()
+    rule = PlaceRule()
 
     def quick(self, value):
         if type(value) is not tuple or len(value) != 2:
-            return checks.UNSURE
+            return checks.UNDECIDED
         found = tuple(self.rule.quick(part) for part in value)
-        return checks.UNSURE if checks.UNSURE in found else found
+        return checks.UNDECIDED if checks.UNDECIDED in found else found
 
     def taken(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
-            return value, f"{field} must be a pair of points, each {WORDS}, got {checks.shown(value)}"
+            return value, f"{field} must be a pair of points, each {PLACE_FORMS}, got {checks.shown(value)}"
         found = [self.rule.taken(part, f"{field} {number}") for number, part in enumerate(value, 1)]
         return tuple(part for part, _ in found), "; ".join(problem for _, problem in found if problem) or None
 
@@ -83,10 +83,10 @@ class Between:
                 yield f"{number + 1}.{name}", (number, *steps), rule
 
 
-PLACE = Place()
+PLACE_RULE = PlaceRule()
 
 
-def carrier(mechanism, place) -> Point:
+def point_on_link(mechanism, place) -> Point:
     """The point of a link that a place is; a joint fixed to the frame is one of the link that turns about it."""
     if not isinstance(place, str):
         return Point(*place) if isinstance(place[0], str) else Point(FRAME, *place)
@@ -95,9 +95,9 @@ def carrier(mechanism, place) -> Point:
     return next(map(Point, turning), point)
 
 
-def acting(motion, place, force):
+def wrench_at(motion, place, force):
     """Link that a force at a place acts on, and its wrench there."""
-    point = carrier(motion.mechanism, place)
+    point = point_on_link(motion.mechanism, place)
     if point.link == FRAME:
         return FRAME, Wrench(force, None)
     direction = motion.placement.links[point.link].direction
@@ -105,7 +105,7 @@ def acting(motion, place, force):
     return point.link, Wrench(force, moment(lever, force))
 
 
-def problem(owner, field, place, mechanism) -> Any:
+def place_problem(owner, field, place, mechanism) -> Any:
     """What is wrong with a place on a mechanism, as a sentence, or None."""
     if isinstance(place, str):
         if place in mechanism.links and place not in mechanism.joints:
@@ -116,7 +116,7 @@ def problem(owner, field, place, mechanism) -> Any:
     return None
 
 
-def spelled(place):
+def place_text(place):
     """How a place looks in a message."""
     if isinstance(place, str):
         return repr(place)
@@ -124,12 +124,12 @@ def spelled(place):
     return f"({', '.join(words)})"
 
 
-NEAR = 2.0**-50
+MEETING_DISTANCE = 2.0**-50
 """Distance of two points, relative to coordinates and lengths, that is rounding and has no direction."""
-MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
+MEETING_SQUARE, MEETING_LOOKAHEAD = (8.0 * MEETING_DISTANCE) ** 2, 2.0**23
 """Square of the distance of two points, relative to their coordinates, at which they begin to meet; and how many times
 that distance their motion is followed there."""
-TINY = 1e-280
+MIN_SQUARE = 1e-280
 """Square of a distance, m2, below which there is only zero."""
 TERMS = {
     "d": ("d", "from the second point to the first"),
@@ -141,7 +141,7 @@ TERMS = {
 """What hand calculations call lines of the kernels, and what they are."""
 
 
-class Size(checks.OrFunction):
+class ForceRule(checks.OrFunction):
     """Rule of a force's value; two components in place of it are told what to write."""
 
     def taken(self, value, field=""):
@@ -191,38 +191,38 @@ class Force(Load):
     PATH, VALUE, OVER_ANGLES, LENGTHS = "force", "value", ("value",), ("at",)
     RULES = checks.Rules(
         "force",
-        value=Size(checks.Number("N", table=True)),
-        at=Place(),
+        value=ForceRule(checks.Number("N", table=True)),
+        at=PlaceRule(),
         direction=checks.Number("rad"),
         along=checks.Optional(checks.Name()),
     )
 
     @property
     def title(self):
-        return f"Force at {spelled(self.at)}"
+        return f"Force at {place_text(self.at)}"
 
     def misplaced(self, mechanism):
         """Say if there is no such joint or link."""
-        yield problem("Force", "at", self.at, mechanism)
+        yield place_problem("Force", "at", self.at, mechanism)
         if self.along is not None:
             yield checks.choice("Force: along", self.along, tuple(mechanism.links))
 
     def wrenches(self, motion):
         """Wrench on the link of its point."""
         axis = self._axis(motion)
-        force = (self.value, 0.0) if axis is None else stretched(self.value, axis)
-        yield acting(motion, self.at, force)
+        force = (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
+        yield wrench_at(motion, self.at, force)
 
     def _axis(self, motion):
         """Unit vector of a positive force; None for +x."""
         axis = None if self.along is None else motion.placement.links[self.along].direction
-        return axis if present(self.direction) is None else turned(ray(self.direction), axis)
+        return axis if present(self.direction) is None else rotate(ray(self.direction), axis)
 
     def signs(self, motion):
         """An arrow."""
         axis = self._axis(motion)
         direction = motion.as_vector((1.0, 0.0) if axis is None else axis)
-        yield Sign("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
+        yield Symbol("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
 
 
 class PointLoad(Load):
@@ -238,15 +238,15 @@ class PointLoad(Load):
 
     @property
     def title(self):
-        return f"{type(self).__name__} between {' and '.join(map(spelled, self.between))}"
+        return f"{type(self).__name__} between {' and '.join(map(place_text, self.between))}"
 
     def misplaced(self, mechanism):
         """Say if there are no such points, or if both move as one."""
         owner = type(self).__name__
-        wrong = [problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
+        wrong = [place_problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
         yield from wrong
         if not any(wrong):
-            link, other = (carrier(mechanism, place).link for place in self.between)
+            link, other = (point_on_link(mechanism, place).link for place in self.between)
             if link == other:
                 of = "fixed to the frame" if link == FRAME else f"of the {link}"
                 yield f"{self.title}: both points are {of}, so it loads nothing; give a point of another link"
@@ -254,17 +254,17 @@ class PointLoad(Load):
     def wrenches(self, motion):
         """Opposite forces on the links of both points."""
         force = self.pull(motion)
-        for place, part in zip(self.between, (force, subtracted(None, force)), strict=True):
-            yield acting(motion, place, part)
+        for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
+            yield wrench_at(motion, place, part)
 
     def signs(self, motion):
         """Its sign between both points."""
-        yield Sign(self.SIGN, *map(motion.position, self.between))
+        yield Symbol(self.SIGN, *map(motion.position, self.between))
 
     def _apart(self, motion):
         """Vector from the second point to the first."""
         first, second = (motion.spot(place).position for place in self.between)
-        return vector(subtracted(first, second))
+        return vector_or_zero(subtract_vectors(first, second))
 
     def refusals(self, motion):
         """Say at which crank angles the points meet, where the line between them has no direction."""
@@ -273,7 +273,7 @@ class PointLoad(Load):
             return
         with np.errstate(invalid="ignore"):
             size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
-            meet = np.hypot(*(first - second)) <= NEAR * size
+            meet = np.hypot(*(first - second)) <= MEETING_DISTANCE * size
         if meet.any():
             angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
@@ -316,12 +316,12 @@ class PointForce(PointLoad):
     between: Any = field(kw_only=True)
 
     PATH, VALUE, OVER_ANGLES, LENGTHS = "point_force", "value", ("value",), ("between",)
-    RULES = checks.Rules("point force", value=valued("N"), between=Between())
+    RULES = checks.Rules("point force", value=value_rule("N"), between=PlacePairRule())
 
     def pull(self, motion):
         """Force on the first point, N."""
         d = self._apart(motion)
-        return stretched(self.value / length(d), d)
+        return scale_vector(self.value / length(d), d)
 
     def signs(self, motion):
         """A line between both points, and arrows that push them apart or pull them together."""
@@ -329,10 +329,10 @@ class PointForce(PointLoad):
         apart = first - second
         with np.errstate(invalid="ignore"):
             unit = apart / np.hypot(*apart)
-        yield Sign("line", first, second)
+        yield Symbol("line", first, second)
         sense = self.sense(motion)
-        yield Sign("force", first, direction=unit, sense=sense)
-        yield Sign("force", second, direction=-unit, sense=sense)
+        yield Symbol("force", first, direction=unit, sense=sense)
+        yield Symbol("force", second, direction=-unit, sense=sense)
 
 
 @dataclass(frozen=True, eq=False)
@@ -371,7 +371,7 @@ class PointSpring(PointLoad):
         "point spring",
         stiffness=checks.Number("N/m", low=0.0),
         free_length=checks.Number("m", low=0.0),
-        between=Between(),
+        between=PlacePairRule(),
     )
     _remedy = ", or give free_length 0"
 
@@ -379,9 +379,9 @@ class PointSpring(PointLoad):
         """Force on the first point, N."""
         d = self._apart(motion)
         if present(self.free_length) is None:
-            return stretched(-self.stiffness, d)
+            return scale_vector(-self.stiffness, d)
         distance = length(d)
-        return stretched(-self.stiffness * ((distance - self.free_length) / distance), d)
+        return scale_vector(-self.stiffness * ((distance - self.free_length) / distance), d)
 
     def potential(self, motion):
         """Energy stored, J."""
@@ -429,7 +429,7 @@ class PointDamper(PointLoad):
 
     PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     DISSIPATES = True
-    RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
+    RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=PlacePairRule())
 
     def pull(self, motion):
         """Force on the first point, N; None where neither point moves, and without a coefficient."""
@@ -437,8 +437,8 @@ class PointDamper(PointLoad):
         if directed is None or present(self.coefficient) is None:
             return None
         d, slope = directed
-        shortening = dot(d, slope) / divisor(dot(d, d), TINY)
-        return stretched(-self.coefficient * motion.crank_speed * shortening, d)
+        shortening = dot(d, slope) / guarded_divisor(dot(d, d), MIN_SQUARE)
+        return scale_vector(-self.coefficient * motion.crank_speed * shortening, d)
 
     def _directed(self, motion):
         """Vector from the second point to the first, and its derivative by crank angle; None where neither moves.
@@ -449,9 +449,14 @@ class PointDamper(PointLoad):
         first, second = (motion.spot(place) for place in self.between)
         if first.first is None and second.first is None:
             return None
-        positions = [vector(spot.position) for spot in (first, second)]
-        slope, d = vector(subtracted(first.first, second.first)), vector(subtracted(*positions))
+        positions = [vector_or_zero(spot.position) for spot in (first, second)]
+        slope, d = (
+            vector_or_zero(subtract_vectors(first.first, second.first)),
+            vector_or_zero(subtract_vectors(*positions)),
+        )
         square = dot(slope, slope)
-        near = MEETING * (sum(dot(part, part) for part in positions) + square)
-        share = near / (near + dot(d, d) + TINY)
-        return added(d, stretched(AHEAD * sqrt(near / (square + TINY)) * share * share, slope)), slope
+        near = MEETING_SQUARE * (sum(dot(part, part) for part in positions) + square)
+        share = near / (near + dot(d, d) + MIN_SQUARE)
+        return add_vectors(
+            d, scale_vector(MEETING_LOOKAHEAD * sqrt(near / (square + MIN_SQUARE)) * share * share, slope)
+        ), slope

@@ -8,12 +8,12 @@ import numpy as np
 from ...errors import ParameterError
 from ...numbers import checks
 from ..links import present
-from .load import Load, Sign, valued
+from .load import Load, Symbol, value_rule
 from .table import Table
 from .table_pieces import TURN, WholeTurns
 
 
-class OnSlider(Load):
+class SliderLoad(Load):
     """A load on the slider `on` along its guide."""
 
     on: str
@@ -31,7 +31,7 @@ class OnSlider(Load):
 
 
 @dataclass(frozen=True, eq=False)
-class Spring(OnSlider):
+class Spring(SliderLoad):
     """Spring along the guide, acting at the slider pin.
 
     Parameters
@@ -108,7 +108,7 @@ class Spring(OnSlider):
         """
         given = {"mass": mass, "crank_speed": crank_speed}
         rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
-        mass, crank_speed = checks.examined("balancing spring", rules, given).values()
+        mass, crank_speed = checks.check_values("balancing spring", rules, given).values()
         still = (
             f"the {name} is 0" for name, value in (("mass", mass), ("crank speed", crank_speed)) if _is_zero(value)
         )
@@ -150,11 +150,11 @@ class Spring(OnSlider):
 
     def signs(self, motion):
         """A spring along the guide."""
-        yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+        yield Symbol("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
 
 
 @dataclass(frozen=True, eq=False)
-class ProcessForce(OnSlider):
+class ProcessForce(SliderLoad):
     """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
 
     Parameters
@@ -207,7 +207,7 @@ class ProcessForce(OnSlider):
     RULES = checks.Rules(
         "process force",
         _periods,
-        force=valued("N"),
+        force=value_rule("N"),
         on=checks.Name(),
         period=WholeTurns(),
     )
@@ -225,9 +225,9 @@ class ProcessForce(OnSlider):
         """An arrow along the guide."""
         mechanism = motion.mechanism
         along = motion.as_vector(mechanism.guides[self.on].direction)
-        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))
+        yield Symbol("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))
 
 
 def _is_zero(value):
     """Whether a number, or one of an array, is plainly 0."""
-    return checks.known(value) and bool(np.any(np.equal(value, 0.0)))
+    return checks.has_known_values(value) and bool(np.any(np.equal(value, 0.0)))

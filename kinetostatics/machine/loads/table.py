@@ -7,16 +7,16 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
-from ...numbers.parameter_tree import with_fields
-from ..sense import require_sense
+from ...numbers.parameter_tree import replace_unchecked
+from ..kinematic_state import require_sense
 from . import table_pieces
-from .table_pieces import TURN, WholeTurns, bending, crossings, left_out
+from .table_pieces import TURN, WholeTurns, kink_rows, largest_ignored_kink, stops_and_crossings
 
-OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
+COLUMNS = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """By what a table may be over: the heading of such a column, and its unit."""
-LARGEST_AREA = checks.Usual(5.0, "is it in cm2, or in mm2?")
+MAX_AREA = checks.PlausibleRange(5.0, "is it in cm2, or in mm2?")
 """Area, m2, beyond which no piston goes: one of 2.5 m in diameter."""
-VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
+VALUE_HEADINGS = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 
 
@@ -83,12 +83,12 @@ class Table:
         given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
         unit = table_pieces.unit_of(y) or table_pieces.unit_of(back)
         value = checks.Number(unit or "N", table=True)
-        found = checks.examined(
+        found = checks.check_values(
             "table",
-            {"x": checks.Number(OVER[over][1] if over in OVER else "rad", table=True)}
+            {"x": checks.Number(COLUMNS[over][1] if over in COLUMNS else "rad", table=True)}
             | dict.fromkeys(tuple(given)[1:], value),
             given,
-            checks.choice("over", over, tuple(OVER)),
+            checks.choice("over", over, tuple(COLUMNS)),
             WholeTurns().taken(period, "period")[1],
             None if slider is None else checks.Name().taken(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
@@ -109,8 +109,8 @@ class Table:
             arrays = {name: values[::-1] for name, values in arrays.items()}
         period = WholeTurns().taken(period)[0]
         if over == "angle":
-            checks.require("table", table_pieces.problem(arrays["x"], arrays["y"], period))
-            if table_pieces.closes(arrays["x"], period):
+            checks.require("table", table_pieces.angle_problem(arrays["x"], arrays["y"], period))
+            if table_pieces.repeats_first_row(arrays["x"], period):
                 arrays = {name: values[:-1] for name, values in arrays.items()}
         else:
             short = None if period == TURN else "over travel the period is one turn"
@@ -168,25 +168,25 @@ class Table:
 
         problems = (
             checks.choice("unit", unit, ("N", "N*m", "N m")),
-            None if over is None else checks.choice("over", over, tuple(OVER)),
+            None if over is None else checks.choice("over", over, tuple(COLUMNS)),
             "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
         )
-        number = {} if area is None else {"area": (area, "m**2", {"usual": LARGEST_AREA})}
-        area = checks.singles("table", *problems, **number).get("area")
+        number = {} if area is None else {"area": (area, "m**2", {"usual": MAX_AREA})}
+        area = checks.single_numbers("table", *problems, **number).get("area")
         names = [name for name, _ in headings(path)]
-        if area is None and "pressure" in names and VALUES[unit] not in names:
+        if area is None and "pressure" in names and VALUE_HEADINGS[unit] not in names:
             raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
-        over = over or ("travel" if OVER["travel"][0] in names else "angle")
-        column, own = OVER[over]
+        over = over or ("travel" if COLUMNS["travel"][0] in names else "angle")
+        column, own = COLUMNS[over]
         of = unit.replace(" ", "*") if area is None else "Pa"
-        value = VALUES[of]
+        value = VALUE_HEADINGS[of]
         back = over == "travel" and f"{value}_back" in names
-        if problem := table_pieces.unread_problem(names, value, over):
+        if problem := table_pieces.unread_column_problem(names, value, over):
             raise CaseError(path, [problem])
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
-            return with_fields(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
+            return replace_unchecked(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
 
@@ -218,7 +218,7 @@ class Table:
 
     def of(self, slider):
         """The table read by the travel of a slider unless it names one itself."""
-        return self if self.over == "angle" or self.slider is not None else with_fields(self, slider=slider)
+        return self if self.over == "angle" or self.slider is not None else replace_unchecked(self, slider=slider)
 
     def problems(self, mechanism):
         """What is wrong with it on a mechanism, as sentences."""
@@ -260,22 +260,24 @@ class Table:
         """
         place = self.place(motion)
         returning = None if self.back is None else self.returns(motion)
-        xp, place, returning = table_pieces.looked_at(place, returning)
+        xp, place, returning = table_pieces.lookup_arrays(place, returning)
         x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
-            piece = table_pieces.piece_at(xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period)
-            start, value, slope = table_pieces.pieces_at(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
+            piece = table_pieces.piece_index(
+                xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period
+            )
+            start, value, slope = table_pieces.piece_lines(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
             return start + number(turns) * period, value, slope
-        piece = table_pieces.piece_at(xp, self.x, place)
+        piece = table_pieces.piece_index(xp, self.x, place)
         strokes = [y] if self.back is None else [y, number(self.back)]
-        start, value, slope = table_pieces.pieces_at(xp, x, strokes, piece, returning)
+        start, value, slope = table_pieces.piece_lines(xp, x, strokes, piece, returning)
         if xp is np:
             table_pieces.require_inside(self.x, place, motion)
             if self.by_sense:
                 require_sense("table over travel: it has other values for the stroke back", motion)
             return start, value, slope
-        return start, xp.where(table_pieces.outside(self.x, place), xp.nan, value), slope
+        return start, xp.where(table_pieces.is_outside(self.x, place), xp.nan, value), slope
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""
@@ -298,22 +300,22 @@ class Table:
         """Crank angles (K,) of its kinks in its period, ends of strokes among them, and (J,) at which it may jump."""
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
+        ends, passed = (part[~np.isnan(part)] for part in stops_and_crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     def is_bent(self, straight):
         """Whether it bends by so much, or may jump where a slider turns back; any table bends by more than 0."""
-        return straight == 0.0 or self.back is not None or bending(self, straight).size > 0
+        return straight == 0.0 or self.back is not None or kink_rows(self, straight).size > 0
 
     def bends(self, motion, straight):
         """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer.
 
         Also which (K,) are jumps, and the share of its largest value by which it may bend besides.
         """
-        inner, rest = self.x[bending(self, straight)], left_out(self, straight)
+        inner, rest = self.x[kink_rows(self, straight)], largest_ignored_kink(self, straight)
         if self.over == "angle":
             return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
-        ends, passed = crossings(motion, self._slider(motion), inner)
+        ends, passed = stops_and_crossings(motion, self._slider(motion), inner)
         found = passed if self.back is None else np.column_stack([ends, passed])
         return found, np.arange(found.shape[1]) < found.shape[1] - passed.shape[1], rest
 

@@ -20,10 +20,10 @@ from numpy.polynomial import chebyshev
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.arithmetic import UNIT, namespace
+from ...numbers.arithmetic import UNIT_ROUNDOFF, namespace
 
 TURN = 2 * math.pi
-MOST_TURNS = 100
+MAX_TURNS = 100
 """Turns after which loads must repeat, all together."""
 
 
@@ -31,18 +31,18 @@ class WholeTurns:
     """Rule of a period: 2 pi or a whole multiple of it, but for rounding, which is taken away."""
 
     def quick(self, value):
-        return value if value is TURN else checks.UNSURE
+        return value if value is TURN else checks.UNDECIDED
 
     def taken(self, value, field=""):
         try:
-            value = checks.plain(value, "rad")
+            value = checks.to_plain(value, "rad")
         except checks.DimensionError as fault:
             return value, f"{field} {fault}"
         number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
         turns = value / TURN if number else 0.0
         if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
-            many = f"{field} must be at most {MOST_TURNS} turns, got {round(turns):.6g}"
-            return round(turns) * TURN, many if round(turns) > MOST_TURNS else None
+            many = f"{field} must be at most {MAX_TURNS} turns, got {round(turns):.6g}"
+            return round(turns) * TURN, many if round(turns) > MAX_TURNS else None
         return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
 
 
@@ -51,9 +51,9 @@ def period_of(loads, turns=1):
     return TURN * math.lcm(turns, *(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
 
 
-BEYOND = 1e-9
+TRAVEL_TOLERANCE = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
-BACKWARDS = re.compile("back|return", re.IGNORECASE)
+RETURN_STROKE_WORDS = re.compile("back|return", re.IGNORECASE)
 """What a heading has that is meant for a stroke back."""
 
 
@@ -78,20 +78,20 @@ def travel_problem(x):
     return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
 
 
-def unread_problem(names, value, over):
+def unread_column_problem(names, value, over):
     """Why a column of a file whose heading looks like a stroke back, or a value beside it, is not read; or None."""
     read = {f"{value}_back"} if over == "travel" else set()
     read.update(f"{name}_back" for name in names if name != value)
     beside = f"{value}_" if over == "travel" else f"{value}_back"
     for name in names:
-        if (BACKWARDS.search(name) or name.startswith(beside)) and name not in read:
+        if (RETURN_STROKE_WORDS.search(name) or name.startswith(beside)) and name not in read:
             back = f"the stroke back is headed {value}_back"
             wanted = back if over == "travel" else "a stroke back stands over travel"
             return f"column {name!r} would not be read: {wanted}; rename it, or leave it out"
     return None
 
 
-def looked_at(place, returning):
+def lookup_arrays(place, returning):
     """The library that looks values up, places and strokes: NumPy, unless they have no values yet, as under JAX."""
     try:
         return np, np.asarray(place, dtype=float), returning if returning is None else np.asarray(returning)
@@ -99,12 +99,12 @@ def looked_at(place, returning):
         return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
 
 
-def piece_at(xp, x, place):
+def piece_index(xp, x, place):
     """Which piece between rows each place lies in; the first or last beyond."""
     return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
 
 
-def pieces_at(xp, x, strokes, piece, back=None):
+def piece_lines(xp, x, strokes, piece, back=None):
     """Start, value there and slope of some pieces, of the first or, where told, the second of two strokes."""
     place = piece if back is None else piece + (x.size - 1) * back
     values = np.concatenate([y[:-1] for y in strokes])
@@ -112,15 +112,15 @@ def pieces_at(xp, x, strokes, piece, back=None):
     return tuple(xp.asarray(part)[at] for part, at in ((x, piece), (values, place), (slopes, place)))
 
 
-def outside(x, place):
+def is_outside(x, place):
     """Whether places lie beyond the rows."""
-    room = BEYOND * (x[-1] - x[0])
+    room = TRAVEL_TOLERANCE * (x[-1] - x[0])
     return (place < x[0] - room) | (place > x[-1] + room)
 
 
 def require_inside(x, place, motion):
     """Raise an error where a slider goes beyond the rows."""
-    out = outside(x, place)
+    out = is_outside(x, place)
     if out.any():
         angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
         raise ParameterError(
@@ -131,17 +131,17 @@ def require_inside(x, place, motion):
         )
 
 
-def closes(angle, period):
+def repeats_first_row(angle, period):
     """Whether the last row stands at the angle of the first, a period later, but for rounding."""
     return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)
 
 
-def problem(angle, value, period):
+def angle_problem(angle, value, period):
     """What is wrong with rows of a table in order, or None."""
     if angle.size < 3:
         return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
     step, span = np.diff(angle), angle[-1] - angle[0]
-    if closes(angle, period):
+    if repeats_first_row(angle, period):
         unequal = abs(value[-1] - value[0]) > 1e-9 * np.max(np.abs(value))
         return (
             f"the value must end as it began, a period of {_degrees(period)} before, but is {value[0]:.9g} at "
@@ -185,35 +185,35 @@ def unit_of(values):
     """Unit of values that are quantities, "" of plain numbers."""
     for unit in ("N", "N*m"):
         try:
-            return "" if checks.plain(values, unit) is values else unit
+            return "" if checks.to_plain(values, unit) is values else unit
         except checks.DimensionError:
             continue
     return ""
 
 
-STRAIGHT = 1e-5
+KINK_TOLERANCE = 1e-5
 """Share of the largest value by which a table may be off a polynomial and bend nothing that one would see."""
-DEGREE = 5
+SMOOTH_DEGREE = 5
 """Of these polynomials: less than those have that reductions take."""
-AROUND = 32
+SMOOTH_STRETCHES = 32
 """Stretches in half a turn, or in a table over travel, on which a smooth curve is such a polynomial."""
-PLACES = chebyshev.chebpts1(32)
+CHEBYSHEV_POINTS = chebyshev.chebpts1(32)
 """Places on a stretch, from -1 to 1, of which the polynomial is made: so that it swings nowhere, however rows lie."""
-SERIES = np.linalg.pinv(chebyshev.chebvander(PLACES, DEGREE))
+CHEBYSHEV_FIT = np.linalg.pinv(chebyshev.chebvander(CHEBYSHEV_POINTS, SMOOTH_DEGREE))
 """Coefficients of the polynomial from values at these."""
 
 
 @lru_cache(maxsize=32)
-def bending(table, straight=STRAIGHT):
+def kink_rows(table, straight=KINK_TOLERANCE):
     """Rows at which a table bends by more than a share of its largest value; over the travel inner ones."""
     room = straight * abs(table.largest)
     if table.over == "angle":
         return _around(table.x, table.y, table.period, room)
     curve = Curve(table.x, table.strokes, room)
-    return curve.sharp(curve.joints(0, table.x.size - 1), (table.x[-1] - table.x[0]) / AROUND)
+    return curve.sharp(curve.joints(0, table.x.size - 1), (table.x[-1] - table.x[0]) / SMOOTH_STRETCHES)
 
 
-def left_out(table, straight=STRAIGHT):
+def largest_ignored_kink(table, straight=KINK_TOLERANCE):
     """Share of its largest value by which a table bends at the rows that count as straight, one by one."""
     x, strokes = table.x, table.strokes
     if table.over == "angle":
@@ -224,7 +224,7 @@ def left_out(table, straight=STRAIGHT):
     share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
     off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
     inner = off if table.over == "angle" else np.pad(off, 1)
-    return float(np.delete(inner, bending(table, straight)).max(initial=0.0) / (abs(table.largest) or 1.0))
+    return float(np.delete(inner, kink_rows(table, straight)).max(initial=0.0) / (abs(table.largest) or 1.0))
 
 
 def _around(angle, value, period, room):
@@ -234,7 +234,7 @@ def _around(angle, value, period, room):
     around = angle[order] + period * (order < order[0])
     curve = Curve(np.concatenate([around - period, around, around + period]), [np.tile(value[order], 3)], room)
     joints = [count, *curve.joints(count, 2 * count)]
-    return order[curve.sharp(joints, 0.5 * TURN / AROUND) - count]
+    return order[curve.sharp(joints, 0.5 * TURN / SMOOTH_STRETCHES) - count]
 
 
 class Curve(NamedTuple):
@@ -273,26 +273,26 @@ class Curve(NamedTuple):
         """Whether a polynomial is near all strokes between two places, at rows and besides."""
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         some = slice(np.searchsorted(self.x, low), np.searchsorted(self.x, high, side="right"))
-        places = np.concatenate([PLACES, (self.x[some] - middle) / half])
+        places = np.concatenate([CHEBYSHEV_POINTS, (self.x[some] - middle) / half])
         for y in self.strokes:
-            values = np.interp(middle + half * PLACES, self.x, y)
-            found = chebyshev.chebval(places, SERIES @ values)
+            values = np.interp(middle + half * CHEBYSHEV_POINTS, self.x, y)
+            found = chebyshev.chebval(places, CHEBYSHEV_FIT @ values)
             if np.abs(found - np.concatenate([values, y[some]])).max() > self.room:
                 return False
         return True
 
 
-SAMPLES = 720
+STOP_SAMPLES = 720
 """Crank angles a turn between which a slider turns back once at most."""
-ASIDE = 1e-3
+SAMPLE_OFFSET = 1e-3
 """Crank angle from 0, rad, so that no sample meets a dead centre."""
-CLOSE = 1e-13
+MIN_STEP = 1e-13
 """Step of a crank angle, rad, that is the last."""
-MOST = 60
+MAX_STEPS = 60
 """Steps after which a bracket cannot be halved any more."""
 
 
-def crossings(motion, slider, levels):
+def stops_and_crossings(motion, slider, levels):
     """Crank angles at which a slider stands still, (designs, E), and passes levels, (designs, K), until it all repeats.
 
     NaN stands where a design has fewer than another, or does not close. Between two stops a slider passes each level
@@ -312,12 +312,12 @@ def crossings(motion, slider, levels):
         return motion.mechanism.place(angle).travels[slider]
 
     with np.errstate(invalid="ignore", divide="ignore"):
-        grid = (ASIDE + np.linspace(0.0, TURN * turns, SAMPLES * turns + 1))[None]
+        grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
         rate = np.broadcast_arrays(*np.atleast_2d(travel(grid).first, grid))[0]
         closes = ~np.isnan(rate)
         turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & closes[:, :-1] & closes[:, 1:]
         design, place = np.nonzero(turning)
-        low, high = in_rows(design, len(rate), grid[0, place], grid[0, place + 1])
+        low, high = pad_rows(design, len(rate), grid[0, place], grid[0, place + 1])
 
         def rates(angle):
             at = travel(angle)
@@ -325,11 +325,11 @@ def crossings(motion, slider, levels):
 
         stops = _roots(rates, low, high, np.zeros_like(low))
         knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), stops]), axis=1)
-        passed = _roots(*_passing(travel, levels, knots))
+        passed = _roots(*_crossing_brackets(travel, levels, knots))
     return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
 
 
-def _passing(travel, levels, knots):
+def _crossing_brackets(travel, levels, knots):
     """Coordinate and rate as a function, between which of some angles it passes a level, and the levels."""
 
     def places(angle):
@@ -346,10 +346,10 @@ def _passing(travel, levels, knots):
     first = np.repeat(np.minimum(before, after)[design, place] + number - np.cumsum(number), number)
     level = levels[first + np.arange(number.sum())]
     design, place = np.repeat(design, number), np.repeat(place, number)
-    return places, *in_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
+    return places, *pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
 
 
-def in_rows(design, count, *values):
+def pad_rows(design, count, *values):
     """Values of designs, which stand one after the other, as arrays (designs, most of one), NaN where one has fewer."""
     number = np.bincount(design, minlength=count)
     rows = np.full((len(values), count, number.max(initial=0)), np.nan)
@@ -366,13 +366,13 @@ def _roots(function, low, high, level):
         return low
     rising = function(high)[0] > function(low)[0]  # an end may be at the level
     angle, moving = 0.5 * (low + high), np.ones(low.shape, dtype=bool)
-    for _ in range(MOST):
+    for _ in range(MAX_STEPS):
         value, slope = function(angle)
         beyond = (value > level) == rising
         low, high = np.where(beyond, low, angle), np.where(beyond, angle, high)
         step = angle - (value - level) / slope
         following = np.where((low <= step) & (step <= high), step, 0.5 * (low + high))
-        far = np.abs(following - angle) > CLOSE
+        far = np.abs(following - angle) > MIN_STEP
         angle = np.where(moving, following, angle)  # no root hangs on how many steps others take
         moving &= far
         if not moving.any():
@@ -380,37 +380,37 @@ def _roots(function, low, high, level):
     return angle
 
 
-MORE = 1.0 + 1e-9
+BOUND_FACTOR = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
-TINY = 2.0**-1000
+MIN_BOUND = 2.0**-1000
 """More than what a product or quotient too small for a double loses."""
 
 
-def rounding(table, motion):
+def rounding_bound(table, motion):
     """Bound on the error of values read by crank angle, N or N m.
 
     A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
     Each piece is taken as if all of it were risen. The end of the last one is rounded as well, and a turn more or less
     moves every row, so that another piece may be read where one is near.
     """
-    x, slope, own = _pieces(table)
+    x, slope, own = _piece_errors(table)
     angle = np.asarray(motion.crank_angle)
     turned = np.floor((angle - x[0]) / table.period) * table.period
     place = angle - turned
-    row = piece_at(np, x, place)
+    row = piece_index(np, x, place)
     bound = own[row]
     on = turned != 0.0
     if not on.any():
         return bound
     reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
-    near = _distance(x, place[on]) <= 4.0 * UNIT * reach
+    near = _row_distance(x, place[on]) <= 4.0 * UNIT_ROUNDOFF * reach
     moved = np.zeros_like(bound)
-    moved[on] = (MORE * UNIT) * (3.0 * slope[row[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
+    moved[on] = (BOUND_FACTOR * UNIT_ROUNDOFF) * (3.0 * slope[row[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
     return bound + moved
 
 
 @lru_cache(maxsize=64)
-def _pieces(table):
+def _piece_errors(table):
     """Ends of the pieces of a table by angle; of each its slope and the error of values in the first turn."""
     x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
     rise = np.abs(np.diff(y))
@@ -418,20 +418,20 @@ def _pieces(table):
     own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
     if x[0] != 0.0:
         own[-1] += 2.0 * abs(x[-1]) * slope[-1]
-    return x, slope, MORE * UNIT * own + TINY
+    return x, slope, BOUND_FACTOR * UNIT_ROUNDOFF * own + MIN_BOUND
 
 
 def _steepest(x, y):
     return float(np.max(np.abs(np.diff(y) / np.diff(x))))
 
 
-def _distance(x, place):
+def _row_distance(x, place):
     """Of each place from the row that is nearest."""
     row = np.clip(np.searchsorted(x, place), 1, x.size - 1)
     return np.minimum(np.abs(place - x[row - 1]), np.abs(place - x[row]))
 
 
-def kinks_within(table, motion):
+def kink_bounds(table, motion):
     """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
 
     By how much the slope may change at the row beside each place, N/m or N m/m, how far the value may jump there, how
@@ -440,7 +440,7 @@ def kinks_within(table, motion):
     near = 1e-6 * float(table.x[-1] - table.x[0])
     place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
     sides = [table.y] if table.back is None else [table.y, table.back]
-    change, distance = 2.0 * max(_steepest(table.x, side) for side in sides), _distance(table.x, place)
+    change, distance = 2.0 * max(_steepest(table.x, side) for side in sides), _row_distance(table.x, place)
     jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)
     standing = np.abs(rate) <= near
     return np.where(distance <= near, change, 0.0), np.where(standing, jump, 0.0), near, distance
@@ -454,4 +454,4 @@ def _largest_within(x, y, place, near):
     row = np.clip(np.searchsorted(x, place - near), 0, x.size - 1)
     beside = np.where(np.abs(x[row] - place) <= 2.0 * near, np.abs(y[row]), 0.0)
     ends = [np.abs(np.interp(end, x, y)) for end in (place - near, place + near)]
-    return np.maximum(beside, np.maximum(*ends)) + 8 * UNIT * largest
+    return np.maximum(beside, np.maximum(*ends)) + 8 * UNIT_ROUNDOFF * largest

@@ -8,14 +8,14 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan
-from ...numbers.planar import minus, number, product, unturned
+from ...numbers.planar import minus, number_or_zero, product, rotate_back
 from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
-from .load import Load, Sign, valued
+from .load import Load, Symbol, value_rule
 from .table_pieces import TURN
 
-SAMPLES = 720
+ANGLE_SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is looked at."""
 TERMS = {
     "_angle.cosine": ("c", "cosine of the angle from where the spring is free"),
@@ -58,7 +58,7 @@ class Couple(Load):
 
     def signs(self, motion):
         """A sign at the link's reference joint."""
-        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]), sense=self.sense(motion))
+        yield Symbol(self.SIGN, motion.position(motion.mechanism.references[self.on]), sense=self.sense(motion))
 
     @property
     def _other(self):
@@ -99,7 +99,7 @@ class Torque(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "torque", "value", ("value",)
-    RULES = checks.Rules("torque", value=valued("N*m"), on=checks.Name(), against=checks.Optional(checks.Name()))
+    RULES = checks.Rules("torque", value=value_rule("N*m"), on=checks.Name(), against=checks.Optional(checks.Name()))
 
     def couple(self, motion):
         """Couple on the link, N m."""
@@ -150,7 +150,7 @@ class TorsionSpring(Couple):
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
         free_angle=checks.Number(
-            "rad", usual=checks.Usual(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
+            "rad", usual=checks.PlausibleRange(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
         ),
         on=checks.Name(),
         against=checks.Optional(checks.Name()),
@@ -175,23 +175,23 @@ class TorsionSpring(Couple):
     def _leaning(self, placement):
         """Unit vector of the link as seen from where the spring is free."""
         axis = placement.links[self.on].direction
-        axis = axis if self._other is None else unturned(axis, placement.links[self._other].direction)
-        return axis if present(self.free_angle) is None else unturned(axis, ray(self.free_angle))
+        axis = axis if self._other is None else rotate_back(axis, placement.links[self._other].direction)
+        return axis if present(self.free_angle) is None else rotate_back(axis, ray(self.free_angle))
 
     def refusals(self, motion):
         """Say if the link passes half a turn from where the spring is free, and at which crank angles."""
-        if not checks.known(self.free_angle):
+        if not checks.has_known_values(self.free_angle):
             return ()
-        known = _LOOKED_AT.setdefault(motion.mechanism, {})
+        known = _REFUSALS.setdefault(motion.mechanism, {})
         key = (self.on, self.against, np.asarray(self.free_angle).tobytes())
         if key not in known:
             known[key] = tuple(self._passing(motion.mechanism))
         return known[key]
 
     def _passing(self, mechanism):
-        grid = np.linspace(0.0, TURN * mechanism.turns, SAMPLES * mechanism.turns + 1)
+        grid = np.linspace(0.0, TURN * mechanism.turns, ANGLE_SAMPLES * mechanism.turns + 1)
         parts = self._leaning(mechanism.place(grid))
-        if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
+        if not all(isinstance(part, float | np.ndarray) and checks.has_known_values(part) for part in parts):
             return
         angle = np.arctan2(*np.broadcast_arrays(*parts, grid)[1::-1])
         step = np.diff(angle, axis=-1)
@@ -230,7 +230,7 @@ class TorsionSpring(Couple):
         return f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
 
 
-_LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+_REFUSALS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 """By mechanism: what was found of torsion springs on it."""
 
 
@@ -275,4 +275,4 @@ class TorsionDamper(Couple):
         """Couple on the link, N m."""
         links = motion.placement.links
         ratio = minus(links[self.on].ratio, None if self._other is None else links[self._other].ratio)
-        return number(product(product(present(self.coefficient), -motion.crank_speed), ratio))
+        return number_or_zero(product(product(present(self.coefficient), -motion.crank_speed), ratio))

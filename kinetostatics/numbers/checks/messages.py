@@ -52,10 +52,10 @@ SYNONYMS = {
     "rocker": ("follower", "output_link"),
 }
 """What is called otherwise elsewhere, by the library's word."""
-_MEANT: dict[str, list[str]] = {}
+_WORDS_BY_SYNONYM: dict[str, list[str]] = {}
 for _word, _others in SYNONYMS.items():
     for _other in _others:
-        _MEANT.setdefault(_other, []).append(_word)
+        _WORDS_BY_SYNONYM.setdefault(_other, []).append(_word)
 _UNIT = re.compile(r"\s*(?:\([^()]*\)|\[[^\[\]]*\])\s*$")
 """A unit behind a name, as headings have it."""
 _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")
@@ -67,17 +67,17 @@ def nearest(value, allowed):
     import difflib
 
     text, allowed = _UNIT.sub("", str(value)[:100]).strip("|"), list(allowed)
-    for spelled in (text, *_others_for(text.lower()), text.rpartition(" ")[2]):
+    for spelled in (text, *_synonym_spellings(text.lower()), text.rpartition(" ")[2]):
         found = next((word for word in allowed if str(word).lower() == spelled.lower()), None)
         if found is not None:
             return found
     return next(iter(difflib.get_close_matches(text, allowed, n=1)), None)
 
 
-def _others_for(text):
+def _synonym_spellings(text):
     """What a text may mean by the library's words: as a whole, else with each of its words as the library has it."""
-    yield from _MEANT.get(text, ())
-    yield _PART.sub(lambda found: _MEANT.get(found[1], [found[1]])[0] + found[2], text)
+    yield from _WORDS_BY_SYNONYM.get(text, ())
+    yield _PART.sub(lambda found: _WORDS_BY_SYNONYM.get(found[1], [found[1]])[0] + found[2], text)
 
 
 class Problem(str):
@@ -109,7 +109,7 @@ def require(owner, *problems):
         raise ParameterError(f"{owner}: " + "; ".join(found), designs)
 
 
-def fitting(**shapes):
+def broadcast_problem(**shapes):
     """What is wrong with shapes, by what has them, that do not broadcast together, or None."""
     if len(shapes) < 2:
         return None
@@ -121,9 +121,9 @@ def fitting(**shapes):
     return None
 
 
-MEMORY = 10_000_000_000
+MAX_TABLE_MEMORY = 10_000_000_000
 """Bytes that no table of angles or designs may take."""
-ANGLE = 1000
+BYTES_PER_ANGLE = 1000
 """Bytes that the results at a crank angle take, all forces in a table."""
 
 
@@ -131,9 +131,9 @@ def count(name, value, *, size=None):
     """What is wrong with a number of things, or None; with their `size` in bytes, they must have room in memory."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
         return f"{name} must be a whole number of at least 1, got {value!r}"
-    if size is not None and value * size > MEMORY:
+    if size is not None and value * size > MAX_TABLE_MEMORY:
         found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
-        return f"{name} must be at most {MEMORY // size}, as {found} of memory"
+        return f"{name} must be at most {MAX_TABLE_MEMORY // size}, as {found} of memory"
     return None
 
 

@@ -17,11 +17,20 @@ import numpy as np
 
 from ...errors import HintWarning
 from ..fingerprint import LIBRARY
-from .messages import Problem, fitting, require, shown
-from .values import DimensionError, UnfitError, is_quantity, kept, known, number, plain, unfit
+from .messages import Problem, broadcast_problem, require, shown
+from .values import (
+    DimensionError,
+    NotANumberError,
+    has_known_values,
+    is_quantity,
+    not_a_number,
+    snapshot,
+    to_number,
+    to_plain,
+)
 
 
-class Usual(NamedTuple):
+class PlausibleRange(NamedTuple):
     """Sizes, without sign, between which a number lies that is not zero.
 
     Attributes
@@ -46,26 +55,26 @@ class Usual(NamedTuple):
     unit: str = ""
 
 
-FAR = 20.0
+MAX_LENGTH_IN_LINKS = 20.0
 """Lengths of the longest link beyond which nobody puts anything: millimetres beside metres make 1000."""
-BY_UNIT = {
-    "rad": Usual(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
-    "m": Usual(FAR, "is it in mm?", 1e-3, in_links=True),
+PLAUSIBLE_BY_UNIT = {
+    "rad": PlausibleRange(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
+    "m": PlausibleRange(MAX_LENGTH_IN_LINKS, "is it in mm?", 1e-3, in_links=True),
 }
 """What holds for all numbers in a unit whose rule says nothing else."""
 
 
-def usual_of(rule):
+def plausible_range_of(rule):
     """What is usual of a number by its rule; None where anything is."""
-    found = rule.usual or BY_UNIT.get(rule.unit)
+    found = rule.usual or PLAUSIBLE_BY_UNIT.get(rule.unit)
     return found and found._replace(unit=rule.unit)
 
 
-def unusual(path, value, usual, longest=0.0):
+def implausibility(path, value, usual, longest=0.0):
     """What is odd about a number, as a sentence, or None."""
     most, advice, factor, least, in_links, si = usual
     unit = longest if in_links else 1.0
-    if not known(value) or not unit:
+    if not has_known_values(value) or not unit:
         return None
     sizes = abs(value)
     worst = sizes if isinstance(sizes, float) else float(sizes.max())
@@ -80,9 +89,9 @@ def unusual(path, value, usual, longest=0.0):
     return f"{path} is {odd:.6g}{own}{beside}; {advice}{meant}"
 
 
-HUGE, LONG = 1e150, 1e75
+MAX_NUMBER, MAX_LENGTH = 1e150, 1e75
 """Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
-UNSURE: Any = object()
+UNDECIDED: Any = object()
 """What a quick look at a value answers if it must be examined."""
 
 
@@ -103,20 +112,20 @@ class Number:
     low: float | None = None
     strict: bool = False
     table: bool = False
-    usual: Usual | None = None
+    usual: PlausibleRange | None = None
 
     above: float = dataclass_field(init=False)
     below: float = dataclass_field(init=False)
 
     def __post_init__(self):
-        above = -HUGE if self.low is None else 1.0 / LONG if self.strict else math.nextafter(self.low, -1.0)
+        above = -MAX_NUMBER if self.low is None else 1.0 / MAX_LENGTH if self.strict else math.nextafter(self.low, -1.0)
         object.__setattr__(self, "above", above)
-        object.__setattr__(self, "below", LONG if self.strict else HUGE)
+        object.__setattr__(self, "below", MAX_LENGTH if self.strict else MAX_NUMBER)
 
     def quick(self, value):
         if type(value) is float and self.above < value < self.below:
             return value
-        return float(value) if type(value) is int and self.above < value < self.below else UNSURE
+        return float(value) if type(value) is int and self.above < value < self.below else UNDECIDED
 
     def plainly(self, value):
         return f"{value}.__class__ is float and {self.above!r} < {value} < {self.below!r}", {}
@@ -124,14 +133,14 @@ class Number:
     def taken(self, value, field=""):
         name = self.name or field
         try:
-            found = number(value, self.table, self.unit)
+            found = to_number(value, self.table, self.unit)
         except DimensionError as fault:
             return value, f"{name} {fault}"
-        except UnfitError as fault:
+        except NotANumberError as fault:
             words = f", {fault}".format(unit=self.unit or "1") if str(fault) else ""
             kind = "an array of numbers" if self.table else "an array of shape (designs, 1)"
             return value, f"{name} must be a number or {kind}, got {shown(value)}{words}"
-        return found, self._out_of_range(name, found) if known(found) else None
+        return found, self._out_of_range(name, found) if has_known_values(found) else None
 
     def _out_of_range(self, name, number):
         array = np.asarray(number, dtype=float)
@@ -169,11 +178,11 @@ class Pair:
         kind, quick = type(value), self.rule.quick
         if kind is tuple and len(value) == 2:
             first, second = quick(value[0]), quick(value[1])
-            return UNSURE if first is UNSURE or second is UNSURE else (first, second)
+            return UNDECIDED if first is UNDECIDED or second is UNDECIDED else (first, second)
         if self.lone:
             first = quick(value)
-            return UNSURE if first is UNSURE else (first, 0.0)
-        return UNSURE
+            return UNDECIDED if first is UNDECIDED else (first, 0.0)
+        return UNDECIDED
 
     def plainly(self, value):
         parts = (self.rule.plainly(f"{value}[{place}]")[0] for place in range(2))
@@ -182,10 +191,10 @@ class Pair:
     def taken(self, value, field=""):
         name = self.name or field
         try:
-            value = plain(value, self.unit) if is_quantity(value) else value
+            value = to_plain(value, self.unit) if is_quantity(value) else value
         except DimensionError as fault:
             return value, f"{name} {fault}"
-        words = unfit(value)
+        words = not_a_number(value)
         if words and not self.lone:
             words = words.format(unit=self.unit or "1")
             return value, f"{name} must be a pair {self._pair}, got {shown(value)}, {words}"
@@ -228,13 +237,13 @@ class Series:
 
     def quick(self, value):
         if type(value) is not tuple or (self.first is not None and not value):
-            return UNSURE
+            return UNDECIDED
         found = tuple(self._rule(place).quick(part) for place, part in enumerate(value))
-        return UNSURE if any(part is UNSURE for part in found) else found
+        return UNDECIDED if any(part is UNDECIDED for part in found) else found
 
     def taken(self, value, field=""):
         try:
-            value = plain(value, self.unit) if is_quantity(value) else value
+            value = to_plain(value, self.unit) if is_quantity(value) else value
         except DimensionError as fault:
             return value, f"{field} {fault}"
         several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
@@ -287,14 +296,14 @@ class OrFunction:
 
 
 @dataclass(frozen=True)
-class Made:
+class InstanceOf:
     """An object of a class, described in words for the message."""
 
     kind: type
     words: str
 
     def quick(self, value):
-        return value if type(value) is self.kind else UNSURE
+        return value if type(value) is self.kind else UNDECIDED
 
     def plainly(self, value):
         return f"{value}.__class__ is kind_of_{value}", {f"kind_of_{value}": self.kind}
@@ -304,7 +313,7 @@ class Made:
 
 
 @dataclass(frozen=True)
-class Own:
+class HasMembers:
     """An object of the library or of the user's own that has some members; the user's own is kept as it is now."""
 
     members: tuple[str, ...]
@@ -312,7 +321,7 @@ class Own:
 
     def quick(self, value):
         own = not type(value).__module__.startswith(f"{LIBRARY}.")
-        return UNSURE if own or not all(hasattr(value, name) for name in self.members) else value
+        return UNDECIDED if own or not all(hasattr(value, name) for name in self.members) else value
 
     def taken(self, value, field=""):
         lacking = [name for name in self.members if not hasattr(value, name)]
@@ -321,7 +330,7 @@ class Own:
             return value, f"{field} must be {self.words}, got {shown(value)}{made}"
         if lacking:
             return value, f"{field} {type(value).__name__} lacks {', '.join(lacking)}"
-        return kept(value), None
+        return snapshot(value), None
 
 
 @dataclass(frozen=True)
@@ -335,7 +344,7 @@ class Name:
         return f"{value}.__class__ is str and {value}.isprintable(){filled}", {}
 
     def quick(self, value):
-        return value if type(value) is str and value.isprintable() and (value or self.may_be_empty) else UNSURE
+        return value if type(value) is str and value.isprintable() and (value or self.may_be_empty) else UNDECIDED
 
     def taken(self, value, field=""):
         if isinstance(value, str) and value.isprintable() and (value or self.may_be_empty):
@@ -350,7 +359,7 @@ class Sign:
     words: tuple[str, ...] = ()
 
     def quick(self, value):
-        return value if type(value) is int and (value == 1 or value == -1) else UNSURE
+        return value if type(value) is int and (value == 1 or value == -1) else UNDECIDED
 
     def taken(self, value, field=""):
         if isinstance(value, int | float | np.integer | np.floating) and type(value) is not bool and value in (1, -1):
@@ -367,7 +376,7 @@ class Rules:
     def __init__(self, owner, also=None, **rules):
         """`are_well(values)` tells of a mapping if all values are surely well, and puts in what is kept of them."""
         self.owner, self.also, self.rules = owner, also, rules
-        self.are_well = _look(rules)
+        self.are_well = _write_fast_path(rules)
 
     def admit(self, item):
         """Put into the fields what is to be kept of them, or raise `ParameterError`."""
@@ -378,12 +387,12 @@ class Rules:
     def keep(self, values, owner):
         """The same in a mapping of field to value."""
         if not self.are_well(values):
-            values.update(examined(owner, self.rules, values))
+            values.update(check_values(owner, self.rules, values))
 
 
-def _look(rules):
+def _write_fast_path(rules):
     """Function for values by field that are mostly well, written for the rules as a hand would write it."""
-    scope: dict[str, Any] = {"UNSURE": UNSURE}
+    scope: dict[str, Any] = {"UNSURE": UNDECIDED}
     lines = ["def look(values):"]
     for field, rule in rules.items():
         condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else ("False", {})
@@ -410,14 +419,14 @@ class Checked:
             rules.admit(self)
 
 
-def examined(owner, rules, values, *others):
+def check_values(owner, rules, values, *others):
     """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong, `others` too."""
     found, problems = {}, list(others)
     for field, rule in rules.items():
         found[field], problem = rule.taken(values[field], field)
         problems.append(problem)
     if not any(problems):
-        problems.append(fitting(**dict(_shapes(found))))
+        problems.append(broadcast_problem(**dict(_shapes(found))))
     require(owner, *problems)
     return found
 
@@ -430,10 +439,10 @@ def _shapes(values):
                 yield name, shape
 
 
-def single(name, value, unit, *, high=None, unequal=None, **rule):
+def single_number(name, value, unit, *, high=None, unequal=None, **rule):
     """One number in a unit as a float, and what is wrong with it, as a sentence, or None; `rule` as for `Number`."""
     found, problem = Number(unit, name, **rule).taken(value)
-    if isinstance(value, list | tuple) or (problem is None and (not known(found) or np.ndim(found))):
+    if isinstance(value, list | tuple) or (problem is None and (not has_known_values(found) or np.ndim(found))):
         problem = f"{name} must be one number, got {shown(value)}"
     if problem is None and high is not None and not found < high:
         problem = f"{name} must be less than {high:.9g}, got {found:.9g}"
@@ -442,18 +451,19 @@ def single(name, value, unit, *, high=None, unequal=None, **rule):
     return found, problem
 
 
-def singles(owner, *problems, **given):
+def single_numbers(owner, *problems, **given):
     """Single numbers by name, each given as (value, unit, rule); one `ParameterError` for all that is wrong.
 
     A rule may have another name for messages. About numbers beyond what their rules call usual one warning asks.
     """
     found = {
-        field: single(value=value, unit=unit, **{"name": field} | rule) for field, (value, unit, rule) in given.items()
+        field: single_number(value=value, unit=unit, **{"name": field} | rule)
+        for field, (value, unit, rule) in given.items()
     }
     require(owner, *(problem for _, problem in found.values()), *problems)
     values = {field: value for field, (value, _) in found.items()}
     odd = (
-        unusual(rule.get("name", field), values[field], rule["usual"]._replace(unit=unit))
+        implausibility(rule.get("name", field), values[field], rule["usual"]._replace(unit=unit))
         for field, (_, unit, rule) in given.items()
         if "usual" in rule
     )

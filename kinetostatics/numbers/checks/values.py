@@ -18,14 +18,14 @@ from typing import Any
 import numpy as np
 
 from ...errors import ParameterError
-from .messages import MEMORY
+from .messages import MAX_TABLE_MEMORY
 
 
 class DimensionError(Exception):
     """A quantity of another dimension than is wanted; the message says of which."""
 
 
-def plain(value, unit):
+def to_plain(value, unit):
     """A quantity, or each that a list or array of objects holds, as numbers in a unit; all else as it is.
 
     Raises
@@ -42,20 +42,20 @@ def plain(value, unit):
         raise DimensionError(f"must be a number, got the unit {value} without one")
     if isinstance(value, list | tuple):
         held = any(issubclass(kind, pint.Quantity | pint.Unit | list | tuple) for kind in set(map(type, value)))
-        parts = [plain(part, unit) for part in value] if held else value
+        parts = [to_plain(part, unit) for part in value] if held else value
         return tuple(parts) if isinstance(value, tuple) else parts
     if isinstance(value, np.ndarray) and value.dtype == object:
         parts = value.ravel().tolist()
         held = any(isinstance(part, pint.Quantity | pint.Unit) for part in parts)
-        return np.array([plain(part, unit) for part in parts], dtype=object).reshape(value.shape) if held else value
+        return np.array([to_plain(part, unit) for part in parts], dtype=object).reshape(value.shape) if held else value
     inner = getattr(value, "data", None) if hasattr(value, "to_numpy") else None  # of xarray, whose to_numpy drops it
     return _converted(inner, unit) if isinstance(inner, pint.Quantity) else value
 
 
-def converted(owner, name, value, unit):
+def to_plain_named(owner, name, value, unit):
     """The same, with a `ParameterError` that calls the value by its name."""
     try:
-        return plain(value, unit)
+        return to_plain(value, unit)
     except DimensionError as fault:
         raise ParameterError(f"{owner}: {name} {fault}") from None
 
@@ -70,22 +70,22 @@ def _converted(quantity, unit):
     from pint import UndefinedUnitError
 
     if not unit:
-        raise DimensionError(f"must be a plain number, as nothing tells its unit, got {_shown(quantity)}")
+        raise DimensionError(f"must be a plain number, as nothing tells its unit, got {_quantity_text(quantity)}")
     registry = quantity._REGISTRY
     try:
         wanted = registry.parse_units("" if unit == "1" else unit)
     except UndefinedUnitError as fault:
         raise DimensionError(
-            f"must be a number in {unit}, got {_shown(quantity)}, in whose registry {fault}; give the plain number"
+            f"must be a number in {unit}, got {_quantity_text(quantity)}, in whose registry {fault}; give the plain number"
         ) from None
     given, expected = (_dimension(registry, units) for units in (quantity.units, wanted))
     if given != expected:
         raise DimensionError(
-            f"must measure {_named(expected)}, {'as a ratio' if unit == '1' else f'in {unit}'}, got "
-            f"{_shown(quantity)}, which measures {_named(given)}"
+            f"must measure {_dimension_text(expected)}, {'as a ratio' if unit == '1' else f'in {unit}'}, got "
+            f"{_quantity_text(quantity)}, which measures {_dimension_text(given)}"
             + (_NO_NUMBER.format(unit) if given | _NO_ANGLE == expected | _NO_ANGLE else "")
         )
-    return _scaled(quantity, wanted)
+    return _magnitude_in(quantity, wanted)
 
 
 ANGLE = "[angle]"
@@ -98,7 +98,7 @@ def _dimension(registry, units):
     return {**registry.get_dimensionality(units), ANGLE: registry.get_root_units(units)[1]._units.get("radian", 0)}
 
 
-def _scaled(quantity, wanted):
+def _magnitude_in(quantity, wanted):
     """The magnitude in a unit of the same dimension."""
     magnitude = quantity.magnitude
     if isinstance(magnitude, bool | complex | str) or getattr(magnitude, "dtype", np.dtype(float)).kind not in "iufO":
@@ -112,7 +112,7 @@ def _scaled(quantity, wanted):
         return np.asarray(magnitude, dtype=float)[()] * (own / other)
 
 
-def _named(dimension):
+def _dimension_text(dimension):
     """Powers of dimensions as text."""
     over, under = (
         [name if abs(power) == 1 else f"{name}^{abs(power):g}" for name, power in dimension.items() if sign * power > 0]
@@ -121,7 +121,7 @@ def _named(dimension):
     return " / ".join([" ".join(over) or "1", *under]) if over or under else "a plain number"
 
 
-def _shown(quantity):
+def _quantity_text(quantity):
     """The quantity, short."""
     if np.ndim(quantity.magnitude):
         return f"an array in {quantity.units}"
@@ -129,14 +129,14 @@ def _shown(quantity):
     return text if len(text) <= 80 else f"{text[:80]}..."
 
 
-PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
+NUMBER_TYPES = (int, float, np.integer, np.floating, Fraction, Decimal)
 
 
-class UnfitError(Exception):
+class NotANumberError(Exception):
     """A value that is no number; the message says what it is and what to hand in."""
 
 
-def known(value):
+def has_known_values(value):
     """Whether the values can be looked at now."""
     if isinstance(value, np.ndarray):
         return value.dtype != object
@@ -144,7 +144,7 @@ def known(value):
 
 
 @cache
-def _unfit(kind: Any):
+def _type_problem(kind: Any):
     """Why no value of this type is a number, and what to hand in; None if it may be one."""
     for kinds, words in (
         ((bool, np.bool_), "a truth value; give a number"),
@@ -154,7 +154,7 @@ def _unfit(kind: Any):
     ):
         if issubclass(kind, kinds):
             return words
-    if issubclass(kind, (*PLAIN, list, tuple)) or kind is np.ndarray:
+    if issubclass(kind, (*NUMBER_TYPES, list, tuple)) or kind is np.ndarray:
         return None
     if hasattr(kind, "units") or hasattr(kind, "unit"):
         return "a quantity with its unit; give the plain number in SI units, as by .to('{unit}').magnitude"
@@ -168,41 +168,43 @@ def _unfit(kind: Any):
     return None if arithmetic and not issubclass(kind, np.generic) else "no number"
 
 
-def unfit(value):
+def not_a_number(value):
     """Why a value is no number, and what to hand in; None if it may be one."""
     kind: Any = type(value)
-    return _unfit(kind)
+    return _type_problem(kind)
 
 
-def number(value, table, unit=""):
+def to_number(value, table, unit=""):
     """The value as a float or a locked array of floats; as it came if its values cannot be looked at now.
 
     A quantity with its unit is converted to the one wanted.
     """
-    value = plain(value, unit)
+    value = to_plain(value, unit)
     if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
-        value = plain(value.to_numpy(), unit)
-    if words := unfit(value):
-        raise UnfitError(words)
-    if isinstance(value, PLAIN):
+        value = to_plain(value.to_numpy(), unit)
+    if words := not_a_number(value):
+        raise NotANumberError(words)
+    if isinstance(value, NUMBER_TYPES):
         try:
             return float(value)
         except OverflowError:
-            raise UnfitError("too large") from None
+            raise NotANumberError("too large") from None
     if isinstance(value, list | tuple):
         if not table:
-            raise UnfitError(_as_designs(value))
-        value = _array(value)
+            raise NotANumberError(_as_designs(value))
+        value = _array_of_list(value)
     elif isinstance(value, np.ndarray):
         value = np.asarray(value)
     shape = tuple(getattr(value, "shape", ()))
     if 0 in shape:
-        raise UnfitError(f"of shape {shape}, which holds nothing")
+        raise NotANumberError(f"of shape {shape}, which holds nothing")
     if not table and shape not in ((), (1,)) and (len(shape) < 2 or shape[-1] != 1):
-        raise UnfitError(f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]")
+        raise NotANumberError(
+            f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]"
+        )
     if shape == () or (shape == (1,) and not table):
-        return number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
-    return _locked(value) if isinstance(value, np.ndarray) else value
+        return to_number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
+    return _read_only_copy(value) if isinstance(value, np.ndarray) else value
 
 
 def _as_designs(values):
@@ -212,41 +214,41 @@ def _as_designs(values):
     return f"a {kind}; for a batch of designs write np.array({short}){axis}"
 
 
-def _array(values):
+def _array_of_list(values):
     """The items of a list as an array."""
     for kind in set(map(type, values)):
-        if words := _unfit(kind):
-            raise UnfitError(f"with {words}")
+        if words := _type_problem(kind):
+            raise NotANumberError(f"with {words}")
     try:
         return np.array(values)
     except ValueError:
-        raise UnfitError("of rows of unequal length") from None
+        raise NotANumberError("of rows of unequal length") from None
 
 
-def _locked(array):
+def _read_only_copy(array):
     """A copy of an array as floats that nobody writes to; of objects if they are numbers of another kind."""
     if array.dtype == float and array.flags.owndata and not array.flags.writeable:
         return array
-    if array.size * 8 > MEMORY:
-        raise UnfitError(f"of {array.size} numbers, which would take {array.size * 8 // 10**9} GB of memory")
+    if array.size * 8 > MAX_TABLE_MEMORY:
+        raise NotANumberError(f"of {array.size} numbers, which would take {array.size * 8 // 10**9} GB of memory")
     kind: type = float
     if array.dtype == object:
         kinds = set(map(type, array.flat))
         for item in kinds:
-            if words := _unfit(item):
-                raise UnfitError(f"with {words}")
-        kind = float if all(issubclass(item, PLAIN) for item in kinds) else object
+            if words := _type_problem(item):
+                raise NotANumberError(f"with {words}")
+        kind = float if all(issubclass(item, NUMBER_TYPES) for item in kinds) else object
     elif array.dtype.kind not in "iuf":
-        raise UnfitError(f"of {array.dtype}; give real numbers")
+        raise NotANumberError(f"of {array.dtype}; give real numbers")
     try:
         array = array.astype(kind)
     except OverflowError:
-        raise UnfitError("with one that is too large") from None
+        raise NotANumberError("with one that is too large") from None
     array.flags.writeable = False
     return array
 
 
-def kept(item):
+def snapshot(item):
     """An object of the user's own as it is now: what is changed of it later is not seen."""
     values = getattr(item, "__dict__", {})
     arrays = {name: part.copy() for name, part in values.items() if isinstance(part, np.ndarray)}

@@ -10,19 +10,19 @@ from ...engines.jax_backend import Backend
 from ...engines.numba_backend import require_numba
 from ...engines.program import program_of
 from ...mechanics.quantities import components
-from ...solution.scene import Scene, unchecked
+from ...solution.scene import Scene, unchecked_solution
 from .method import Method, NotGivenError
 
 
-def _solved(solution, angle):
-    return unchecked(Scene.of(solution), angle, "numpy")
+def _solve(solution, angle):
+    return unchecked_solution(Scene.of(solution), angle, "numpy")
 
 
 def _numpy(solution, quantity, setting):
-    return lambda: components(_solved(solution, solution.crank_angle), quantity)
+    return lambda: components(_solve(solution, solution.crank_angle), quantity)
 
 
-def compiled_run(solution, quantity):
+def compiled_function(solution, quantity):
     """Function that computes a quantity by a compiled loop."""
     require_numba()
     state = solution.dynamics
@@ -31,11 +31,11 @@ def compiled_run(solution, quantity):
 
 
 def _compiled(solution, quantity, setting):
-    return compiled_run(solution, quantity)
+    return compiled_function(solution, quantity)
 
 
 def _numpy_with_bounds(solution, quantity, setting):
-    return lambda: _with_bounds(_solved(solution, solution.crank_angle), quantity, NUMPY)
+    return lambda: _with_bounds(_solve(solution, solution.crank_angle), quantity, NUMPY)
 
 
 def _compiled_with_bounds(solution, quantity, setting):
@@ -48,12 +48,12 @@ def _with_bounds(solution, quantity, engine):
     return tuple(np.reshape(values[quantity], (-1, *solution.shape)))
 
 
-def proven(solution, quantity):
+def proven_bound(solution, quantity):
     """Bound on the errors of a solution's values (N,), of a vector on their magnitude."""
     return np.linalg.norm(np.reshape(solution.error_bound(quantity), (-1, *solution.shape)), axis=0)
 
 
-def _elsewhere(engine, precision):
+def _backend_method(engine, precision):
     """The recorded program in a precision, or by JAX on the device that it finds, with the bounds that are proven."""
     backend = Backend(engine, precision)
     bounding = backend if engine == "jax" else Backend("numpy", precision)
@@ -81,7 +81,7 @@ def _single_angles(solution, quantity, setting):
     def run():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return components(_solved(solution, angle), quantity)
+            return components(_solve(solution, angle), quantity)
 
     return run
 
@@ -93,12 +93,12 @@ def _by_power(solution, quantity, setting):
 
 
 METHODS = (
-    Method("ours, NumPy", _numpy, ours=True, bound=proven),
-    Method("ours, compiled", _compiled, ours=True, bound=proven),
-    Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven),
-    Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven),
-    _elsewhere("jax", "double"),
-    *(_elsewhere(engine, "single") for engine in ("numpy", "compiled", "jax")),
+    Method("ours, NumPy", _numpy, ours=True, bound=proven_bound),
+    Method("ours, compiled", _compiled, ours=True, bound=proven_bound),
+    Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven_bound),
+    Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven_bound),
+    _backend_method("jax", "double"),
+    *(_backend_method(engine, "single") for engine in ("numpy", "compiled", "jax")),
     Method("ours, torque by powers", _by_power, ours=True),
     Method("float32 crank angles", _single_angles),
 )

@@ -21,8 +21,8 @@ from ...machine.groups.slider import SliderGroup, SliderMotion
 from ...machine.links import Joint, LinkMotion, Wrench
 from ...machine.loads import ProcessForce, Spring
 from ...mechanics.quantities import components
-from ...numbers.planar import added, cross, dot, left, minus, stretched, subtracted, vector
-from .method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design
+from ...numbers.planar import add_vectors, cross, dot, left, minus, scale_vector, subtract_vectors, vector_or_zero
+from .method import Method, NotGivenError, require_frictionless, require_one_design, with_numeric_side
 
 
 def turned_to_length(vector, angle, length):
@@ -276,12 +276,12 @@ class RollerByAngles(CamRoller):
 
     def resolve(self, placement, loads, along) -> Resolved:
         radius, slope, _ = placement.details["cam"]
-        x, y = vector(loads["block"].force)
+        x, y = vector_or_zero(loads["block"].force)
         R42, behind, nu = np.hypot(x, y), placement.angle - np.arctan2(y, x), np.arctan(slope / radius)
         R40 = -R42 * np.cos(behind) / np.cos(nu)
         R41 = R42 * np.sin(behind) + self.sign * R40 * np.sin(nu)
         torque = minus(R41 * radius, loads["block"].moment)
-        on_crank = Wrench(stretched(R41, left(placement.ray)), torque)
+        on_crank = Wrench(scale_vector(R41, left(placement.ray)), torque)
         return Resolved({}, {"cam_force": -R40, "slot_force": R41}, {"crank": on_crank})
 
 
@@ -292,20 +292,20 @@ class SliderByVectors(SliderGroup):
 
     def found(self, A):
         u, offset, length = self.guide.direction, self.guide.guide_offset, self.coupler_length
-        foot = stretched(offset, left(u))
-        W1, W2 = subtracted(foot, stretched(length, u)), added(foot, stretched(length, u))
+        foot = scale_vector(offset, left(u))
+        W1, W2 = subtract_vectors(foot, scale_vector(length, u)), add_vectors(foot, scale_vector(length, u))
         return slider_by_double_cross(np.array(A), length, W1, W2, W2 if self.assembly > 0 else W1)
 
     def place(self, placement):
         A, u, length = placement.joints[self.on], self.guide.direction, self.coupler_length
         B = tuple(self.found(A.position))
-        AB = subtracted(B, A.position)
+        AB = subtract_vectors(B, A.position)
         n, along = left(u), dot(u, AB)
         ratio, speed = -dot(n, A.first) / along, dot(AB, A.first) / along
         ratio_slope = (ratio * ratio * dot(n, AB) - dot(n, A.second)) / along
         gain = (dot(AB, A.second) - ratio * ratio * dot(AB, AB)) / along
-        pin = Joint(B, stretched(speed, u), stretched(gain, u))
-        q = stretched(1 / length, AB)
+        pin = Joint(B, scale_vector(speed, u), scale_vector(gain, u))
+        q = scale_vector(1 / length, AB)
         coupler, slider = LinkMotion(A, q, ratio, ratio_slope), LinkMotion(pin, u, None, None)
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
         self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel))
@@ -320,7 +320,9 @@ class SliderByAsin(SliderByVectors):
         u, n = self.guide.direction, left(self.guide.direction)
         angle = np.arcsin((self.guide.guide_offset - dot(n, A)) / self.coupler_length)
         along, across = self.assembly * np.cos(angle), np.sin(angle)
-        return added(A, stretched(self.coupler_length, added(stretched(along, u), stretched(across, n))))
+        return add_vectors(
+            A, scale_vector(self.coupler_length, add_vectors(scale_vector(along, u), scale_vector(across, n)))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,30 +339,30 @@ class RockerByAtanAcos(RockerGroup):
             *lengths, self.pivot, self.assembly, placement.angle
         )
         q, p = ((np.cos(angle), np.sin(angle)) for angle in (theta, psi))
-        arm, pivot = stretched(self.rocker_length, p), Joint(tuple(self.pivot), None, None)
-        second = subtracted(stretched(swing_slope, left(arm)), stretched(swing * swing, arm))
-        pin = Joint(added(self.pivot, arm), stretched(swing, left(arm)), second)
+        arm, pivot = scale_vector(self.rocker_length, p), Joint(tuple(self.pivot), None, None)
+        second = subtract_vectors(scale_vector(swing_slope, left(arm)), scale_vector(swing * swing, arm))
+        pin = Joint(add_vectors(self.pivot, arm), scale_vector(swing, left(arm)), second)
         coupler = LinkMotion(placement.joints[self.on], q, ratio, ratio_slope)
         rocker, sine = LinkMotion(pivot, p, swing, swing_slope), cross(q, p)
         self._set(placement, RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine))
 
 
-def _as(kind, original, **more):
+def _convert(kind, original, **more):
     """A group or cam with the same data but formulas of another kind."""
     return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
 
 
 def _groups(mechanism, sign):
     """Groups of a mechanism as its study calculates them."""
-    groups = on_a_side(mechanism).groups
+    groups = with_numeric_side(mechanism).groups
     kinds = [type(group) for group in groups]
     if kinds == [SliderGroup]:
-        return (_as(SliderByVectors, groups[0]),)
+        return (_convert(SliderByVectors, groups[0]),)
     if kinds == [RockerGroup]:
-        return (_as(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
+        return (_convert(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
     cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
     if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
-        return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block, groups[0].roller, sign), _as(
+        return RollerByAngles(_convert(cams[type(cam)], cam), groups[0].block, groups[0].roller, sign), _convert(
             SliderByAsin, groups[1]
         )
     raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
@@ -470,7 +472,7 @@ def as_printed(solution):
     return by_the_papers(exactly_cancelled(solution), PRINTED)
 
 
-def _prepared(formulas):
+def _method(formulas):
     """Method that computes a solution by other formulas."""
 
     def prepare(solution, quantity, setting=None):
@@ -487,8 +489,8 @@ def _prepared(formulas):
     return prepare
 
 
-METHODS = (Method("papers' formulas", _prepared(by_the_papers)),)
-AS_PRINTED = Method("sawframe study as printed, wrong sign", _prepared(as_printed))
+METHODS = (Method("papers' formulas", _method(by_the_papers)),)
+AS_PRINTED = Method("sawframe study as printed, wrong sign", _method(as_printed))
 """Apart from the others, which are right but for rounding: its error, a fifth, is that of one sign."""
 
 

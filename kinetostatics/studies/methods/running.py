@@ -1,4 +1,15 @@
-"""Ways to periodic running under a motor: the library's, and others, each at several accuracies.
+"""Ways to a motion over time, on benchmarks of multibody dynamics with published results.
+
+Of the slider-crank of SUNDIALS (Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8)
+and the N-four-bar of IFToMM's library of benchmark problems (A02; through its singular positions), the crank angle
+after 10 s is asked for.
+
+ours               `drive.coast`: the machine as one degree of freedom, DOP853 at the tightest tolerance
+reduced inertia    the same equation by other integrators of SciPy, and by fixed steps of Runge and Kutta
+constraint         all links by their coordinates: the constraint equations differentiated twice (index 1), drift held
+                   by Baumgarte's terms, DOP853
+
+Ways to periodic running under a motor: the library's, and others, each at several accuracies.
 
 All others evaluate the library's inertia and load torque by its compiled program, where numba is there, and find the
 energy U over the crank angle, dU/dphi = motor torque - load torque. So what is compared is how running is found alone.
@@ -14,31 +25,221 @@ Work against precision of the drive: periodic running, and motions over time tha
 
 import math
 import time
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from ...drive.one_dof import Driven
+from ...drive.one_dof import DrivenMachine
 from ...drive.steady import steady
+from ...drive.transient import coast
 from ...engines.numba_backend import numba_available
 from ...errors import MissingLibraryError, NotGivenError
+from ...machine.builders import crank_slider
+from ...machine.crank import Crank
+from ...machine.groups.rocker import RockerGroup
+from ...machine.links import Link
+from ...machine.loads import Force, Gravity, PointDamper, PointSpring
+from ...machine.mechanism import Mechanism
 from ...numbers import checks
-from ..timing import seconds
-from . import motion
-from .high_precision.exact_running import exact_speed
-from .method import Method
+from ...solution.scene import Scene
+from .global_system.constraints import Configuration, Model
+from .high_precision.certified import exact_speed
+from .method import Method, seconds
 
-TURNS = 2000
+DAMPING = 10.0
+"""Baumgarte's a = alpha = beta, 1/s."""
+
+
+@dataclass(frozen=True)
+class CoastDown:
+    """A scene that coasts from a crank angle and speed, rad, rad/s, for a time, s, and where it comes to, rad."""
+
+    scene: Any
+    from_angle: float
+    from_speed: float
+    until: float
+    exact: float
+
+
+def slider_crank():
+    """Crank 0.5, rod 1, J1 = 1, m2 = 1 at the slider, J2 = 2; spring and damper between the middles of the bars."""
+    bars = {"crank": Link(0.0, 0.0, 1.0), "coupler": Link(0.0, 0.0, 2.0), "slider": Link(1.0)}
+    middles = (("crank", 0.25), ("coupler", 0.5))
+    loads = (
+        PointSpring(1.0, 1.0, between=middles),
+        PointDamper(1.0, between=middles),
+        Force(1.0, at=("coupler", 2.0)),
+    )
+    return CoastDown(
+        Scene(crank_slider(0.5, 1.0, **bars), 1.0, loads=loads), math.pi / 2, 0.0, 10.0, 1.27567584865023941
+    )
+
+
+def n_four_bar(windows=2):
+    """Bars of 1 kg and 1 m: uprights on pivots 1 m apart, level ones between their ends; from the top with 1 m/s."""
+    bar = Link(1.0, 0.5, 1 / 12)
+    groups = tuple(
+        RockerGroup(
+            float(k),
+            1.0,
+            (float(k), 0.0),
+            "open",  # type: ignore[arg-type]
+            Link(1.0, k - 0.5),
+            bar,
+            pin=f"B{k}",
+            pivot_name=f"P{k}",
+            label=f"_{k}",
+        )
+        for k in range(1, windows + 1)
+    )
+    scene = Scene(Mechanism("N-four-bar", Crank(1.0, bar), groups), 1.0, loads=Gravity())
+    end = math.atan2(0.94451853817860096216, 0.32845811154081537865) - 10 * math.pi
+    return CoastDown(scene, math.pi / 2, -1.0, 10.0, end)
+
+
+BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N = 2": n_four_bar}
+
+
+def _coasting(engine):
+    def prepare(problem, quantity, setting):
+        if engine == "compiled" and not numba_available():
+            raise NotGivenError("numba is not installed")
+
+        def run():
+            motion = coast(problem.scene, 0.0, problem.from_angle, problem.from_speed, problem.until, engine=engine)
+            return motion.crank_angle[-1]
+
+        return run
+
+    return prepare
+
+
+def _acceleration(problem):
+    """Crank acceleration at a crank angle and speed, by the library's compiled program where numba is there."""
+    driven = DrivenMachine("study", problem.scene, None, 0.0, "compiled" if numba_available() else "numpy")
+
+    def acceleration(angle, speed):
+        inertia, slope, spare = driven.here(angle, speed)
+        return (spare - 0.5 * speed * speed * slope) / inertia
+
+    return acceleration
+
+
+def _reduced_inertia(method):
+    def prepare(problem, quantity, tolerance):
+        from scipy.integrate import solve_ivp
+
+        acceleration = _acceleration(problem)
+        start = problem.from_angle, problem.from_speed
+
+        def run():
+            found = solve_ivp(
+                lambda time, state: (state[1], acceleration(*state.tolist())),
+                (0.0, problem.until),
+                start,
+                method,
+                [problem.until],
+                rtol=max(tolerance, 3e-14),
+                atol=tolerance,
+            )
+            if found.status < 0:
+                raise NotGivenError(f"integration stops: {found.message}")
+            return found.y[0, -1]
+
+        return run
+
+    return prepare
+
+
+def _runge_kutta(problem, quantity, steps):
+    """Runge and Kutta's method of order 4."""
+    acceleration, width = _acceleration(problem), problem.until / steps
+
+    def run():
+        angle, speed = problem.from_angle, problem.from_speed
+        for _ in range(steps):
+            a1 = acceleration(angle, speed)
+            v2 = speed + 0.5 * width * a1
+            a2 = acceleration(angle + 0.5 * width * speed, v2)
+            v3 = speed + 0.5 * width * a2
+            a3 = acceleration(angle + 0.5 * width * v2, v3)
+            v4 = speed + width * a3
+            a4 = acceleration(angle + width * v3, v4)
+            angle += width * (speed + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+            speed += width * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+        return angle
+
+    return run
+
+
+def _constraints(problem, quantity, tolerance):
+    from scipy.integrate import solve_ivp
+
+    scene = problem.scene
+    if scene.mechanism.passes:
+        raise NotGivenError(f"{scene.mechanism.name} passes change points, where constraint equations are singular")
+    model, loaded = Model(scene.mechanism), scene.unsolved(np.zeros(1))
+    crank = 2 * model.size + model.names.index("crank")
+    _, torque = model.readings["balancing_torque"]
+    q = model.start(problem.from_angle)
+    rates = Configuration(model, q, problem.from_angle).rates(problem.from_speed)
+
+    def change(time, state):
+        q, rates = np.split(state, 2)
+        at = Configuration(model, q, q[crank])
+        right = at.gamma(rates) - 2.0 * DAMPING * (at.jacobian @ rates - model.drive * rates[crank])
+        still = at.solve(right - DAMPING * DAMPING * at.residual)
+        faster = still + at.solve(model.drive)
+        asked = [
+            (torque @ at.solve(at.demand(rates, accelerations, loaded), transposed=True)).item()
+            for accelerations in (still, faster)
+        ]
+        alpha = -asked[0] / (asked[1] - asked[0])
+        return np.concatenate([rates, still + alpha * (faster - still)])
+
+    def run():
+        found = solve_ivp(
+            change,
+            (0.0, problem.until),
+            np.concatenate([q, rates]),
+            "DOP853",
+            [problem.until],
+            rtol=tolerance,
+            atol=tolerance,
+        )
+        if found.status < 0:
+            raise NotGivenError(f"integration stops: {found.message}")
+        return found.y[crank, -1]
+
+    return run
+
+
+MOTION_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
+MOTION_METHODS = (
+    Method("ours, NumPy", _coasting("numpy"), ours=True),
+    Method("ours, compiled", _coasting("compiled"), ours=True),
+    Method("reduced inertia, DOP853", _reduced_inertia("DOP853"), "tolerance", MOTION_TOLERANCES),
+    Method("reduced inertia, RK45", _reduced_inertia("RK45"), "tolerance", MOTION_TOLERANCES[:-1]),
+    Method("reduced inertia, LSODA", _reduced_inertia("LSODA"), "tolerance", MOTION_TOLERANCES),
+    Method("reduced inertia, Radau", _reduced_inertia("Radau"), "tolerance", MOTION_TOLERANCES[:-2]),
+    Method("reduced inertia, fixed steps, RK4", _runge_kutta, "steps", (100, 300, 1000, 3000, 10_000)),
+    Method("constraint equations, DOP853", _constraints, "tolerance", MOTION_TOLERANCES[:-1]),
+)
+
+
+MAX_TURNS = 2000
 """Periods after which stepping is given up."""
-SECANTS = 30
+MAX_SECANT_STEPS = 30
 
 
-class Problem:
+class PeriodicRunning:
     """A machine under its motor, and the crank angles at which its speed is asked for, rising within its period."""
 
     def __init__(self, scene, motor, flywheel, angles):
         self.machine, self.angles = (scene, motor, flywheel), np.asarray(angles, dtype=float)
-        self.driven = Driven("study", *self.machine, "compiled" if numba_available() else "numpy")
+        self.driven = DrivenMachine("study", *self.machine, "compiled" if numba_available() else "numpy")
         if self.driven.by_speed:
             raise NotGivenError("rivals are for loads that do not depend on the speed")
         self.motor, self.period, self.direction = motor, self.driven.period, self.driven.direction
@@ -86,7 +287,7 @@ def _ours(engine):
     return prepare
 
 
-def _integrated(problem, tolerance, method, energy, asked=None):
+def _integrate(problem, tolerance, method, energy, asked=None):
     """Energies at crank angles, or at the end of the period, from an energy at its start."""
     from scipy.integrate import solve_ivp
 
@@ -101,22 +302,22 @@ def _stepping(method):
     def prepare(problem, quantity, tolerance):
         def run():
             energy = problem.guess
-            for _ in range(TURNS):
-                before, energy = energy, _integrated(problem, tolerance, method, energy)
+            for _ in range(MAX_TURNS):
+                before, energy = energy, _integrate(problem, tolerance, method, energy)
                 if abs(energy - before) < tolerance * energy:
                     break
-            return problem.speeds(_integrated(problem, tolerance, method, energy, problem.angles))
+            return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
 
         return run
 
     return prepare
 
 
-def shot(after, guess, tolerance):
+def periodic_energy(after, guess, tolerance):
     """Energy at the start of the period that a function gives back at its end, by the secant rule."""
     one, two = guess, 0.999 * guess
     first, second = after(one) - one, after(two) - two
-    for _ in range(SECANTS):
+    for _ in range(MAX_SECANT_STEPS):
         if abs(two - one) <= tolerance * two or second == first:
             break
         one, two = two, two - second * (two - one) / (second - first)
@@ -127,8 +328,8 @@ def shot(after, guess, tolerance):
 def _shooting(method):
     def prepare(problem, quantity, tolerance):
         def run():
-            energy = shot(partial(_integrated, problem, tolerance, method), problem.guess, tolerance)
-            return problem.speeds(_integrated(problem, tolerance, method, energy, problem.angles))
+            energy = periodic_energy(partial(_integrate, problem, tolerance, method), problem.guess, tolerance)
+            return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
 
         return run
 
@@ -147,7 +348,7 @@ def _tableau(stages):
     return DOP853.C[:count].tolist(), before, DOP853.B.tolist()
 
 
-def _fixed(stages):
+def _fixed_steps(stages):
     places, before, weights = _tableau(stages)
 
     def prepare(problem, quantity, steps):
@@ -174,7 +375,7 @@ def _fixed(stages):
                     path.append(energy)
                 return path
 
-            path = followed(shot(lambda energy: followed(energy)[-1], problem.guess, 1e-15))
+            path = followed(periodic_energy(lambda energy: followed(energy)[-1], problem.guess, 1e-15))
             return problem.speeds(np.array(path[:-1])[:: steps // count])
 
         return run
@@ -182,7 +383,7 @@ def _fixed(stages):
     return prepare
 
 
-def _bvp(problem, quantity, tolerance):
+def _scipy_bvp(problem, quantity, tolerance):
     from scipy.integrate import solve_bvp
 
     scale = problem.guess  # energies of the size of 1, as the solver measures its errors
@@ -231,22 +432,22 @@ def _fourier(problem, quantity, points):
 
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
-METHODS = (
+RUNNING_METHODS = (
     Method("ours, NumPy", _ours("numpy"), ours=True),
     Method("ours, compiled", _ours("compiled"), ours=True),
     Method("stepping until it repeats, DOP853", _stepping("DOP853"), "tolerance", TOLERANCES),
     Method("stepping until it repeats, LSODA", _stepping("LSODA"), "tolerance", TOLERANCES[:-1]),
     Method("shooting, DOP853", _shooting("DOP853"), "tolerance", TOLERANCES),
-    Method("shooting, fixed steps, RK4", _fixed(4), "steps a turn", (24, 72, 216, 648, 1944)),
-    Method("shooting, fixed steps, RK8", _fixed(12), "steps a turn", (24, 48, 96, 192)),
-    Method("collocation, SciPy solve_bvp", _bvp, "tolerance", (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)),
+    Method("shooting, fixed steps, RK4", _fixed_steps(4), "steps a turn", (24, 72, 216, 648, 1944)),
+    Method("shooting, fixed steps, RK8", _fixed_steps(12), "steps a turn", (24, 48, 96, 192)),
+    Method("collocation, SciPy solve_bvp", _scipy_bvp, "tolerance", (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)),
     Method("collocation, Fourier", _fourier, "points", (9, 17, 33, 65, 129, 257, 513)),
 )
 
 
-LONG = 0.2
+LONG_RUN_TIME = 0.2
 """Time, s, of what need not be timed again."""
-ANGLES = 24
+COMPARED_ANGLES = 24
 """Crank angles at which speeds are compared."""
 
 
@@ -288,14 +489,14 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     """
     import numpy as np
 
-    driven = Problem(scene, motor, flywheel, np.zeros(1)).driven
-    angles = np.arange(ANGLES) * driven.period / ANGLES
-    problem, exact = Problem(scene, motor, flywheel, angles), exact_speed(driven, angles)
+    driven = PeriodicRunning(scene, motor, flywheel, np.zeros(1)).driven
+    angles = np.arange(COMPARED_ANGLES) * driven.period / COMPARED_ANGLES
+    problem, exact = PeriodicRunning(scene, motor, flywheel, angles), exact_speed(driven, angles)
 
     def error(found):
         return float(np.abs(found / exact - 1.0).max())
 
-    return _studied(problem, methods or METHODS, error, "crank speed", "1", repeats, progress)
+    return _study(problem, methods or RUNNING_METHODS, error, "crank speed", "1", repeats, progress)
 
 
 def study_motion(name, *, methods=None, repeats=3, progress=None):
@@ -330,17 +531,17 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     >>> bool(table.loc[0, "error"] < 1e-3)  # rad
     True
     """
-    problem_with_name = checks.choice("benchmark", name, tuple(motion.BENCHMARKS))
+    problem_with_name = checks.choice("benchmark", name, tuple(BENCHMARKS))
     checks.require("study_motion", problem_with_name)
-    problem = motion.BENCHMARKS[name]()
+    problem = BENCHMARKS[name]()
 
     def error(found):
         return abs(float(found) - problem.exact)
 
-    return _studied(problem, methods or motion.METHODS, error, "crank angle at the end", "rad", repeats, progress)
+    return _study(problem, methods or MOTION_METHODS, error, "crank angle at the end", "rad", repeats, progress)
 
 
-def _studied(problem, methods, error, label, unit, repeats, progress):
+def _study(problem, methods, error, label, unit, repeats, progress):
     import numpy as np
     import pandas as pd
 
@@ -357,7 +558,7 @@ def _studied(problem, methods, error, label, unit, repeats, progress):
                 begun = time.perf_counter()
                 row |= {"error": error(run()), "not given": ""}
                 times[len(rows)] = time.perf_counter() - begun
-                if times[len(rows)] < LONG:
+                if times[len(rows)] < LONG_RUN_TIME:
                     runs[len(rows)] = run
             except (NotGivenError, MissingLibraryError) as why:
                 row |= {"error": np.nan, "not given": str(why)}

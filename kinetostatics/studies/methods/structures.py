@@ -1,25 +1,35 @@
 """What groups declare of a mechanism, apart from its numbers: who is joined to whom, what slides, what a cam leads.
 
 Independent methods are built from that, so that they know every group, a user's own too, by what it declares alone.
+
+Loads as forces at points and couples, by formulas of complex numbers that share nothing with the kernels.
+
+Friction as forces at points and couples, for equations that hold all reactions, by formulas of complex numbers.
+
+Reactions hang on the friction that they cause: the equations are solved anew, with the friction of the forces found
+last, until nothing changes. What is left of an error each time is about the coefficient of friction.
 """
 
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ...errors import NotGivenError
 from ...machine.cams.cams import Circle, CosineLaw, Harmonic
 from ...machine.group import FRAME
-from ...machine.links import Sliding, Turning
+from ...machine.links import Rolling, Sliding, Turning
+from ...machine.loads import Force, PointDamper, PointForce, PointSpring, Torque, TorsionDamper, TorsionSpring
+from ...machine.loads.points import point_on_link
 from .method import NotGivenError
 
-LINK = "mass", "along", "across", "inertia"
-CAMS = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
+LINK_NUMBERS = "mass", "along", "across", "inertia"
+CURVE_NAMES = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
 """Cams with a formula of their own, by what that is called."""
-GIVEN = "given"
+SAMPLED_CURVE = "given"
 """What any other curve is called: its values and derivatives are taken as it gives them."""
 
 
-class Pinned(NamedTuple):
+class PinReaction(NamedTuple):
     """A reaction by name, on a link from another, where a joint holds both."""
 
     name: str
@@ -28,7 +38,7 @@ class Pinned(NamedTuple):
     other: str
 
 
-class Slid(NamedTuple):
+class SlidingPair(NamedTuple):
     """A straight pair: a joint of a link slides along another, whose force and couple about `about` act on the link.
 
     `vector` is the name of the force as a vector, if it has one; the link points against a slot in which it is a rod.
@@ -44,7 +54,7 @@ class Slid(NamedTuple):
     rod: bool
 
 
-class Cam(NamedTuple):
+class CamPair(NamedTuple):
     """What leads a link: a `Led`, and the formula of its curve, with how many terms of cosines and sines it has."""
 
     link: str
@@ -56,7 +66,7 @@ class Cam(NamedTuple):
     terms: tuple[int, int]
 
 
-class Part(NamedTuple):
+class PartStructure(NamedTuple):
     """Crank or group: links with reference joints, joints with the links that own them, bars (start, end, link)."""
 
     kind: str
@@ -64,15 +74,15 @@ class Part(NamedTuple):
     links: tuple[tuple[str, str], ...]
     joints: tuple[tuple[str, str], ...]
     bars: tuple[tuple[str, str, str], ...]
-    pinned: tuple[Pinned, ...]
-    slid: tuple[Slid, ...]
-    cams: tuple[Cam, ...]
+    pinned: tuple[PinReaction, ...]
+    slid: tuple[SlidingPair, ...]
+    cams: tuple[CamPair, ...]
 
 
 class Structure(NamedTuple):
     """A mechanism apart from its numbers, but for those that are zero."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[PartStructure, ...]
     zeros: frozenset[str]
 
 
@@ -85,7 +95,7 @@ def structure(mechanism):
         A group does not declare what holds its links.
     """
     owners = {name: point.link for name, point in mechanism.joints.items()}
-    parts = tuple(_part(part, owners) for part in mechanism.parts)
+    parts = tuple(_part_structure(part, owners) for part in mechanism.parts)
     values: dict[str, Any] = {}
     for part in mechanism.parts:
         values |= _geometry(part)
@@ -93,23 +103,23 @@ def structure(mechanism):
     for name, guide in mechanism.guides.items():
         values |= {f"{name}_guide_angle": float(guide.guide_angle), f"{name}_guide_offset": guide.guide_offset}
     for name, link in mechanism.links.items():
-        values |= zip((f"{name}_{part}" for part in LINK), (link.mass, *link.centre, link.inertia), strict=True)
+        values |= zip((f"{name}_{part}" for part in LINK_NUMBERS), (link.mass, *link.centre, link.inertia), strict=True)
     return Structure(parts, zeros), values
 
 
-def _part(part, owners):
+def _part_structure(part, owners):
     kind = type(part).__name__
-    pinned: list[Pinned] = []
-    slid: list[Slid] = []
+    pinned: list[PinReaction] = []
+    slid: list[SlidingPair] = []
     for name, pair in part.pairs.items():
         if isinstance(pair, Turning):
-            pinned.append(Pinned(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
+            pinned.append(PinReaction(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
         elif isinstance(pair, Sliding):
             rod = any(slot.rod == pair.link for slot in part.slots)
             couple, vector = part.outputs.get(pair.couple), name if name in part.outputs else ""
             about = pair.joint if couple is None else couple.at or pair.joint
-            slid.append(Slid(pair.link, pair.joint, pair.against, pair.force, pair.couple, about, vector, rod))
-    cams = tuple(Cam(*led, *_curve(part.cam)) for led in part.led)
+            slid.append(SlidingPair(pair.link, pair.joint, pair.against, pair.force, pair.couple, about, vector, rod))
+    cams = tuple(CamPair(*led, *_curve(part.cam)) for led in part.led)
     found = {*(item.name for item in pinned), *(cam.force for cam in cams)}
     found |= {name for item in slid for name in (item.force, item.couple, item.vector)}
     missing = part.outputs.keys() - found - {"balancing_torque"}
@@ -118,7 +128,7 @@ def _part(part, owners):
     if missing or free:
         what = ", ".join(sorted(missing)) or f"what holds {', '.join(sorted(free))}"
         raise NotGivenError(f"{kind} does not declare in its pairs what equations of motion are made of: {what}")
-    return Part(
+    return PartStructure(
         kind,
         tuple(part.outputs),
         tuple(part.references.items()),
@@ -131,7 +141,7 @@ def _part(part, owners):
 
 
 def _curve(cam):
-    name = CAMS.get(type(cam), GIVEN)
+    name = CURVE_NAMES.get(type(cam), SAMPLED_CURVE)
     return name, ((len(cam.cosine), len(cam.sine)) if isinstance(cam, Harmonic) else (0, 0))
 
 
@@ -148,12 +158,12 @@ def _geometry(part):
     return values
 
 
-def leading(group, angle):
+def cam_numbers(group, angle):
     """Numbers of the cams of a group by name; of one without a formula what it gives at the crank angles."""
     values: dict[str, Any] = {}
     for led in group.led:
         cam, link = group.cam, led.link
-        kind = CAMS.get(type(cam), GIVEN)
+        kind = CURVE_NAMES.get(type(cam), SAMPLED_CURVE)
         if kind == "circle":
             own: dict[str, Any] = {"radius": cam.pitch_radius, "x": cam.centre[0], "y": cam.centre[1]}
         elif kind == "cosine law":
@@ -174,3 +184,175 @@ def leading(group, angle):
             values[f"{link}_from"] = np.arctan2(-pivot.across, -pivot.along)
             values[f"{link}_sense"] = -getattr(group, "assembly", 1)
     return values
+
+
+class LoadForces:
+    """What loads do on links in one posture; derived classes say where links are, in their own numbers.
+
+    They give ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; ``number`` and
+    ``value`` (of a load) of what loads hold; and ``expj``, ``arg`` and ``where`` of their numbers.
+    """
+
+    mechanism: Any
+    at: Any
+    number: Any
+    value: Any
+    expj: Any
+    arg: Any
+    where: Any
+
+    def point(self, place):
+        """Link, position and velocity of a place."""
+        link, along, across = point_on_link(self.mechanism, place)
+        offset = self.number(along) + 1j * self.number(across)
+        if link == FRAME:
+            return link, offset, 0.0
+        joint, axis, shift, spin = self.at(link)
+        return link, joint + offset * axis, shift + 1j * spin * offset * axis
+
+    def of(self, item):
+        """Force, the link and point it acts at, and the couple on that link, of each effect of a load."""
+        if isinstance(item, Force):
+            link, position, _ = self.point(item.at)
+            axis = 1.0 if item.along is None else self.at(item.along)[1]
+            return [(link, self.value(item) * self.expj(self.number(item.direction)) * axis, position, 0.0)]
+        if isinstance(item, Torque | TorsionSpring | TorsionDamper):
+            couple = self.couple(item)
+            other = [] if item.against in (None, FRAME) else [(item.against, 0.0, 0.0, -couple)]
+            return [(item.on, 0.0, 0.0, couple), *other]
+        if isinstance(item, PointForce | PointSpring | PointDamper):
+            (link, start, shift), (other, end, swing) = map(self.point, item.between)
+            force = self.pull(item, start - end, shift - swing)
+            return [(link, force, start, 0.0), (other, -force, end, 0.0)]
+        raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
+
+    def couple(self, item):
+        """Couple of a load on its link."""
+        if isinstance(item, Torque):
+            return self.value(item)
+        fixed = item.against in (None, FRAME)
+        _, axis, _, spin = self.at(item.on)
+        _, base, _, turning = (0.0, 1.0, 0.0, 0.0) if fixed else self.at(item.against)
+        if isinstance(item, TorsionDamper):
+            return -self.number(item.coefficient) * (spin - turning)
+        angle = self.arg(axis / base * self.expj(-self.number(item.free_angle)))
+        return self.number(item.moment) - self.number(item.stiffness) * angle
+
+    def pull(self, item, apart, opening):
+        """Force of a load between points on the first, by the vector between them and its rate."""
+        distance = abs(apart)
+        if isinstance(item, PointDamper):
+            unit = self.where(distance > 0, apart, opening)
+            size = abs(unit)
+            unit = unit / self.where(size > 0, size, 1.0)
+            return -self.number(item.coefficient) * (unit.conjugate() * opening).real * unit
+        unit = apart / self.where(distance > 0, distance, 1.0)
+        if isinstance(item, PointForce):
+            return self.value(item) * unit
+        return -self.number(item.stiffness) * (distance - self.number(item.free_length)) * unit
+
+
+MAX_FRICTION_ITERATIONS = 2000
+"""How often forces are found anew, at most."""
+
+
+class FrictionForces:
+    """What friction does in one posture, from reactions.
+
+    Parameters
+    ----------
+    acting : Acting
+        The posture.
+    solution : Solution
+    """
+
+    def __init__(self, acting, solution):
+        if solution.friction.senses:
+            raise NotGivenError("friction of a sense that is given, not of the motion, has no independent formula")
+        self._acting, self._friction = acting, solution.friction.acting
+        self._number, self._speed = acting.number, acting.number(solution.crank_speed)
+        self._numbers = structure(acting.mechanism)[1] if self._friction else {}
+
+    def settled(self, solve, named, largest, limit):
+        """Unknowns of equations that are solved with the very friction that their forces cause.
+
+        Parameters
+        ----------
+        solve : function
+            ``solve(effects)`` with forces, the links and points they act at, and couples added.
+        named : function
+            Forces by name of what `solve` returns.
+        largest : function
+            Size of the largest of such unknowns.
+        limit : number
+            How much the last ones may still change, relative to the largest.
+        """
+        found = solve(())
+        for _ in range(MAX_FRICTION_ITERATIONS if self._friction else 0):
+            before, found = found, solve(self._effects(named(found)))
+            if largest(found - before) <= limit * largest(found):
+                return found
+        if self._friction:
+            raise NotGivenError(f"forces and friction still change after being found {MAX_FRICTION_ITERATIONS} times")
+        return found
+
+    def along(self, forces):
+        """Force of friction on what slides, which is part of the reaction, by pair."""
+        pairs = self._acting.mechanism.pairs
+        slides = {name: item for name, item in self._friction.items() if isinstance(pairs[name], Sliding)}
+        return {name: self._sliding(name, pairs[name], item, forces)[0][1] for name, item in slides.items()}
+
+    def _effects(self, forces):
+        pairs = self._acting.mechanism.pairs
+        return [
+            effect
+            for name, friction in self._friction.items()
+            for effect in self._KINDS[type(pairs[name])](self, name, pairs[name], friction, forces)
+        ]
+
+    def _turning(self, name, pair, friction, forces):
+        other = pair.against or self._acting.mechanism.joints[pair.joint].link
+        turning = self._at(pair.link)[-1] - self._at(other)[-1]
+        size = self._number(friction.mu) * self._number(friction.radius) * abs(forces[name])
+        couple = -size * self._sign(turning)
+        return [(pair.link, 0.0, 0.0, couple), (other, 0.0, 0.0, -couple)]
+
+    def _sliding(self, name, pair, friction, forces):
+        place = self._acting.point(pair.joint)[1]
+        if pair.against == FRAME:
+            way = self._at(pair.link)[1]
+        else:
+            angle = self._number(self._numbers[f"{pair.against}_{pair.joint}_angle"])
+            way = self._at(pair.against)[1] * self._acting.expj(angle)
+        press = abs(forces[pair.force])
+        if friction.half_length is not None:
+            edges = abs(forces[pair.couple]) / self._number(friction.half_length)
+            press = self._acting.where(edges > press, edges, press)
+        sliding = (way.conjugate() * (self._moving(pair.link, place) - self._moving(pair.against, place))).real
+        force = -self._number(friction.mu) * press * self._sign(sliding) * way
+        return [(pair.link, force, place, 0.0), (pair.against, -force, place, 0.0)]
+
+    def _rolling(self, name, pair, friction, forces):
+        """On the pin of the roller, whose contact pulls along the curve as much as its pin holds it back."""
+        _, place, moving = self._acting.point(pair.joint)
+        way = moving / abs(moving) * self._sign(self._speed)
+        radius, mu = self._number(friction.roller_radius), self._number(friction.mu)
+        reach = mu * self._number(friction.pin_radius)
+        pressed = forces[pair.force]
+        side = self._sign(pressed)
+        turning = -side * (way.conjugate() * moving).real / radius - self._at(pair.link)[-1]
+        couple = reach * abs(pressed) / (1 - (reach / radius) ** 2) ** 0.5 * self._sign(turning)
+        return [(pair.link, couple / (side * radius) * way, place, couple)]
+
+    _KINDS: ClassVar = {Turning: _turning, Sliding: _sliding, Rolling: _rolling}
+
+    def _at(self, link):
+        return (0.0, 1.0, 0.0, 0.0) if link == FRAME else self._acting.at(link)
+
+    def _moving(self, link, place):
+        """Velocity of what is at a place of a link."""
+        joint, _, shift, spin = self._at(link)
+        return shift + 1j * spin * (place - joint)
+
+    def _sign(self, part):
+        return self._acting.where(part < 0, -1.0, 1.0)

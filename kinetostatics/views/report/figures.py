@@ -9,21 +9,20 @@ import numpy as np
 
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
-from ...numbers.formatting import pretty
-from ..canvas import display, in_sight
-from ..peaks import with_peaks
+from ...numbers.formatting import pretty_unit
+from ..canvas import display_unit, drawn_limit, with_peaks
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
 """Quiet colours of the machines, in their order."""
 DASHES = ("solid", "dashed", "dotdash", "dotted", "dashdot", "solid", "dashed", "dotdash")
 """Line styles of the machines, so that curves differ in print too."""
-STROKES = ("", "6", "2 4 6 4", "2 4", "6 4 2 4", "", "6", "2 4 6 4")
+SVG_DASHES = ("", "6", "2 4 6 4", "2 4", "6 4 2 4", "", "6", "2 4 6 4")
 """The same as in SVG, in keys."""
 FONT = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
 
 
-def require():
+def require_bokeh():
     """Bokeh, or an error that says how to get it."""
     try:
         import bokeh
@@ -34,7 +33,7 @@ def require():
     return bokeh
 
 
-def script():
+def bokeh_script():
     """Bokeh's own script, to stand in the page."""
     from bokeh.resources import Resources
 
@@ -46,12 +45,12 @@ def over_turn(solutions, name, height=300):
     have = _having(solutions, name)
     known = quantity(next(iter(have.values())), name)
     found = {row: values(s, name) for row, s in have.items()}
-    sight = in_sight(list(found.values()))
+    sight = drawn_limit(list(found.values()))
     found = {row: np.where(np.abs(value) <= sight, value, np.nan) for row, value in found.items()}
-    factor, unit = display(known.unit, found.values())
+    factor, unit = display_unit(known.unit, found.values())
     curves = {row: (np.degrees(s.crank_angle), factor * found[row]) for row, s in have.items()}
     label = f"|{known.label}|" if known.vector else known.label
-    return curves_over(list(solutions), curves, f"{label} [{pretty(unit) or '1'}]", height)
+    return curves_over(list(solutions), curves, f"{label} [{pretty_unit(unit) or '1'}]", height)
 
 
 def _having(solutions, name):
@@ -68,7 +67,7 @@ def curves_over(names, curves, label, height=300):
     for row in range(len(names)):
         angle, value = curves.get(row, (np.empty(0), np.empty(0)))
         if len(angle):
-            angle, value = _repeated(angle, value, period)
+            angle, value = _repeat(angle, value, period)
         _line(plot, row, names[row], {"angle": angle, "value": value})
     plot.x_range.update(start=0.0, end=period, bounds=(-0.02 * period, 1.02 * period))
     plot.below[0].ticker = np.linspace(0.0, period, 9).tolist()
@@ -81,7 +80,7 @@ def _period(angle):
     return float(angle[-1] - angle[0] + np.max(np.diff(angle))) if len(angle) > 1 else 360.0
 
 
-def _repeated(angle, value, period):
+def _repeat(angle, value, period):
     """A curve over as many of its periods as make a longer one, closed."""
     own = _period(angle)
     turns = np.arange(max(1, round(period / own)))
@@ -95,15 +94,17 @@ def hodograph(solutions, name, height=420):
     have = _having(solutions, name)
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]
-    sight = in_sight([np.hypot(*vector) for vector in vectors.values()])
+    sight = drawn_limit([np.hypot(*vector) for vector in vectors.values()])
     vectors = {row: np.where(np.hypot(*vector) <= sight, vector, np.nan) for row, vector in vectors.items()}
-    factor, unit = display(known.unit, vectors.values())
-    plot = _plot(height, f"{known.label}, x [{pretty(unit)}]", f"{known.label}, y [{pretty(unit)}]", match_aspect=True)
+    factor, unit = display_unit(known.unit, vectors.values())
+    plot = _plot(
+        height, f"{known.label}, x [{pretty_unit(unit)}]", f"{known.label}, y [{pretty_unit(unit)}]", match_aspect=True
+    )
     names = list(solutions)
     for row, vector in vectors.items():
         angle = np.degrees(have[row].crank_angle)
         x, y = factor * vector
-        _line(plot, row, names[row], {"angle": _again(angle), "x": _again(x), "y": _again(y)}, "x", "y")
+        _line(plot, row, names[row], {"angle": _close(angle), "x": _close(x), "y": _close(y)}, "x", "y")
         plot.scatter(
             [x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}"
         )
@@ -112,7 +113,7 @@ def hodograph(solutions, name, height=420):
     return plot
 
 
-def _again(values):
+def _close(values):
     return np.append(values, values[:1])
 
 

@@ -17,22 +17,22 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import FileError, MissingLibraryError
-from ...numbers.formatting import pretty
+from ...numbers.formatting import pretty_unit
 from ...results.losses import lose
 from ...version import __version__
-from ..canvas import display
-from . import figures, sections
-from .movement import movements, packed
+from ..canvas import display_unit
+from . import figures, tables
+from .movement import movements, to_base64
 from .tables import readings
 
-GROUPS = {
+QUANTITY_GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),
     "Motion": ("slider", "motion", "rate"),
 }
 """Kinds of quantities by the heading under which their values stand."""
-PARTS = 9
+PROGRESS_STEPS = 9
 """Of the work, of each of which `progress` is told."""
-WIDE = 1.7
+WIDE_RATIO = 1.7
 """Width over height of drawings from which on two of them fill a line."""
 
 
@@ -43,12 +43,12 @@ def page(subject, progress=lambda text: None):
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        found = _found(subject, progress)
+        found = _contents(subject, progress)
     progress("page")
-    return _template().render(found, remarks=sections.remarks(caught) + found["reasons"])
+    return _template().render(found, remarks=tables.remarks(caught) + found["reasons"])
 
 
-def _found(subject, progress):
+def _contents(subject, progress):
     """What the template is filled with."""
     from markupsafe import Markup
 
@@ -57,17 +57,17 @@ def _found(subject, progress):
     progress("values")
     values = readings(subject.machines)
     progress("extremes")
-    tables = {"glance": sections.glance(subject), "extremes": sections.extremes(subject)}
+    tables = {"glance": tables.glance(subject), "extremes": tables.extremes(subject)}
     progress("comparisons")
-    tables["comparisons"] = sections.comparisons(subject)
+    tables["comparisons"] = tables.comparisons(subject)
     progress("certainty")
-    tables |= {"certainty": sections.certainty(subject), "losses": sections.losses(subject)}
+    tables |= {"certainty": tables.certainty(subject), "losses": tables.losses(subject)}
     progress("drive")
-    runs, tables["drive"], reasons = sections.driven(subject)
-    tables["inputs"] = sections.inputs(subject)
+    runs, tables["drive"], reasons = tables.driven(subject)
+    tables["inputs"] = tables.inputs(subject)
     progress("formulas")
     turning = _turning(subject)
-    calculations = sections.calculations(subject, turning["start"])
+    calculations = tables.calculations(subject, turning["start"])
     progress("figures")
     drawn = _figures(subject, values, runs)
     box = moving["box"]
@@ -77,21 +77,23 @@ def _found(subject, progress):
         "figures": drawn,
         "reasons": reasons,
         "calculations": {name: Markup(text) for name, text in calculations.items()},
-        "groups": {head: [name for name in values if values[name]["kind"] in kinds] for head, kinds in GROUPS.items()},
+        "groups": {
+            head: [name for name in values if values[name]["kind"] in kinds] for head, kinds in QUANTITY_GROUPS.items()
+        },
         "values": values,
         "vectors": [name for name, item in values.items() if item["vector"]],
         "reactions": list(dict.fromkeys(name for item in moving["drawings"] for name in item["arrows"])),
         "colours": figures.COLOURS,
-        "dashes": figures.STROKES,
-        "together": _together(subject),
-        "wide": box[2] - box[0] > WIDE * (box[3] - box[1]),
+        "dashes": figures.SVG_DASHES,
+        "together": _same_torque_text(subject),
+        "wide": box[2] - box[0] > WIDE_RATIO * (box[3] - box[1]),
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),
         "data": {**moving, **turning, "quantities": values, "colours": figures.COLOURS},
         "style": Markup(_text("style.css")),
         "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
-        "library": Markup(figures.script()),
+        "library": Markup(figures.bokeh_script()),
         "speeds": [_speed(machine) for machine in subject.machines.values()],
     }
 
@@ -105,7 +107,7 @@ def _published(subject):
     return [text for text in (where, printed.note) if text]
 
 
-def _together(subject):
+def _same_torque_text(subject):
     """Sentence about machines whose torque is the same, so that their curves lie on one another; "" without any."""
     groups: list[list] = []
     for machine in subject.machines.values():
@@ -130,14 +132,14 @@ def _turning(subject):
     machines = list(subject.machines.values())
     first = subject.reference.solution
     torque = np.abs(first.balancing_torque)
-    unit = display("N", _forces(subject))
+    unit = display_unit("N", _forces(subject))
     return {
         "step": subject.reference.step,
         "counts": [machine.solution.crank_angle.size for machine in machines],
-        "between": [packed(np.degrees(machine.between.crank_angle), "<f8") for machine in machines],
+        "between": [to_base64(np.degrees(machine.between.crank_angle), "<f8") for machine in machines],
         "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
         "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
-        "forceUnit": {"factor": unit[0], "unit": pretty(unit[1])},
+        "forceUnit": {"factor": unit[0], "unit": pretty_unit(unit[1])},
     }
 
 
@@ -169,7 +171,7 @@ def _figures(subject, values, runs):
     if any(lose(solution) for solution in solutions.values()) and "friction_loss" in values:
         made["loss"] = figures.over_turn(solutions, "friction_loss", 260)
     if runs:
-        made |= _of_runs(subject, runs)
+        made |= _drive_figures(subject, runs)
     return {
         "items": {name: json_item(plot) for name, plot in made.items()},
         "places": {name: place for place, name in enumerate(made)},
@@ -178,7 +180,7 @@ def _figures(subject, values, runs):
     }
 
 
-def _of_runs(subject, runs):
+def _drive_figures(subject, runs):
     """Speed and torque of the motor, at the crank, in periodic running."""
     names = list(subject.machines)
 
@@ -186,11 +188,11 @@ def _of_runs(subject, runs):
         return {names.index(name): (np.degrees(run.crank_angle), values(run)) for name, run in runs.items()}
 
     torques = curves(lambda run: (run.motor.transmission if run.motor else 1.0) * run.motor_torque)
-    factor, unit = display("N m", [value for _, value in torques.values()])
+    factor, unit = display_unit("N m", [value for _, value in torques.values()])
     torques = {row: (angle, factor * value) for row, (angle, value) in torques.items()}
     return {
         "speed": figures.curves_over(names, curves(lambda run: run.speed), "crank speed [rad/s]", 260),
-        "motor": figures.curves_over(names, torques, f"motor torque [{pretty(unit)}]", 260),
+        "motor": figures.curves_over(names, torques, f"motor torque [{pretty_unit(unit)}]", 260),
     }
 
 
@@ -220,9 +222,9 @@ BROWSERS = (
     "microsoft-edge",
 )
 """Names of browsers that print without a window, the first found is taken."""
-PATIENCE = 120.0
+BROWSER_TIMEOUT = 120.0
 """Seconds after which a browser that does not end is given up."""
-DRAWING = 20_000
+RENDER_TIME = 20_000
 """Milliseconds, of the browser's own clock, that figures have to be drawn in."""
 
 
@@ -263,12 +265,12 @@ def print_page(path, pdf):
                 "--no-first-run",
                 "--window-size=1010,1400",
             ),
-            *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={DRAWING}", "--no-pdf-header-footer"),
+            *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={RENDER_TIME}", "--no-pdf-header-footer"),
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             *(f"--print-to-pdf={made}", Path(path).resolve().as_uri()),
         ]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, errors="replace")
+            done = subprocess.run(command, capture_output=True, text=True, timeout=BROWSER_TIMEOUT, errors="replace")
         except (OSError, subprocess.TimeoutExpired) as error:
             raise FileError(f"{found} could not print the report: {error}") from None
         if not made.is_file() or not made.read_bytes().startswith(b"%PDF"):

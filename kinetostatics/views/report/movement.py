@@ -10,26 +10,26 @@ import numpy as np
 
 from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
-from .. import symbols
-from ..animations import MOST
-from ..shape import Shape, Stroke
+from .. import strokes
+from ..animations import UNCLIPPED_SHARE
+from ..strokes import Shape, Stroke
 
-REACH = 0.3
+ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
-LONGEST = 1.2 * REACH
+MAX_ARROW = 1.2 * ARROW_REACH
 """Length at which an arrow ends that would be longer, where a reaction grows without bound."""
-RIGID = 1e-5
+RIGID_TOLERANCE = 1e-5
 """Deviation from a rigid body, over the largest extent of the joints, that nobody sees."""
-FILLED = ("counterweight", "plate", "block", "ground")
+FILLED_KINDS = ("counterweight", "plate", "block", "ground")
 """Kinds of strokes that are closed and filled."""
 
 
-def packed(values, kind="<f4"):
+def to_base64(values, kind="<f4"):
     """Numbers as base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
 
-def unpacked(text, kind="<f4"):
+def from_base64(text, kind="<f4"):
     """Numbers that were packed, in one row."""
     return np.frombuffer(base64.b64decode(text), dtype=kind)
 
@@ -41,7 +41,7 @@ def movements(machines):
     solutions = [machine.solution for machine in machines.values()]
     force = max((_largest(solution, name) for solution in solutions for name in solution.reactions), default=0.0)
     torque = max(float(np.nanmax(np.abs(solution.balancing_torque), initial=0.0)) for solution in solutions)
-    scale = REACH * size / force if force else 0.0
+    scale = ARROW_REACH * size / force if force else 0.0
     boxes: list[np.ndarray] = []
     drawings = [_drawing(name, shape, scale, boxes) for name, shape in shapes.items()]
     corners = np.concatenate(boxes, axis=1)
@@ -50,7 +50,7 @@ def movements(machines):
         "drawings": drawings,
         "box": [*map(float, low), *map(float, high)],
         "scale": scale,
-        "longest": LONGEST * size,
+        "longest": MAX_ARROW * size,
         "force": force,
         "torque": torque,
     }
@@ -62,20 +62,20 @@ def _largest(solution, joint):
     size = size[np.isfinite(size)]
     if not size.size:
         return 0.0
-    return float(np.quantile(size, MOST) if solution.mechanism.grows(joint) else size.max())
+    return float(np.quantile(size, UNCLIPPED_SHARE) if solution.mechanism.grows(joint) else size.max())
 
 
 def _arrow(vector, size):
     """Vectors to the scale of the drawing, none longer than the longest arrow by much."""
     length = magnitude(vector)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return vector * np.minimum(1.0, LONGEST * size / np.where(length > 0, length, 1.0))
+        return vector * np.minimum(1.0, MAX_ARROW * size / np.where(length > 0, length, 1.0))
 
 
 def _drawing(name, shape, scale, boxes):
     solution = shape.turn
     made = solution.mechanism
-    strokes = [*_fixed(shape), *shape.counterweights(solution), *shape.strokes(solution)]
+    strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
     strokes += shape.signs(solution.loads, solution)
     boxes += [np.reshape(stroke.points, (2, -1)) for stroke in strokes]
     outputs = made.outputs
@@ -85,17 +85,17 @@ def _drawing(name, shape, scale, boxes):
     return {
         "name": name,
         "kind": made.name,
-        "strokes": [_sent(stroke, shape.size) for stroke in strokes],
-        "joints": {joint: packed(place.T) for joint, place in places.items()},
+        "strokes": [_stroke_data(stroke, shape.size) for stroke in strokes],
+        "joints": {joint: to_base64(place.T) for joint, place in places.items()},
         "moving": [joint for joint, point in made.joints.items() if point.link != FRAME],
         "named": list(made.joints),
-        "masses": [packed(solution.position(link).T) for link in shape.heavy],
+        "masses": [to_base64(solution.position(link).T) for link in shape.heavy],
         "arrows": arrows,
         "centre": next(iter(made.joints)),
     }
 
 
-def _fixed(shape):
+def _fixed_strokes(shape):
     """What does not move: ground under pivots, guides, paths of joints on curves, circles of cranks."""
     made, turn, unit = shape.made, shape.turn, shape.unit
 
@@ -108,37 +108,37 @@ def _fixed(shape):
         yield still("circle", _closed(turn.position(bar.end)))
     for slider, guide in made.guides.items():
         along = np.asarray(guide.direction, dtype=float)
-        below, reach = 0.6 * unit * symbols.left(along), 1.5 * unit * along
+        below, reach = 0.6 * unit * strokes.left(along), 1.5 * unit * along
         start, end = shape.ways[slider].T
-        yield still("rail", symbols.hatched(start - reach - below, end + reach - below, 0.5 * unit))
+        yield still("rail", strokes.hatched_line(start - reach - below, end + reach - below, 0.5 * unit))
     for point in shape.grounds(turn.loads):
         foot = np.array([[0.0, -0.7, 0.7], [0.0, -1.0, -1.0]]) * unit
         yield still("ground", point[:, None] + foot)
         ends = point[:, None] + unit * np.array([[1.0, -1.0], [-1.0, -1.0]])
-        yield still("rail", symbols.hatched(ends[:, 1], ends[:, 0], 0.4 * unit))
+        yield still("rail", strokes.hatched_line(ends[:, 1], ends[:, 0], 0.4 * unit))
 
 
 def _closed(path):
     return np.concatenate([path, path[:, :1]], axis=1)
 
 
-def _sent(stroke, size):
+def _stroke_data(stroke, size):
     """A stroke as the page takes it."""
     points = np.asarray(stroke.points, dtype=float)
-    sent = {"kind": stroke.kind, "filled": stroke.kind in FILLED, "points": packed(points[..., 0].T)}
+    sent = {"kind": stroke.kind, "filled": stroke.kind in FILLED_KINDS, "points": to_base64(points[..., 0].T)}
     if points.shape[2] == 1 or _same(points, points[..., :1], size):
         return sent
     pose = _poses(points)
-    if _same(points, _moved(points[..., 0], pose), size):
-        return sent | {"poses": packed(pose.T)}
-    return sent | {"shapes": packed(points.transpose(2, 1, 0))}
+    if _same(points, _transform(points[..., 0], pose), size):
+        return sent | {"poses": to_base64(pose.T)}
+    return sent | {"shapes": to_base64(points.transpose(2, 1, 0))}
 
 
 def _same(points, others, size):
     gaps = np.isnan(points)
     if (gaps != np.isnan(np.broadcast_to(others, points.shape))).any():
         return False
-    return bool(np.max(np.abs(points - others), where=~gaps, initial=0.0) < RIGID * size)
+    return bool(np.max(np.abs(points - others), where=~gaps, initial=0.0) < RIGID_TOLERANCE * size)
 
 
 def _poses(points):
@@ -148,15 +148,15 @@ def _poses(points):
     cross = np.nansum(first[0][:, None] * others[1] - first[1][:, None] * others[0], axis=0)
     dot = np.nansum(first[0][:, None] * others[0] + first[1][:, None] * others[1], axis=0)
     angle = np.arctan2(cross, dot)
-    shift = middles - _turned(middles[:, :1], angle)
+    shift = middles - _rotate(middles[:, :1], angle)
     return np.stack([*shift, angle])
 
 
-def _turned(points, angle):
+def _rotate(points, angle):
     (x, y), cosine, sine = points, np.cos(angle), np.sin(angle)
     return np.stack([cosine * x - sine * y, sine * x + cosine * y])
 
 
-def _moved(points, poses):
+def _transform(points, poses):
     """Points (2, K) in all poses, (2, K, N)."""
-    return _turned(points[..., None], poses[2]) + poses[:2, None]
+    return _rotate(points[..., None], poses[2]) + poses[:2, None]

@@ -1,6 +1,8 @@
 """Tables of a report: frames as text, units readable, published figures beside ours, bars for shares.
 
 Every quantity at every angle that the reader can choose, with its unit and as many digits as are known.
+
+Which tables a subject has: at a glance, comparisons, extremes, certainty, friction, drive, inputs.
 """
 
 import math
@@ -10,13 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import CaseError
-from ...mechanics.quantities import components, of_scene, scale, still
+from ...errors import CaseError, DriveError, KinetostaticsError, NotGivenError, ParameterError
+from ...mechanics.quantities import components, is_still, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
-from ...numbers.formatting import angle, digits_of, pretty
+from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
+from ...results.comparison import left_out
+from ...results.losses import lose
+from ...results.means import mean_absolute_torque
 from ...results.rounding import FLOOR, zeroed
-from ..canvas import display, in_sight, ordinary
-from .movement import packed
+from ..canvas import display_unit, drawn_limit, ordinary_size
+from .movement import to_base64
 
 number = partial(formatting.number, infinity="∞")
 """A number as text, as all tables of the report show it."""
@@ -47,14 +52,18 @@ class Table:
     code: bool = False
 
 
-def of_frame(frame, caption, note=""):
+def table_of_frame(frame, caption, note=""):
     """Table of a frame whose index says what its rows are, and whose column `unit`, if any, their units."""
     columns = [str(name) for name in frame.columns]
     rows = []
     for name, values in zip(frame.index, frame.itertuples(index=False), strict=True):
         digits = [digits_of(str(name), column) for column in columns]
         cells = [
-            pretty(value) if column == "unit" else angle(value) if column.endswith("[deg]") else number(value, most)
+            pretty_unit(value)
+            if column == "unit"
+            else angle(value)
+            if column.endswith("[deg]")
+            else number(value, most)
             for column, value, most in zip(columns, values, digits, strict=True)
         ]
         rows.append([str(name), *cells])
@@ -65,7 +74,7 @@ def of_frame(frame, caption, note=""):
 def with_published(frame, published, path, caption, note=""):
     """Table of a frame, the published figure behind ours in brackets where there is one."""
     require_places(frame, published, path)
-    table = of_frame(frame, caption, note)
+    table = table_of_frame(frame, caption, note)
     places = {str(name): row for row, name in enumerate(frame.index)}
     columns = [str(name) for name in frame.columns]
     for quantity, entries in published.items():
@@ -88,7 +97,7 @@ def require_places(frame, published, path):
         raise CaseError(path, [problem for problem in problems if problem])
 
 
-def times(ratio, bound=0.0):
+def ratio_text(ratio, bound=0.0):
     """How many times, in words; "" for NaN."""
     return "" if np.isnan(ratio) else f"{number(ratio, 4, bound)} ×"
 
@@ -114,37 +123,37 @@ def readings(machines):
     texts = {
         name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
     }
-    return {name: _sent(text=texts.get(name, ""), **item) for name, item in ordered}
+    return {name: _reading_data(text=texts.get(name, ""), **item) for name, item in ordered}
 
 
 def _is_still(solution, quantity):
-    return quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio)
+    return quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio)
 
 
 def _values(machine, solution, name):
     """Values over the angles of a solution, (1 or 2, N), or None of a machine that lacks the quantity."""
     if name not in of_scene(solution) or _is_still(machine.solution, of_scene(solution)[name]):
         return None
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(machine.solution, name)))
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(machine.solution, name)))
     return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
 
 
-def _sent(quantity, of, between, text):
+def _reading_data(quantity, of, between, text):
     arrays = [values for values in of if values is not None]
     sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
-    factor, unit = display(quantity.unit, sizes)
-    sight = in_sight(sizes)
+    factor, unit = display_unit(quantity.unit, sizes)
+    sight = drawn_limit(sizes)
     return {
         "label": quantity.label,
         "kind": quantity.kind,
         "text": text,
-        "unit": pretty(unit),
+        "unit": pretty_unit(unit),
         "factor": factor,
         "vector": quantity.vector,
         "sight": factor * sight if np.isfinite(sight) else None,
-        "decimals": decimals(factor * ordinary(sizes)),
-        "values": [None if values is None else packed(factor * values, "<f8") for values in of],
-        "between": [None if values is None else packed(factor * values, "<f8") for values in between],
+        "decimals": decimals(factor * ordinary_size(sizes)),
+        "values": [None if values is None else to_base64(factor * values, "<f8") for values in of],
+        "between": [None if values is None else to_base64(factor * values, "<f8") for values in between],
     }
 
 
@@ -153,3 +162,295 @@ def decimals(largest):
     if not largest > 0:
         return 0
     return min(12, max(0, READING_DIGITS - 1 - math.floor(math.log10(largest))))
+
+
+DOUBLE_DIGITS = 15.95
+"""Digits of a double number."""
+OUTLIER_RATIO = 1e4
+"""Times the usual bound of a rounding error from which on a bound is told apart, with its place."""
+ZERO_NOTE = (
+    "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
+)
+
+
+def glance(subject):
+    """A row for each machine: torque, support reaction, what it gains on the reference, power balance."""
+    rows: list[list[str]] = []
+    base = None
+    for machine in subject.machines.values():
+        solution = machine.solution
+        mean = float(mean_absolute_torque(solution))
+        base = mean if base is None else base
+        joint = "O" if "O" in solution.reactions else solution.reactions[-1]
+        peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
+        gain = "" if not rows else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
+        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, peak]
+        lost = number(solution.losses.total, 5) if lose(solution) else ""
+        rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
+    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
+    heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
+    note = (
+        "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
+        f"{subject.reference.name} over that of the machine; above 1 the machine takes less. Power balance: difference "
+        "of the torques by equilibrium and by powers, over the largest power that flows."
+    )
+    return _without_empty(Table("", heads, rows, 2, note))
+
+
+def _largest(row):
+    """The largest magnitude of a quantity over the turn, with the digits that are known."""
+    low, _, high, _ = row.ends
+    value, error = max((low, row.errors[0]), (high, row.errors[2]), key=lambda end: abs(end[0]))
+    return number(abs(value), 5, error)
+
+
+def _without_empty(table):
+    """The table without columns in which nothing stands."""
+    kept = [place for place in range(len(table.columns)) if place < 1 or any(row[place] for row in table.rows)]
+    rows = [[row[place] for place in kept] for row in table.rows]
+    columns = [table.columns[place] for place in kept]
+    return Table(table.caption, columns, rows, sum(place < table.words for place in kept), table.note, table.code)
+
+
+def comparisons(subject):
+    """Dynamic coefficients of each machine against the reference, and what a case tells besides; published figures."""
+    tables = [_coefficients(subject)] if subject.others else []
+    case = subject.case
+    if case is not None and set(case.variants) == set(subject.machines):
+        for caption, frame, published in (
+            ("Counterweights and shaking force", case.balancing_table(), case.published.balancing),
+            ("Swing and transmission", case.linkage_table(), case.published.linkage),
+        ):
+            if frame is not None:
+                note = "Published figures in brackets." if published else ""
+                tables.append(_without_empty(with_published(frame, published, case.path, caption, note)))
+    return tables
+
+
+def _coefficients(subject):
+    """One table of all machines: values, with what the reference has over them below."""
+    name = subject.reference.name
+    frames, bounds = {}, {}
+    for machine in subject.others:
+        frames[machine.name], bounds[machine.name] = subject.comparison(machine)
+    rows = []
+    more = {
+        row
+        for other, frame in frames.items()
+        for row in left_out(dict(zip(frame.index, frame[[name, other]].to_numpy(), strict=True)))
+    }
+    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index if row not in more):
+        with_row = [other for other, frame in frames.items() if quantity in frame.index]
+        known = [frames[other].loc[quantity] for other in with_row]
+        cells = [
+            _value_and_ratio(frame.loc[quantity], bounds[other].loc[quantity], other) if other in with_row else ""
+            for other, frame in frames.items()
+        ]
+        first = number(known[0][name], digits_of(quantity), bounds[with_row[0]].loc[quantity, name])
+        published = next((row["published"] for row in known if row.get("published")), "")
+        rows.append([quantity, pretty_unit(known[0]["unit"]), first, *cells, published])
+    note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
+    if more:
+        note += f" {len(more)} torque extrema between the smallest and the largest are left out."
+    return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
+
+
+def _value_and_ratio(row, errors, name):
+    """A machine's value and its ratio, with the digits that are known; what is nothing beside the reference is 0."""
+    value, ratio = row[name], row["ratio"]
+    if np.isinf(ratio):
+        return "0"
+    if np.isnan(ratio) and abs(value) < 1e-12:
+        return number(value, 2)
+    return number(value, bound=errors[name]), ratio_text(ratio, errors["ratio"])
+
+
+def extremes(subject):
+    """True extremes of every quantity of each machine, with the digits that are known."""
+    return [_of_extremes(machine) for machine in subject.machines.values()]
+
+
+def _of_extremes(machine):
+    rows = []
+    for name, (quantity, (low, low_at, high, high_at), (low_error, _, high_error, _)) in machine.extremes.items():
+        digits = _proven_digits((low, low_error), (high, high_error))
+        if digits is None:
+            digits = _digits(machine.solution, name, np.nan_to_num([low_at, high_at]))
+        most = DIGITS if digits is None else digits
+        smallest, largest = number(low, most, low_error), number(high, most, high_error)
+        told = str(digits) if digits is not None and (low or high) else ""
+        rows.append(
+            [quantity.label, pretty_unit(quantity.unit), smallest, angle(low_at), largest, angle(high_at), told]
+        )
+    heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
+    return Table(machine.name, heads, rows, 2)
+
+
+def _proven_digits(*ends):
+    """Significant digits of values that their bounds prove; None where a bound is not known."""
+    shares = [error / abs(value) for value, error in ends if value]
+    if np.isnan(shares).any() or not np.isfinite([value for value, _ in ends]).all():
+        return None
+    with np.errstate(divide="ignore"):
+        return int(np.clip(np.floor(-np.log10(max(shares, default=0.0))), 0, 15))
+
+
+def _digits(solution, name, degrees):
+    """Significant digits of a quantity's extremes by condition; None of places, and where no condition is given."""
+    if unit_of(solution, name) == "m":
+        return None
+    try:
+        lost = np.max(solution.at(np.radians(degrees)).condition_of(name))
+    except (NotGivenError, ParameterError):  # a load that is a table over the angles asked for
+        return None
+    return 0 if np.isnan(lost) else int(np.clip(np.floor(DOUBLE_DIGITS - np.log10(lost)), 0, 15))
+
+
+def certainty(subject):
+    """Power check, condition and convergence of friction, a column for each machine."""
+    columns = {machine.name: _certainty(machine.solution) for machine in subject.machines.values()}
+    names = list(dict.fromkeys(name for column in columns.values() for name in column))
+    rows = [[name, *(column.get(name, "") for column in columns.values())] for name in names]
+    return Table("", ["", *columns], rows)
+
+
+def _certainty(solution):
+    found = {"power balance, relative to the largest power that flows": number(solution.power_residual, 2)}
+    for name, label, unit in (("balancing_torque", "torque", "N·m"), ("|O|", "reaction O", "N")):
+        if name.strip("|") in solution.reactions or name in solution.scalars:
+            found[f"rounding error of the {label}, proven bound [{unit}]"] = _bound(solution, name)
+    try:
+        condition = solution.condition
+    except NotGivenError:
+        return found
+    worst = int(np.nanargmax(condition))
+    lost = condition[worst]
+    found["condition: lengths' relative errors are magnified up to"] = (
+        f"{number(lost, 3)} at {number(np.degrees(solution.crank_angle[worst]))}°"
+    )
+    found["condition at the middle of all crank angles"] = number(float(np.nanmedian(condition)), 3)
+    if solution.friction.acting:
+        found["friction and reactions found together"] = "yes" if np.all(solution.converged) else "not everywhere"
+        found["friction: change by one more pass, at most"] = number(float(np.nanmax(solution.friction_residual)), 2)
+        found["friction: margin to jamming, least"] = number(float(np.nanmin(solution.friction_margin)), 4)
+    return found
+
+
+def _bound(solution, name):
+    """Largest bound of a rounding error over the turn; below it where some stand out, or where none can be proven."""
+    try:
+        bounds = solution.error_bound(name)
+    except NotGivenError:
+        return "not given"
+    proven = np.isfinite(bounds)
+    if not proven.any():
+        return "not proven"
+    apart = proven & (bounds > OUTLIER_RATIO * np.median(bounds[proven]))  # at a jump, a value may be the one beyond it
+    notes = []
+    if apart.any():
+        place = int(np.argmax(np.where(apart, bounds, -1.0)))
+        where = f"{number(np.degrees(solution.crank_angle[place]))}°"
+        others = "" if (count := np.count_nonzero(apart)) == 1 else f", the largest of {count} that stand out"
+        notes.append(f"but {round_bound_up(bounds[place])} at {where}, a jump or near a limit{others}")
+    if not proven.all():
+        notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
+    text = round_bound_up(np.max(bounds[proven & ~apart]))
+    return (text, "; ".join(notes)) if notes else text
+
+
+def calculations(subject, row):
+    """Hand calculation of the torque of each machine at an angle, its place among those of the reference, as HTML."""
+    angle = subject.reference.solution.crank_angle[row]
+    found = {}
+    for name, machine in subject.machines.items():
+        try:
+            found[name] = machine.solution.explain("balancing_torque", angle)._repr_html_()
+        except KinetostaticsError:  # a load or group of the user's own, that no formula is known of
+            continue
+    return found
+
+
+def losses(subject):
+    """Power lost by joint of each machine that rubs."""
+    tables = []
+    for machine in subject.machines.values():
+        if lose(machine.solution):
+            lost = machine.solution.losses
+            tables.append(table_of_frame(lost.frame(), machine.name, f"{str(lost)[0].upper()}{str(lost)[1:]}."))
+    return tables
+
+
+def drive_tables(subject):
+    """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
+    from ...drive.savings import energy_table, running_table, speed_hint
+    from ...drive.steady import steady
+    from ...drive.transient import start
+
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons = []
+    for name, machine in subject.machines.items():
+        if machine.motor is None:
+            continue
+        parts = machine.scene, machine.motor, machine.variant.flywheel
+        try:
+            runs[name], starts[name] = steady(*parts), None
+            starts[name] = start(*parts)
+        except DriveError as error:
+            reasons.append(f"{name}: {error}")
+        if name in runs and (doubt := speed_hint(runs[name], machine.scene)):
+            reasons.append(f"{name}: {doubt}")
+    tables = []
+    if runs:
+        tables.append(table_of_frame(running_table(runs, starts), "Speed, power and start-up"))
+        tables.append(table_of_frame(energy_table(runs), "Where the energy of a turn goes"))
+    return runs, tables, reasons
+
+
+def inputs(subject):
+    """What the machines are made of: what they have in common, and what tells them apart."""
+    machines = list(subject.machines.values())
+    paths = list(dict.fromkeys(path for machine in machines for path in machine.given))
+    common, apart = [], []
+    for path in paths:
+        values = [machine.given.get(path, (None, ""))[0] for machine in machines]
+        unit = next(machine.given[path][1] for machine in machines if path in machine.given)
+        if not any(value is not None and np.any(value) for value in values if not isinstance(value, str)) and not any(
+            isinstance(value, str) for value in values
+        ):
+            continue
+        shown, cells = _in_unit(unit, values)
+        if len(set(cells)) == 1:
+            common.append([path, shown, cells[0]])
+        else:
+            apart.append([path, shown, *cells])
+    tables = (
+        [Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO_NOTE, code=True)]
+        if common
+        else []
+    )
+    if apart:
+        heads = ["", "unit", *(machine.name for machine in machines)]
+        tables.append(Table("What tells them apart", heads, apart, 2, code=True))
+    return tables
+
+
+def _in_unit(unit, values):
+    """Unit as shown, and values in it as text."""
+    factor = 180.0 / np.pi if unit == "rad" else 1.0
+    return ("°" if unit == "rad" else pretty_unit(unit)), [_cell(value, factor) for value in values]
+
+
+def _cell(value, factor):
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    several = np.ndim(value) > 0
+    return ", ".join(number(factor * item, 10) for item in np.ravel(value)) if several else number(factor * value)
+
+
+def remarks(caught):
+    """What was warned of while the report was made, each once."""
+    told = (str(item.message) for item in caught if issubclass(item.category, UserWarning))
+    return list(dict.fromkeys(told))

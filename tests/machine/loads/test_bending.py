@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.table_pieces import STRAIGHT, bending
+from kinetostatics.machine.loads.table_pieces import KINK_TOLERANCE, kink_rows
 from support.every import every
 
 TURN = 2 * np.pi
@@ -40,7 +40,7 @@ SMOOTH = {
 
 @every("name", SMOOTH)
 def test_fine_rows_of_a_smooth_curve_bend_nothing(name):
-    assert not SMOOTH[name].is_bent(STRAIGHT)
+    assert not SMOOTH[name].is_bent(KINK_TOLERANCE)
     assert SMOOTH[name].is_bent(0.0)
 
 
@@ -56,10 +56,10 @@ SHARP = {
 @every("name", SHARP)
 def test_kinks_jumps_and_spikes_among_fine_rows_stay(name):
     y, expected = SHARP[name]
-    found = bending(along(FINE, y))
+    found = kink_rows(along(FINE, y))
     assert found.size <= 5
     assert all(np.abs(found - row).min() <= 1 for row in expected), found
-    assert np.array_equal(found, bending(along(FINE, 0.0 * FINE + 1.0, y)))  # also where the other stroke is smooth
+    assert np.array_equal(found, kink_rows(along(FINE, 0.0 * FINE + 1.0, y)))  # also where the other stroke is smooth
 
 
 @every("width", [1e-9, 1e-6, 1e-3])
@@ -67,12 +67,12 @@ def test_kinks_jumps_and_spikes_among_fine_rows_stay(name):
 def test_no_spike_of_three_rows_passes_as_a_parabola(width, height):
     x = np.sort(np.append(np.linspace(0.1, 0.3, 4), [0.2, 0.2 + width, 0.2 + 2 * width]))
     y = 1.0 + height * (x == 0.2 + width)
-    assert bending(along(x, y)).tolist() == [2, 3, 4]
+    assert kink_rows(along(x, y)).tolist() == [2, 3, 4]
 
 
 def test_a_narrow_smooth_bump_is_split():
     x = np.linspace(0.1, 0.3, 20_001)
-    found = x[bending(along(x, np.exp(-(((x - 0.2) / 3e-3) ** 2))))]
+    found = x[kink_rows(along(x, np.exp(-(((x - 0.2) / 3e-3) ** 2))))]
     assert 4 < found.size < 20
     assert np.abs(found - 0.2).max() < 0.015
 
@@ -82,9 +82,9 @@ def test_between_bends_a_table_is_polynomial(seed):
     rng = np.random.default_rng(seed)
     x = np.sort(np.append(rng.uniform(0.1, 0.3, 400), [0.1, 0.3]))
     y = gas(x) + 10.0 ** rng.uniform(-1, 3) * np.cumsum(rng.standard_normal(x.size) * (rng.random(x.size) < 0.05))
-    kept = [0, *bending(along(x, y)), x.size - 1]
+    kept = [0, *kink_rows(along(x, y)), x.size - 1]
     for low, high in pairwise(kept):
         if x[high] - x[low] < 0.2 / 32:  # longer ones may be several polynomials
             at = np.linspace(x[low], x[high], 300)
             fit = np.polynomial.Chebyshev.fit(at, np.interp(at, x, y), 7)
-            assert np.abs(fit(at) - np.interp(at, x, y)).max() < 2 * STRAIGHT * np.abs(y).max()
+            assert np.abs(fit(at) - np.interp(at, x, y)).max() < 2 * KINK_TOLERANCE * np.abs(y).max()

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.table_pieces import ASIDE, SAMPLES, TURN, crossings
+from kinetostatics.machine.loads.table_pieces import SAMPLE_OFFSET, STOP_SAMPLES, TURN, stops_and_crossings
 from support.every import every
 
 
@@ -19,7 +19,7 @@ def travel(solved, angle):
 
 def test_levels_are_passed_twice_a_turn():
     solved, levels = motion(), np.linspace(0.15, 0.22, 7)
-    stops, passed = crossings(solved, "slider", levels)
+    stops, passed = stops_and_crossings(solved, "slider", levels)
     assert stops.shape == (1, 2)
     assert passed.shape == (1, 14)
     assert np.abs(travel(solved, stops).first).max() < 1e-15
@@ -28,10 +28,10 @@ def test_levels_are_passed_twice_a_turn():
 
 def test_level_near_a_stop_is_passed_to_and_fro():
     solved = motion()
-    stops, _ = crossings(solved, "slider", np.array([0.2]))
+    stops, _ = stops_and_crossings(solved, "slider", np.array([0.2]))
     farthest = travel(solved, stops).position.max()
     for depth in (1e-5, 1e-9, 1e-13):
-        _, passed = crossings(solved, "slider", np.array([farthest - depth]))
+        _, passed = stops_and_crossings(solved, "slider", np.array([farthest - depth]))
         assert passed.shape == (1, 2)
         np.testing.assert_allclose(travel(solved, passed).position, farthest - depth, rtol=0, atol=1e-16)
 
@@ -39,27 +39,29 @@ def test_level_near_a_stop_is_passed_to_and_fro():
 def test_designs_pass_the_levels_in_their_stroke():
     crank = np.array([[0.01], [0.03], [0.05]])
     levels = np.linspace(0.14, 0.24, 11)
-    stops, passed = crossings(motion(crank), "slider", levels)
+    stops, passed = stops_and_crossings(motion(crank), "slider", levels)
     assert stops.shape == (3, 2)
     for row, length in enumerate(crank[:, 0]):
-        alone = np.sort(crossings(motion(length), "slider", levels)[1][0])
+        alone = np.sort(stops_and_crossings(motion(length), "slider", levels)[1][0])
         np.testing.assert_allclose(np.sort(passed[row])[: alone.size], alone, rtol=0, atol=1e-14)
         assert np.isnan(np.sort(passed[row])[alone.size :]).all()
 
 
 @every("way", [1, -1])
 def test_stop_exactly_at_a_sample_is_found(way):
-    stop = (ASIDE + np.linspace(0.0, TURN, SAMPLES + 1))[100]
+    stop = (SAMPLE_OFFSET + np.linspace(0.0, TURN, STOP_SAMPLES + 1))[100]
 
     def place(angle):
         cosine, sine = (way * part(angle - stop) for part in (np.cos, np.sin))
         return SimpleNamespace(travels={"slider": SimpleNamespace(position=cosine, first=-sine, second=-cosine)})
 
-    stops, _ = crossings(SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1))
+    stops, _ = stops_and_crossings(
+        SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1)
+    )
     np.testing.assert_allclose(np.sort(stops[0]), np.sort(np.mod([stop, stop + np.pi], TURN)), rtol=0, atol=1e-12)
 
 
 def test_what_does_not_close_passes_nothing_there():
-    stops, passed = crossings(motion(0.25, 0.0), "slider", np.array([0.3]))
+    stops, passed = stops_and_crossings(motion(0.25, 0.0), "slider", np.array([0.3]))
     assert np.isfinite(passed).sum() == 2
     assert np.isfinite(stops).sum() <= 2

@@ -21,7 +21,7 @@ def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_round
     error = [
         abs(float(Fraction(float(value)) - 1000 * (1 - part))) for value, part in zip(table(motion), share, strict=True)
     ]
-    assert np.all(error <= table_pieces.rounding(table, motion))
+    assert np.all(error <= table_pieces.rounding_bound(table, motion))
 
 
 def exactly(table, angle):
@@ -43,7 +43,7 @@ def test_no_value_by_angle_is_off_by_more_than_its_rounding(first, turns):
         angles = np.concatenate([rng.uniform(first, first + period, 40), rng.uniform(-50, 50, 20), x, x - period])
         force = ks.ProcessForce(table, period=period)
         motion = ks.solve(ks.crank_slider(0.05, 0.2), angles, crank_speed=100.0, loads=force)
-        bound = table_pieces.rounding(table, motion)
+        bound = table_pieces.rounding_bound(table, motion)
         for angle, value, most in zip(angles, table(motion), bound, strict=True):
             assert abs(Fraction(float(value)) - exactly(table, angle)) <= Fraction(most)
 
@@ -69,7 +69,7 @@ def test_pieces_of_a_table_are_exact_in_exact_numbers():
 def test_on_level_pieces_of_a_table_nothing_is_rounded():
     table = ks.Table([0.0, 1.0, 3.0, 4.0], [0.3, 0.3, 0.7, 0.7])
     motion = ks.solve(ks.crank_slider(0.05, 0.2), [0.5, 2.0, 3.5], crank_speed=1.0, loads=ks.ProcessForce(table))
-    level, rising, other = table_pieces.rounding(table, motion)
+    level, rising, other = table_pieces.rounding_bound(table, motion)
     assert 0.0 < max(level, other) < 1e-290
     assert 1e-16 < rising < 6e-16
 
@@ -78,7 +78,7 @@ def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
     pump = ks.crank_slider(0.05, 0.2)
     table = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0], slider="slider")
     s = ks.solve(pump, [0.0, 1.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
-    kinks, jumps, near, distance = table_pieces.kinks_within(table, s)
+    kinks, jumps, near, distance = table_pieces.kink_bounds(table, s)
     assert np.flatnonzero(jumps).tolist() == [0, 2]
     assert kinks[1] == 0.0
     assert 0.0 < near < 1e-6
@@ -107,7 +107,7 @@ def test_at_the_end_of_a_stroke_a_table_jumps_by_what_its_ways_differ_there_not_
     x = [0.14, 0.16, 0.24, 0.25 + beside, 0.26, 0.3]
     table = ks.Table(x, [0.0, 0.0, 0.0, -700.0, 0.0, -9e5], over="travel", back=np.zeros(6))
     s = ks.solve(pump, [0.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
-    (outer, inner) = table_pieces.kinks_within(table, s)[1]
+    (outer, inner) = table_pieces.kink_bounds(table, s)[1]
     assert 700.0 <= outer <= 701.0
     assert inner < 1e-8
     assert s.error_bound("B")[0, 1] < 1e-6

@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
-from kinetostatics.numbers.arithmetic import UNIT
+from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods import papers
 from kinetostatics.studies.methods.kane import equations
 from kinetostatics.studies.methods.method import NotGivenError
@@ -58,7 +58,7 @@ def assert_sound(s):
     found = equations.all_forces(s)()
     assert set(found) == {*s.reactions, *s.scalars}
     errors = {name: error(s, name, parts) for name, parts in found.items()}
-    most = {name: max(CLOSE, UNIT * np.max(s.condition_of(name))) for name in found}
+    most = {name: max(CLOSE, UNIT_ROUNDOFF * np.max(s.condition_of(name))) for name in found}
     assert {name: value for name, value in errors.items() if not value < most[name]} == {}
 
 

@@ -8,8 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.studies.methods import motion
-from kinetostatics.studies.methods.global_system import configurations, constraints, newton
+from kinetostatics.studies.methods import running
+from kinetostatics.studies.methods.global_system import constraints, newton
 from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import CHAINS, TURN, error, solved
 from support.machines import CLOSE, KINDS
@@ -32,9 +32,9 @@ def test_global_system_equals_closed_forms(name):
     """At the table's own positions, which continuation finds from one position of the library."""
     s = solved(name)
     model = constraints.Model(s.mechanism)
-    angle, positions, _ = newton.table(model, TURN)
+    angle, positions, _ = newton.position_table(model, TURN)
     s = solved(name, angle)
-    errors = {wanted: error(s, wanted, configurations.components(model, s, wanted, positions)) for wanted in names(s)}
+    errors = {wanted: error(s, wanted, constraints.components(model, s, wanted, positions)) for wanted in names(s)}
     assert {wanted: value for wanted, value in errors.items() if not value < CLOSE} == {}
 
 
@@ -121,21 +121,21 @@ def test_integration_needs_constant_speed(method):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", motion.BENCHMARKS)
+@pytest.mark.parametrize("name", running.BENCHMARKS)
 @pytest.mark.parametrize(
     ("method", "setting", "error"),
     [("ours, NumPy", None, 1e-11), ("reduced inertia, RK45", 1e-7, 1e-3), ("reduced inertia, LSODA", 1e-9, 1e-4)],
 )
 def test_methods_reach_the_published_ends_of_motions(name, method, setting, error):
-    problem = motion.BENCHMARKS[name]()
-    (found,) = (one for one in motion.METHODS if one.name == method)
+    problem = running.BENCHMARKS[name]()
+    (found,) = (one for one in running.MOTION_METHODS if one.name == method)
     assert abs(found.prepare(problem, "", setting)() - problem.exact) < error
 
 
 @pytest.mark.slow
 def test_constraints_reach_the_published_end():
-    (constraints,) = (one for one in motion.METHODS if one.name.startswith("constraint"))
-    problem = motion.slider_crank()
+    (constraints,) = (one for one in running.MOTION_METHODS if one.name.startswith("constraint"))
+    problem = running.slider_crank()
     assert abs(constraints.prepare(problem, "", 1e-5)() - problem.exact) < 1e-6
     with pytest.raises(ks.errors.NotGivenError, match="change points"):
-        constraints.prepare(motion.n_four_bar(), "", 1e-5)
+        constraints.prepare(running.n_four_bar(), "", 1e-5)

@@ -74,7 +74,7 @@ def test_what_cannot_be_found_is_refused():
 
 
 def test_friction_that_does_not_settle_is_told(monkeypatch):
-    monkeypatch.setattr("kinetostatics.studies.methods.global_system.friction.TIMES", 2)
+    monkeypatch.setattr("kinetostatics.studies.methods.structures.MAX_FRICTION_ITERATIONS", 2)
     with pytest.raises(NotGivenError, match="forces and friction still change after being found 2 times"):
         NEWTON.prepare(drawn("slider"), "O", 6)()
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.one_dof import Driven
+from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.studies.methods import running
-from kinetostatics.studies.methods.high_precision.exact_running import exact_speed
+from kinetostatics.studies.methods.high_precision.certified import exact_speed
 from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
 
 
@@ -24,13 +24,15 @@ from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
     ],
 )
 def test_rivals_come_to_the_same_running(name, setting, error):
-    problem = running.Problem(IDLE, MOTOR, 1000.0, ANGLES)
+    problem = running.PeriodicRunning(IDLE, MOTOR, 1000.0, ANGLES)
     found = BY_NAME[name].prepare(problem, "", setting)()
     assert np.abs(found / np.array(REFERENCE["speed"], float) - 1.0).max() < error
 
 
 def test_the_secant_rule_finds_what_a_turn_gives_back():
-    assert running.shot(lambda energy: 0.25 * energy + 3.0 / energy, 1.0, 1e-15) == pytest.approx(2.0, rel=1e-14)
+    assert running.periodic_energy(lambda energy: 0.25 * energy + 3.0 / energy, 1.0, 1e-15) == pytest.approx(
+        2.0, rel=1e-14
+    )
 
 
 # Running at many digits
@@ -43,14 +45,14 @@ CUTTING = ks.Scene(SAW, 33.5, loads=(ks.Gravity(), CUT))
 @pytest.mark.slow
 def test_many_digit_running_equals_the_reference():
     pytest.importorskip("flint")
-    found = exact_speed(running.Problem(IDLE, MOTOR, 1000.0, ANGLES).driven, ANGLES)
+    found = exact_speed(running.PeriodicRunning(IDLE, MOTOR, 1000.0, ANGLES).driven, ANGLES)
     assert np.abs(found / np.array(REFERENCE["speed"], float) - 1.0).max() < 3e-16
 
 
 @pytest.mark.slow
 def test_running_with_kinks_equals_many_digits():
     pytest.importorskip("flint")
-    problem = running.Problem(CUTTING, MOTOR, 1000.0, ANGLES)
+    problem = running.PeriodicRunning(CUTTING, MOTOR, 1000.0, ANGLES)
     found = BY_NAME["ours, NumPy"].prepare(problem, "", None)()
     assert np.abs(found / exact_speed(problem.driven, ANGLES) - 1.0).max() < 2e-14
 
@@ -59,4 +61,4 @@ def test_running_with_kinks_equals_many_digits():
 def test_loads_that_depend_on_the_speed_are_refused():
     damped = ks.Scene(SAW, 1.0, loads=ks.TorsionDamper(1.0, on="crank"))
     with pytest.raises(ks.errors.NotGivenError, match="do not depend on the speed"):
-        exact_speed(Driven("test", damped, MOTOR, 1.0), ANGLES)
+        exact_speed(DrivenMachine("test", damped, MOTOR, 1.0), ANGLES)

@@ -80,7 +80,7 @@ def test_without_bokeh_it_is_said_how_to_get_it(monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(ks.KinetostaticsError, match=r'pip install "kinetostatics\[report\]"'):
-        figures.require()
+        figures.require_bokeh()
 
 
 def test_unbounded_values_are_not_drawn():

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.report import html
-from kinetostatics.views.report.subject import subject_of
+from kinetostatics.views.report.report import subject_of
 from support.reports import COMMAND, data_of, page, plain, subject, words
 
 pytestmark = pytest.mark.slow
@@ -56,7 +56,7 @@ def test_hostile_names_are_shown_as_text():
     scenes = {HOSTILE: plain(), "plain": plain(crank_speed=20.0)}
     told = []
     text = html.page(subject_of(scenes, title=HOSTILE), told.append)
-    assert (told[0], told[-1], len(told)) == ("movement", "page", html.PARTS)
+    assert (told[0], told[-1], len(told)) == ("movement", "page", html.PROGRESS_STEPS)
     assert "<script>alert" not in text
     assert "<b>x" not in text
     assert words(text).count(HOSTILE) >= 5
@@ -95,7 +95,7 @@ def test_first_angle_has_the_largest_torque():
 
 def test_machines_of_the_same_torque_are_named():
     scenes = {"one": plain(), "two": plain(), "three": plain(crank_speed=11.0)}
-    assert html._together(subject_of(scenes)).endswith("same torque: one and two.")
+    assert html._same_torque_text(subject_of(scenes)).endswith("same torque: one and two.")
 
 
 def test_a_crank_that_stands_still_is_reported_too():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from kinetostatics.views.report.movement import FILLED, LONGEST, REACH, movements, packed, unpacked
-from kinetostatics.views.shape import Shape
+from kinetostatics.views.report.movement import ARROW_REACH, FILLED_KINDS, MAX_ARROW, from_base64, movements, to_base64
+from kinetostatics.views.strokes import Shape
 from support.reports import subject
 
 
@@ -14,12 +14,12 @@ def drawn(case):
 
 def points_of(stroke, count):
     """Points of a stroke in all poses, (2, K, N), as the page draws them."""
-    first = unpacked(stroke["points"]).reshape(-1, 2).T.astype(float)
+    first = from_base64(stroke["points"]).reshape(-1, 2).T.astype(float)
     if "shapes" in stroke:
-        return unpacked(stroke["shapes"]).reshape(count, -1, 2).transpose(2, 1, 0)
+        return from_base64(stroke["shapes"]).reshape(count, -1, 2).transpose(2, 1, 0)
     if "poses" not in stroke:
         return np.repeat(first[..., None], count, axis=2)
-    x, y, angle = unpacked(stroke["poses"]).reshape(count, 3).T.astype(float)
+    x, y, angle = from_base64(stroke["poses"]).reshape(count, 3).T.astype(float)
     turned = [
         first[0][:, None] * np.cos(angle) - first[1][:, None] * np.sin(angle) + x,
         first[0][:, None] * np.sin(angle) + first[1][:, None] * np.cos(angle) + y,
@@ -29,7 +29,7 @@ def points_of(stroke, count):
 
 def test_numbers_come_back_as_they_were_packed():
     values = np.array([0.1, -2.5e300, np.nan, np.inf])
-    np.testing.assert_array_equal(unpacked(packed(values, "<f8"), "<f8"), values)
+    np.testing.assert_array_equal(from_base64(to_base64(values, "<f8"), "<f8"), values)
 
 
 @pytest.mark.slow
@@ -54,15 +54,15 @@ def test_moving_parts_are_stored_as_poses():
     assert kinds["bar"] == "poses"
     assert kinds["curve"] == kinds["rail"] == kinds["ground"] == ""
     assert "shapes" in [next(iter(set(stroke) & {"shapes"}), "") for stroke in strokes if stroke["kind"] == "spring"]
-    assert all(stroke["filled"] == (stroke["kind"] in FILLED) for stroke in strokes)
+    assert all(stroke["filled"] == (stroke["kind"] in FILLED_KINDS) for stroke in strokes)
 
 
 def test_arrows_have_one_scale_for_all_machines():
     found = drawn("sawframe_2r63")
     shapes = [Shape(machine.solution) for machine in subject("sawframe_2r63").machines.values()]
     size = max(shape.size for shape in shapes)
-    assert np.isclose(found["scale"] * found["force"], REACH * size)
-    assert np.isclose(found["longest"], LONGEST * size)
+    assert np.isclose(found["scale"] * found["force"], ARROW_REACH * size)
+    assert np.isclose(found["longest"], MAX_ARROW * size)
     solution = subject("sawframe_2r63").machines["plain"].solution
     assert np.isclose(found["force"], max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions))
 
@@ -92,7 +92,7 @@ def test_unbounded_reaction_hides_no_other():
     import warnings
 
     import kinetostatics as ks
-    from kinetostatics.views.report.subject import subject_of
+    from kinetostatics.views.report.report import subject_of
 
     parallelogram = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(mass=1.0))
     with warnings.catch_warnings():

@@ -9,9 +9,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.rounding import FLOOR
-from kinetostatics.views.report.movement import unpacked
-from kinetostatics.views.report.subject import subject_of
-from kinetostatics.views.report.tables import decimals, of_frame, readings, times, with_published
+from kinetostatics.views.report.movement import from_base64
+from kinetostatics.views.report.report import subject_of
+from kinetostatics.views.report.tables import decimals, ratio_text, readings, table_of_frame, with_published
 from support.every import every
 from support.reports import near_change_points, series, subject
 
@@ -45,7 +45,7 @@ def test_extremes_stand_between_the_angles():
             for name, item in found.items():
                 if item["values"][row] is not None and name in machine.extremes:
                     parts = [
-                        unpacked(item[key][row], "<f8").reshape(2 if item["vector"] else 1, -1) / item["factor"]
+                        from_base64(item[key][row], "<f8").reshape(2 if item["vector"] else 1, -1) / item["factor"]
                         for key in ("values", "between")
                     ]
                     parts = np.concatenate(parts, axis=1)
@@ -107,7 +107,7 @@ FRAME = pd.DataFrame(
 
 
 def test_frame_becomes_text_with_wanted_digits():
-    found = of_frame(FRAME, "caption", "note")
+    found = table_of_frame(FRAME, "caption", "note")
     assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
     assert found.rows == [["torque", "N·m", "286772", "6.081", "0"], ["power residual", "", "3.2e-16", "", "39.287"]]
     assert (found.words, found.caption, found.note) == (2, "caption", "note")
@@ -125,4 +125,4 @@ def test_misplaced_published_figures_are_refused():
 
 
 def test_a_ratio_says_how_many_times():
-    assert [times(ratio) for ratio in (6.0807, np.nan, np.inf)] == ["6.081 ×", "", "∞ ×"]
+    assert [ratio_text(ratio) for ratio in (6.0807, np.nan, np.inf)] == ["6.081 ×", "", "∞ ×"]

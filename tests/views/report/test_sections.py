@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views.report import sections
-from kinetostatics.views.report.subject import Subject, subject_of
+from kinetostatics.views.report import tables
+from kinetostatics.views.report.report import Subject, subject_of
 from support.reports import plain, subject, table_of
 
 pytestmark = pytest.mark.slow
@@ -18,7 +18,7 @@ RUBBING = partial(subject, "sawframe_2r63_friction", "cam-cosine")
 
 
 def test_glance_has_a_row_for_each_machine():
-    found = sections.glance(subject("sawframe_2r63"))
+    found = tables.glance(subject("sawframe_2r63"))
     saw = ks.load_case("sawframe_2r63").compare("plain", "cam-cosine")
     cells = dict(zip(found.columns, table_of(found, "cam-cosine"), strict=True))
     assert cells["ratio of means"] == f"{saw.mean_torque_ratio:.4g} ×"
@@ -28,13 +28,13 @@ def test_glance_has_a_row_for_each_machine():
 
 
 def test_glance_shows_lost_power():
-    found = sections.glance(RUBBING())
+    found = tables.glance(RUBBING())
     lost = RUBBING().machines["plain"].solution.losses.total
     assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
 
 
 def test_comparison_of_all_machines_is_one_table():
-    (found,) = sections.comparisons(subject("sawframe_2r63"))
+    (found,) = tables.comparisons(subject("sawframe_2r63"))
     assert found.columns == ["", "unit", "plain", "cam-circle", "cam-cosine", "published"]
     row = table_of(found, "mean |balancing torque|")
     assert row[2:] == ["23223.7", ("3819.22", "6.081 ×"), ("3426.19", "6.778 ×"), "6.77 (ratio)"]
@@ -42,22 +42,22 @@ def test_comparison_of_all_machines_is_one_table():
 
 
 def test_what_is_nothing_beside_the_reference_is_0():
-    (found,) = sections.comparisons(subject("mower_drive", "full"))
+    (found,) = tables.comparisons(subject("mower_drive", "full"))
     assert table_of(found, "largest shaking force")[3] == "0"
 
 
 def test_swing_stands_with_its_published_figures():
-    swing = {table.caption: table for table in sections.comparisons(subject("chain_unit"))}["Swing and transmission"]
+    swing = {table.caption: table for table in tables.comparisons(subject("chain_unit"))}["Swing and transmission"]
     assert "1.14556 (1.145)" in table_of(swing, "largest relative rocker speed")
 
 
 def test_one_machine_is_compared_with_nothing():
-    assert sections.comparisons(subject_of(plain())) == []
+    assert tables.comparisons(subject_of(plain())) == []
 
 
 def test_report_extremes_are_the_librarys():
     made = subject("pumpjack")
-    for machine, found in zip(made.machines.values(), sections.extremes(made), strict=True):
+    for machine, found in zip(made.machines.values(), tables.extremes(made), strict=True):
         assert found.caption == machine.name
         low, high = ks.extremes(machine.solution, "balancing_torque").range
         row = table_of(found, "balancing torque")
@@ -69,12 +69,12 @@ def test_where_digits_are_lost_fewer_are_shown():
     near = ks.crank_slider(0.1, 0.4, slider=ks.Link(mass=50.0))
     spring = ks.Spring.balancing(50.0, 10.0, 0.4)
     cancelled = ks.Scene(near, 10.0, loads=spring)
-    found = sections._digits(cancelled.solve(360), "B", np.array([0.0, 180.0]))
-    assert found < sections._digits(plain().solve(360), "B", np.array([0.0, 180.0]))
+    found = tables._digits(cancelled.solve(360), "B", np.array([0.0, 180.0]))
+    assert found < tables._digits(plain().solve(360), "B", np.array([0.0, 180.0]))
 
 
 def test_certainty_names_power_balance_and_condition():
-    found = sections.certainty(RUBBING())
+    found = tables.certainty(RUBBING())
     assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 2
     assert all(
         float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:]
@@ -85,22 +85,22 @@ def test_certainty_names_power_balance_and_condition():
 def test_rounding_bounds_are_shown():
     row = "rounding error of the torque, proven bound [N·m]"
     idle = np.max(subject("shaper").machines["idle"].solution.error_bound("balancing_torque"))
-    assert idle <= float(table_of(sections.certainty(subject("shaper")), row)[2]) < 1.1 * idle
+    assert idle <= float(table_of(tables.certainty(subject("shaper")), row)[2]) < 1.1 * idle
     barely = ks.Scene(ks.crank_slider(1.0, 1.0 + 1e-13, slider=ks.Link(1.0)), 1.0)  # a limit position at 90 and 270 deg
     made = subject_of({"barely": barely, "plain": plain()})
     with pytest.warns(ks.ConditionWarning):
         assert made.machines["barely"].extremes
-    found = table_of(sections.certainty(made), row)[1]
+    found = table_of(tables.certainty(made), row)[1]
     bounds = np.sort(made.machines["barely"].solution.error_bound("balancing_torque"))
     assert bounds[-3] <= float(found[0]) < 1.1 * bounds[-3]
     assert re.fullmatch(r"but .* at (90|270)°, a jump or near a limit, the largest of 2 that stand out", found[1])
-    rubbing = table_of(sections.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
+    rubbing = table_of(tables.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
     assert rubbing[1][1] == "not proven at 1 of 360 angles"
 
 
 def test_torque_is_explained_for_each_machine():
     made = subject("pumpjack")
-    found = sections.calculations(made, 13)
+    found = tables.calculations(made, 13)
     assert list(found) == list(made.machines)
     for name, machine in made.machines.items():
         explained = machine.solution.explain("balancing_torque", machine.solution.crank_angle[13])
@@ -114,27 +114,27 @@ def test_unknown_formula_has_no_calculation(monkeypatch):
         raise ks.ParameterError("a group of one's own")
 
     monkeypatch.setattr(type(made.reference.solution), "explain", unknown)
-    assert sections.calculations(made, 3) == {}
+    assert tables.calculations(made, 3) == {}
 
 
 def test_losses_are_listed_with_their_sum():
-    tables = sections.losses(RUBBING())
+    tables = tables.losses(RUBBING())
     assert [table.caption for table in tables] == list(RUBBING().machines)
     assert table_of(tables[0], "all")[2] == "100"
     assert tables[0].note.startswith("Of 42948.7 W put in")
-    assert sections.losses(subject("pumpjack")) == []
+    assert tables.losses(subject("pumpjack")) == []
 
 
 def test_drive_is_told_for_machines_with_a_motor_alone():
     one = subject("sawframe_2r63")
     made = Subject("", "", {"cam-cosine": one.machines["cam-cosine"]}, "", one.case)
-    runs, (first, second), reasons = sections.driven(made)
+    runs, (first, second), reasons = tables.drive_tables(made)
     assert float(table_of(first, "mean speed of the crank")[2]) == pytest.approx(
         runs["cam-cosine"].mean_speed, rel=1e-5
     )
     assert table_of(second, "flywheel and rotor, largest less smallest")[1] == "J"
     assert reasons == []
-    assert sections.driven(subject("pumpjack")) == ({}, [], [])
+    assert tables.drive_tables(subject("pumpjack")) == ({}, [], [])
 
 
 def test_weak_motor_replaces_its_table(tmp_path):
@@ -143,13 +143,13 @@ def test_weak_motor_replaces_its_table(tmp_path):
     weak = weak.replace('"55 kW"', '"5 W"')
     path = tmp_path / "weak.toml"
     path.write_text(weak, encoding="utf-8")
-    runs, _, reasons = sections.driven(subject_of(path, "plain"))
+    runs, _, reasons = tables.drive_tables(subject_of(path, "plain"))
     assert runs == {}
     assert reasons[0].startswith("plain: ")
 
 
 def test_inputs_are_split_into_common_and_own():
-    common, apart = sections.inputs(subject("sawframe_2r63"))
+    common, apart = tables.inputs(subject("sawframe_2r63"))
     assert table_of(common, "slider.mass") == ["slider.mass", "kg", "600"]
     assert table_of(common, "gravity.direction") == ["gravity.direction", "°", "-90"]
     assert table_of(apart, "coupler_length") == ["coupler_length", "m", "2", "2.0219", "2.02191"]
@@ -164,4 +164,4 @@ def test_remarks_are_each_told_once():
         for _ in range(2):
             warnings.warn("doubtful", ks.HintWarning, stacklevel=1)
         warnings.warn("later", DeprecationWarning, stacklevel=1)
-    assert sections.remarks(caught) == ["doubtful"]
+    assert tables.remarks(caught) == ["doubtful"]

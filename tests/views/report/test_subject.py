@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views.report.subject import subject_of
+from kinetostatics.views.report.report import subject_of
 from support.case_files import shipped
 from support.every import every
 from support.reports import plain, subject

@@ -1,4 +1,15 @@
-"""Constraint equations of a whole mechanism, from which follow its motion, and all its forces by one linear system.
+"""What loads put on links besides their weight, as arguments of equations that were made without them.
+
+Plain numbers, of springs too, are known once; tables and functions, which read the library's motion as a user's own
+would read theirs, and loads at points are computed each time.
+
+Constraint equations of followers on a cam that turns with the crank: the distance from its pitch curve is zero.
+
+The roller centre p, seen from the crank, is at C = n . (p - c) outside the nearest point c of the pitch curve. The unit
+normal n there is the derivative of C by p, and kappa t t^T, with the curvature of the curve, the second. A flat face
+keeps the distance h(psi) from O, by the angle psi of the cam from the face's normal. Multipliers are contact forces.
+
+Constraint equations of a whole mechanism, from which follow its motion, and all its forces by one linear system.
 
 Every moving link has three coordinates in q: x and y of its reference joint, and its angle theta. Joints, guides,
 slot, cam and drive give as many constraint equations C(q, phi) = 0 with Jacobian J = dC/dq (Nikravesh, *Computer-Aided
@@ -9,6 +20,8 @@ Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics o
 Each equation is written so that its multiplier in lambda is a reaction, signed as in the library, or the drive torque.
 
 Other ways to the motion of the joints: differences, spectra, harmonic series; and the coupler as two masses.
+
+Configurations: constraint equations at given coordinates, their derivatives, and what loads do there.
 """
 
 from dataclasses import replace
@@ -18,20 +31,182 @@ import numpy as np
 
 from ....engines.engines import Kernels
 from ....errors import NotGivenError, ParameterError
+from ....machine.followers.translating import FlatFollower
 from ....machine.group import FRAME
+from ....machine.loads import Gravity, ProcessForce, Spring
+from ....mechanics.load_values import evaluate_load, slider_push
 from ....mechanics.quantities import components
+from ....numbers.lazy import cached_property
 from ....numbers.planar import left
-from ...series import assembled, closed_paths, harmonic_series, joints_of, positions
-from ...simplifications import two_mass_coupler
-from ..engines import compiled_run
-from ..method import Method, require_one_design
-from ..structures import structure
-from .applied import Following
+from ...simplifications import (
+    harmonic_series,
+    joint_motions,
+    joint_positions,
+    paths_over_turn,
+    placement_from_joints,
+    two_mass_coupler,
+)
+from ..engines import compiled_function
+from ..method import Method, NotGivenError, require_one_design
+from ..structures import FrictionForces, LoadForces, structure
+
+PARTS = "x", "y", "moment"
+
+
+class Applied(LoadForces):
+    """Loads of a solution. Called, it gives by name what depends on the motion; ``numbers`` are the others.
+
+    Under a link's name with "_load_x", "_load_y", "_load_moment" are force and moment about its reference joint, under
+    a slider's with "_push" the force along its guide, with "_stiffness", "_free" and "_cubic" the numbers of a spring.
+
+    Parameters
+    ----------
+    solution : Solution
+    result : function
+        ``result(name)`` is a function that computes a result of the equations' own motion.
+    """
+
+    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
+
+    def __init__(self, solution, result):
+        self.solution, self.mechanism = solution, solution.mechanism
+        links, sliders, loads = self.mechanism.links, self.mechanism.guides, solution.loads
+        self.numbers: dict[str, Any] = {f"{link}_load_{part}": 0 for link in links for part in PARTS}
+        self.numbers |= {f"{slider}_{part}": 0 for slider in sliders for part in ("push", "stiffness", "free", "cubic")}
+        pushes = [item for item in loads if hasattr(item, "push")]
+        self.springs, self.pushes = [], []
+        for item in pushes:
+            if isinstance(item, Spring):
+                self.springs.append(item)
+            elif isinstance(item, ProcessForce) and isinstance(item.force, int | float):
+                self.numbers[f"{item.on}_push"] += item.force
+            else:
+                self.pushes.append(item)
+        for item in {item.on: item for item in reversed(self.springs)}.values():
+            parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
+            self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
+            self.springs.remove(item)
+        self.others = [item for item in loads if not hasattr(item, "push") and not isinstance(item, Gravity)]
+        self.travels = {item.on: result(f"{item.on}_position") for item in self.springs}
+        self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}
+        self.fixed = self.numbers
+        moving = self()
+        self.numbers = {name: value for name, value in self.fixed.items() if name not in moving}
+
+    def __call__(self):
+        found: dict[str, Any] = {}
+
+        def add(name, amount):
+            found[name] = found.get(name, self.fixed[name]) + amount
+
+        for item in self.springs:
+            (travel,) = self.travels[item.on]()
+            away = travel - item.free_position
+            add(f"{item.on}_push", -item.stiffness * away - item.cubic * away**3)
+        for item in self.pushes:
+            add(f"{item.on}_push", slider_push(item, self.solution))
+        self.places = {link: run() for link, run in self.motions.items()}
+        for item in self.others:
+            for link, force, at, couple in self.of(evaluate_load(item, self.solution)):
+                if link in self.places:
+                    turning = couple + np.imag(np.conj(at - self.at(link)[0]) * force)
+                    for part, amount in zip(PARTS, (np.real(force), np.imag(force), turning), strict=True):
+                        add(f"{link}_load_{part}", amount)
+        return found
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        x, y, cosine, sine, to_x, to_y, spin = self.places[link]
+        return x + 1j * y, cosine + 1j * sine, to_x + 1j * to_y, spin
+
+
+MAX_FOOT_ITERATIONS = 30
+
+
+class CamEquation(NamedTuple):
+    """Equation `row`: a point of a link, so far along it, stays on the cam of a group that is fixed to the crank."""
+
+    row: int
+    crank: int
+    link: int
+    along: Any
+    group: Any
+
+
+class CamDistance(NamedTuple):
+    """A distance, its derivatives by the coordinates of link and crank, x and y as one, and its second terms."""
+
+    distance: Any
+    normal: Any
+    link_turn: Any
+    crank_turn: Any
+    second: Any
+
+
+def cam_distance(at, item, rates=None):
+    """How far a follower is off its cam in a configuration, and with velocities its acceleration by them alone."""
+    k = at.model.size
+    spins = [0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link)]
+    ray, axis = (at.cosine[..., place] + 1j * at.sine[..., place] for place in (item.crank, item.link))
+    plane = at._plane(at.q)
+    arm = item.along * axis
+    apart = plane[..., item.link] + arm - plane[..., item.crank]
+    speed: Any = 0.0
+    if rates is not None:
+        moving = at._plane(rates)
+        speed = moving[..., item.link] + 1j * spins[1] * arm - moving[..., item.crank]
+    turned = at.q[..., 2 * k + item.crank]
+    if isinstance(item.group, FlatFollower):
+        return _face_distance(item, turned - at.q[..., 2 * k + item.link], apart, speed, axis, spins)
+    return _roller_distance(item, turned, (apart, speed, arm), ray, spins)
+
+
+def _face_distance(item, psi, apart, speed, axis, spins):
+    angle = psi + item.group.guide.guide_angle
+    law = item.group.cam.law(angle)
+    height, aside = apart * axis.conj(), speed * axis.conj()
+    turning, face = spins
+    second = 2.0 * face * np.imag(aside) - face**2 * height.real - law.acceleration * (turning - face) ** 2
+    return CamDistance(height.real - law.position, axis, height.imag + law.velocity, -law.velocity, second)
+
+
+def _roller_distance(item, turned, moved, ray, spins):
+    apart, speed, arm = (part * ray.conj() for part in moved)
+    disk, phi = item.group.disk, turned
+    for _ in range(MAX_FOOT_ITERATIONS):
+        centre, first, second = disk.curve(phi)
+        off = apart - centre
+        phi = phi - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
+    centre, first, second = disk.curve(phi)
+    tangent = first / np.abs(first)
+    normal = 1j * tangent
+    curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
+    turning, own = spins
+    passing = speed - 1j * turning * apart
+    rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
+    return CamDistance(
+        _dot(normal, apart - centre),
+        normal * ray,
+        _dot(normal, 1j * arm),
+        _dot(normal, -1j * apart),
+        _dot(normal, rest) + curvature * _dot(tangent, passing) ** 2,
+    )
+
+
+def _dot(a, b):
+    return (np.conj(a) * b).real
+
 
 POSITION, RATE, ACCELERATION, FORCE = range(4)
 
 
-class Sliding(NamedTuple):
+class SlotEquation(NamedTuple):
     """Equation `row`: the reference joint of one link stays on a straight slot of another.
 
     The slot runs at the angle of `way`, a complex unit vector, to the direction of its link, at `offset` to the left of
@@ -68,8 +243,8 @@ class Model:
         self.readings: dict[str, tuple[int, Any]] = {}
         self.guides: dict[str, complex] = {}
         self.cam = None
-        self.slidings: list[Sliding] = []
-        self.followings: list[Following] = []
+        self.slidings: list[SlotEquation] = []
+        self.followings: list[CamEquation] = []
         self._held: list[tuple[str, str | None, float]] = []
         *self._terms, (self._one, self._phi) = np.split(np.eye(5 * self.size + 2), np.arange(1, 6) * self.size)
         self._write()
@@ -120,7 +295,7 @@ class Model:
         offset, angle = self.numbers[f"{place}_offset"], self.numbers[f"{place}_angle"]
         ends = (item.link, item.other) if item.rod else (item.other, item.link)
         slotted, block = (self.names.index(name) for name in ends)
-        self.slidings.append(Sliding(len(self.equations), slotted, block, np.exp(1j * angle), offset))
+        self.slidings.append(SlotEquation(len(self.equations), slotted, block, np.exp(1j * angle), offset))
         self._add(item.force, 0.0 * self._one)
         ahead = angle + (np.pi if item.rod else 0.0)
         self._held.append((item.link, item.other, ahead))
@@ -146,7 +321,7 @@ class Model:
         else:
             places = self.names.index(led.body), self.names.index(led.link)
             along = self.numbers[f"{led.joint}_along"]
-            self.followings.append(Following(len(self.equations), *places, along, group))
+            self.followings.append(CamEquation(len(self.equations), *places, along, group))
         self._add(led.force, 0.0 * self._one)
 
     def _add(self, name, *equations):
@@ -169,15 +344,15 @@ class Model:
         """The library's position at one crank angle as coordinates, from which continuation starts."""
         links = self.mechanism.place(np.array(angle)).links
         x, y, ahead, aside = np.array([(*links[k].joint.position, *links[k].direction) for k in self.names], float).T
-        theta = _nearest(np.arctan2(aside, ahead), angle)
+        theta = _nearest_angle(np.arctan2(aside, ahead), angle)
         for link, other, ahead in self._held:
             place = self.names.index(link)
             wanted = ahead + (0.0 if other is None else theta[self.names.index(other)])
-            theta[place] = _nearest(theta[place], wanted)
+            theta[place] = _nearest_angle(theta[place], wanted)
         return np.concatenate([x, y, theta])
 
 
-def _nearest(angle, wanted):
+def _nearest_angle(angle, wanted):
     """The angle less or plus whole turns, next to another."""
     return angle + 2 * np.pi * np.rint((wanted - angle) / (2 * np.pi))
 
@@ -196,11 +371,11 @@ def _differences(order):
         require_one_design(solution)
 
         def way(mechanism, angle):
-            position = positions(mechanism, angle + step * offsets[:, None])
-            return assembled(
+            position = joint_positions(mechanism, angle + step * offsets[:, None])
+            return placement_from_joints(
                 mechanism,
                 angle,
-                joints_of(
+                joint_motions(
                     mechanism,
                     position[:, :, offsets.size // 2],
                     np.tensordot(first / step, position, (0, 2)),
@@ -222,14 +397,16 @@ def _spectral(solution, quantity, samples):
     if samples > angle.size:
         raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
     sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
-    closed_paths(solution.mechanism, sampled)
+    paths_over_turn(solution.mechanism, sampled)
     harmonic = 1j * np.arange((samples + 1) // 2)
     onward = np.exp(harmonic * angle[0])
 
     def way(mechanism, angle):
-        spectrum = np.fft.rfft(positions(mechanism, sampled))[..., : harmonic.size] * (onward * (angle.size / samples))
+        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * (
+            onward * (angle.size / samples)
+        )
         parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
-        return assembled(mechanism, angle, joints_of(mechanism, *parts))
+        return placement_from_joints(mechanism, angle, joint_motions(mechanism, *parts))
 
     return _approximated(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 
@@ -277,7 +454,7 @@ def _eager(model):
 
 def _compiled(model):
     """Method that computes a simpler model by a compiled loop, its fastest."""
-    return lambda solution, quantity, setting: _approximated(compiled_run(model(solution, setting), quantity))
+    return lambda solution, quantity, setting: _approximated(compiled_function(model(solution, setting), quantity))
 
 
 HARMONICS = (1, 2, 4, 6)
@@ -290,3 +467,199 @@ METHODS = (
     Method("two-mass coupler", _eager(_two_mass)),
     Method("two-mass coupler, compiled", _compiled(_two_mass)),
 )
+
+
+FRICTION_TOLERANCE = 1e-15
+"""How much forces with friction may change the last time, relative to the largest."""
+
+
+class Configuration:
+    """A model at coordinates q (..., 3k), whether they meet its equations or not, and crank angle phi (...)."""
+
+    def __init__(self, model, q, phi):
+        self.model, self.q, self.phi = model, q, np.asarray(phi)[..., None]
+        theta = q[..., 2 * model.size :]
+        self.cosine, self.sine = np.cos(theta), np.sin(theta)
+
+    @cached_property
+    def residual(self):
+        """C(q, phi)."""
+        model = self.model
+        terms = np.concatenate([self.q, self.cosine, self.sine, np.ones_like(self.phi), self.phi], axis=-1)
+        residual = terms @ model.equations.T
+        for item in model.slidings:
+            residual[..., item.row] = self._in_slot(item, self.q).imag - item.offset
+        if model.cam is not None:
+            residual[..., model.contact] = self._contact[0]
+        for item in model.followings:
+            residual[..., item.row] = cam_distance(self, item).distance
+        return residual
+
+    @cached_property
+    def jacobian(self):
+        """J(q)."""
+        model, size = self.model, self.model.size
+        jacobian = np.empty((*self.q.shape, 3 * size))
+        jacobian[...] = model.linear
+        jacobian[..., 2 * size :] += model.of_sine * self.cosine[..., None, :]
+        jacobian[..., 2 * size :] -= model.of_cosine * self.sine[..., None, :]
+        for item in model.slidings:
+            slot, way = jacobian[..., item.row, :], self._way(item)
+            slot[..., item.block], slot[..., item.slotted] = -way.imag, way.imag
+            slot[..., size + item.block], slot[..., size + item.slotted] = way.real, -way.real
+            slot[..., 2 * size + item.slotted] = -self._in_slot(item, self.q).real
+        if model.cam is not None:
+            cam, (_, normal, _) = jacobian[..., model.contact, :], self._contact
+            cam[..., model.block], cam[..., size + model.block] = normal.real, normal.imag
+        for item in model.followings:
+            row, found = jacobian[..., item.row, :], cam_distance(self, item)
+            for place, sign, turn in ((item.link, 1.0, found.link_turn), (item.crank, -1.0, found.crank_turn)):
+                row[..., place], row[..., size + place] = sign * found.normal.real, sign * found.normal.imag
+                row[..., 2 * size + place] = turn
+        return jacobian
+
+    def gamma(self, rates):
+        """What J qddot must be at constant crank speed: minus the terms of Cddot without qddot."""
+        model = self.model
+        square = rates[..., 2 * model.size :] ** 2
+        gamma = (square * self.cosine) @ model.of_cosine.T + (square * self.sine) @ model.of_sine.T
+        for item in model.slidings:
+            turning, slides = rates[..., 2 * model.size + item.slotted], self._in_slot(item, rates)
+            gamma[..., item.row] = turning * (2 * slides.real + turning * self._in_slot(item, self.q).imag)
+        if model.cam is not None:
+            gamma[..., model.contact] = self._contact[2] * np.abs(self._plane(rates)[..., model.block]) ** 2
+        for item in model.followings:
+            gamma[..., item.row] = -cam_distance(self, item, rates).second
+        return gamma
+
+    def solve(self, right, transposed=False):
+        """Solution of J or of its transpose."""
+        matrix = np.swapaxes(self.jacobian, -1, -2) if transposed else self.jacobian
+        try:
+            return np.linalg.solve(matrix, right[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            if not self.model.mechanism.change_points:
+                raise
+            name = self.model.mechanism.name
+            raise NotGivenError(f"{name} passes change points, where constraint equations are singular") from None
+
+    def corrected(self):
+        """Coordinates after one Newton iteration."""
+        return self.q - self.solve(self.residual)
+
+    def rates(self, speed):
+        """Velocities qdot."""
+        return self.solve(self.model.drive * np.ones_like(self.phi)) * np.asarray(speed)[..., None]
+
+    def accelerations(self, rates, acceleration=0.0):
+        """Accelerations qddot."""
+        return self.solve(self.gamma(rates) + self.model.drive * np.asarray(acceleration)[..., None])
+
+    def demand(self, rates, accelerations, solution):
+        """M qddot - Q: forces and moments at the reference joints that reactions and drive must supply."""
+        model, turned = self.model, self.cosine + 1j * self.sine
+        turning, turning_up = rates[..., 2 * model.size :], accelerations[..., 2 * model.size :]
+        arm = model.centre * turned
+        gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
+        force = model.mass * (self._plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
+        moment = model.inertia * turning_up + (arm.conj() * force).imag
+        for item in solution.loads:
+            if hasattr(item, "push"):
+                link, along = model.names.index(item.on), model.guides[item.on]
+                if isinstance(item, Spring):
+                    elongation = (self._plane(self.q)[..., link] * along.conjugate()).real - item.free_position
+                    push = -item.stiffness * elongation - item.cubic * elongation**3
+                else:
+                    push = slider_push(item, solution)
+                force[..., link] -= push * along
+            elif not isinstance(item, Gravity):
+                self._take(_LoadForces(self, rates).of(evaluate_load(item, solution)), force, moment)
+        return np.concatenate([force.real, force.imag, moment], axis=-1)
+
+    def _take(self, effects, force, moment):
+        """Take effects, forces at points of links with couples, from forces and moments at the reference joints."""
+        for name, applied, at, couple in effects:
+            if name in self.model.names:
+                link = self.model.names.index(name)
+                force[..., link] -= applied
+                moment[..., link] -= couple + (np.conj(at - self._plane(self.q)[..., link]) * applied).imag
+
+    def forces(self, rates, demand, solution):
+        """Reactions, complex, scalar forces and drive torque that supply a demand, and the friction they cause."""
+        readings = {name: part for name, (order, part) in self.model.readings.items() if order == FORCE}
+
+        def solve(effects):
+            force, moment = np.zeros((2, *demand.shape[:-1], self.model.size), complex)
+            self._take(effects, force, moment)
+            more = np.concatenate([force.real, force.imag, moment.real], axis=-1)
+            return self.solve(demand + more, transposed=True)
+
+        def named(multipliers):
+            parts = {name: part @ multipliers.T for name, part in readings.items()}
+            return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
+
+        rubbing = FrictionForces(_LoadForces(self, rates), solution)
+        found = named(rubbing.settled(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE))
+        return found | {name: found[name] + force for name, force in rubbing.along(found).items() if name in found}
+
+    def _plane(self, part):
+        """The x and y of all links as complex numbers."""
+        return part[..., : self.model.size] + 1j * part[..., self.model.size : 2 * self.model.size]
+
+    def _way(self, item):
+        """Direction of a slot."""
+        return item.way * (self.cosine[..., item.slotted] + 1j * self.sine[..., item.slotted])
+
+    def _in_slot(self, item, part):
+        """From the slotted link's joint to that in the slot, in coordinates q or rates, along (real) and across."""
+        plane = self._plane(part)
+        return (plane[..., item.block] - plane[..., item.slotted]) * self._way(item).conj()
+
+    @cached_property
+    def _contact(self):
+        """How far the roller centre is inside the pitch curve, the inward unit normal and the curvature there."""
+        centre = self._plane(self.q)[..., self.model.block]
+        distance = np.abs(centre)
+        ray = centre / distance
+        radius, slope, second = self.model.cam.polar(np.angle(centre), (ray.real, ray.imag))
+        lean = slope / distance
+        unit = np.sqrt(1.0 + lean * lean)
+        curvature = (unit * unit + lean * lean - second / distance) / (distance * unit**3)
+        return (radius - distance) / unit, ray * (1j * lean - 1.0) / unit, curvature
+
+
+class _LoadForces(LoadForces):
+    """What loads do in a configuration that moves at `rates`."""
+
+    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
+
+    def __init__(self, configuration, rates):
+        self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        at, index = self._at, self._at.model.names.index(link)
+        axis = at.cosine[..., index] + 1j * at.sine[..., index]
+        spin = self._rates[..., 2 * at.model.size + index]
+        return at._plane(at.q)[..., index], axis, at._plane(self._rates)[..., index], spin
+
+
+def components(model, solution, quantity, q, rates=None):
+    """Components of a quantity at positions q (N, 3k), with velocities qdot of their own or those they imply."""
+    order, coefficients = model.readings[quantity]
+    at = Configuration(model, q, solution.crank_angle)
+    found = q
+    if order >= RATE:
+        found = rates = at.rates(solution.crank_speed) if rates is None else rates
+    if order >= ACCELERATION:
+        found = at.accelerations(rates, solution.crank_acceleration)
+    if order >= FORCE:
+        force = at.forces(rates, at.demand(rates, found, solution), solution)[quantity]
+        return (force.real, force.imag) if np.iscomplexobj(force) else (force,)
+    return tuple(coefficients @ found.T)

@@ -20,18 +20,17 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..method import Method, NotGivenError, require_moving, require_one_design
-from .configurations import Configuration, components
-from .constraints import Model
+from .constraints import Configuration, Model, components
 
-STEP = np.radians(15.0)
+TABLE_STEP = np.radians(15.0)
 """Step, at most, of the table of positions from which iterations start: 24 over a turn."""
-STRIDES = 4
+CONTINUATION_STEPS = 4
 """Steps of continuation from one position of the table to the next."""
-CLOSED = 1e-9
+CLOSURE_TOLERANCE = 1e-9
 """Residual, relative to the largest coordinate, of a position that is found."""
 
 
-def modelled(solution, quantity):
+def model_of(solution, quantity):
     """Model of a solution's mechanism, which gives the quantity."""
     require_one_design(solution)
     require_moving(solution)
@@ -41,25 +40,27 @@ def modelled(solution, quantity):
     return model
 
 
-def table(model, angle):
+def position_table(model, angle):
     """Crank angles that span those given, positions q there by continuation, and velocities dq / dphi."""
     first, last = np.min(angle), np.max(angle)
-    phi, step = np.linspace(first, last, 1 + STRIDES * int(np.ceil((last - first) / STEP)), retstep=True)
+    phi, step = np.linspace(
+        first, last, 1 + CONTINUATION_STEPS * int(np.ceil((last - first) / TABLE_STEP)), retstep=True
+    )
     q, rows = model.start(first), []
     for turned in phi:
         at = Configuration(model, q, turned)
         for _ in range(4):
             at = Configuration(model, at.corrected(), turned)
-        if not np.abs(at.residual).max() < CLOSED * max(1.0, np.abs(at.q).max()):
+        if not np.abs(at.residual).max() < CLOSURE_TOLERANCE * max(1.0, np.abs(at.q).max()):
             raise NotGivenError(f"continuation finds no position of {model.mechanism.name} at {turned:.6g} rad")
         rows.append((at.q, at.rates(1.0)))
         q = at.q + step * rows[-1][1]
-    return phi[::STRIDES], *map(np.array, zip(*rows[::STRIDES], strict=True))
+    return phi[::CONTINUATION_STEPS], *map(np.array, zip(*rows[::CONTINUATION_STEPS], strict=True))
 
 
 def _prepare(solution, quantity, iterations):
-    model, angle = modelled(solution, quantity), solution.crank_angle
-    phi, position, slope = table(model, angle)
+    model, angle = model_of(solution, quantity), solution.crank_angle
+    phi, position, slope = position_table(model, angle)
     between = 0.5 * (phi[1:] + phi[:-1])
 
     def run():
@@ -82,11 +83,11 @@ without; half or twice as much does as well, 10 takes four to ten times the work
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
-def _integrating(damping, projected):
+def _integration(damping, projected):
     def prepare(solution, quantity, tolerance):
-        model, angle = modelled(solution, quantity), solution.crank_angle
+        model, angle = model_of(solution, quantity), solution.crank_angle
         _require_constant_speed(solution)
-        _, position, slope = table(model, angle)
+        _, position, slope = position_table(model, angle)
         start = np.concatenate([position[0], slope[0]])
         size = np.abs(position[0][: 2 * model.size]).max()
         scale = np.tile(np.repeat([size, 1.0], [2 * model.size, model.size]), 2)
@@ -123,6 +124,6 @@ def _require_constant_speed(solution):
 
 
 INTEGRATION_METHODS = (
-    Method("multibody integration, Baumgarte", _integrating(DAMPING, False), "tolerance", TOLERANCES),
-    Method("multibody integration, projection", _integrating(0.0, True), "tolerance", TOLERANCES),
+    Method("multibody integration, Baumgarte", _integration(DAMPING, False), "tolerance", TOLERANCES),
+    Method("multibody integration, projection", _integration(0.0, True), "tolerance", TOLERANCES),
 )

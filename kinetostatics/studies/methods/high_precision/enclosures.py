@@ -17,11 +17,11 @@ from ....machine.crank import ray
 from ....machine.guide import Guide
 from ....machine.loads import Load, ProcessForce, Table
 from ....mechanics.dynamics import Dynamics
-from ....mechanics.load_values import moving, title_of
+from ....mechanics.load_values import title_of, without_forces
 from ....mechanics.quantities import components
-from ....numbers.parameter_tree import mapped, with_fields
+from ....numbers.parameter_tree import map_numbers, replace_unchecked
 
-FEWEST_BITS, MOST_BITS = 128, 4096
+MIN_BITS, MAX_BITS = 128, 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,14 +104,14 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     >>> round(abs(float(exact[1] - float(s.balancing_torque[1]))), 9)  # N m
     0.0
     """
-    flint = library("flint")
+    flint = require_library("flint")
     require_one_design(solution)
-    bits = FEWEST_BITS
+    bits = MIN_BITS
     while True:
         with flint.ctx.workprec(bits):
             run = on_arb(flint.arb, solution)
             closing = _closing(run, solution)
-            values = _attempted(quantity, lambda run=run: components(run, quantity))
+            values = _evaluate_on_arb(quantity, lambda run=run: components(run, quantity))
             values = [np.array([flint.arb(value) for value in part], dtype=object) for part in values]
             exact = tuple(np.array([value.mid() for value in part], dtype=object) for part in values)
             middle = tuple(part.astype(float) for part in exact)
@@ -122,9 +122,9 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
             return found
         if found.largest and found.radius <= 10.0**-digits * found.largest:
             return replace(found, radius=found.radius / found.largest)
-        if bits >= MOST_BITS:
+        if bits >= MAX_BITS:
             raise NotGivenError(
-                f"{place_of(solution, int(np.argmax(radii)))}: no enclosure of {quantity} as narrow as 1e-{digits} of "
+                f"{location_text(solution, int(np.argmax(radii)))}: no enclosure of {quantity} as narrow as 1e-{digits} of "
                 f"its largest value, even with {bits} bits: it is at a limit position, or the quantity is zero "
                 "throughout"
             )
@@ -139,7 +139,7 @@ def _closing(run, solution):
         failing = np.flatnonzero(margin <= 0)
         if failing.size:
             raise NotGivenError(
-                f"{place_of(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
+                f"{location_text(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
                 f"(its closure margin is {margin[failing[0]].str(5)}), so there is nothing to certify"
             )
         closing &= margin > 0
@@ -148,23 +148,23 @@ def _closing(run, solution):
 
 def on_arb(arb, solution) -> Dynamics:
     """The solution with arb numbers in place of its own, every table and function of its loads evaluated."""
-    angle = _copied(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
-    mechanism = _copied(solution.mechanism, arb)
+    angle = _to_arb(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
+    mechanism = _to_arb(solution.mechanism, arb)
     for cam in (group.cam for group in mechanism.groups if hasattr(group, "cam")):
         what = f"cam {type(cam).__name__}"
-        for values in _attempted(what, partial(cam.polar, angle, ray(angle))):
+        for values in _evaluate_on_arb(what, partial(cam.polar, angle, ray(angle))):
             _require_exact(what, values, arb)
-    speed, acceleration = _copied((solution.crank_speed, solution.crank_acceleration), arb)
-    friction, sense = _copied((solution.friction, solution.sense), arb)
+    speed, acceleration = _to_arb((solution.crank_speed, solution.crank_acceleration), arb)
+    friction, sense = _to_arb((solution.friction, solution.sense), arb)
     idle = Dynamics(mechanism, angle, speed, acceleration, (), friction, sense)
     named = ((item, f"load {place}, {title_of(item)},") for place, item in enumerate(solution.loads, 1))
     return replace(idle, loads=tuple(_load_on_arb(arb, item, what, idle, solution) for item, what in named))
 
 
 def _load_on_arb(arb, item, what, motion, solution):
-    exact = _copied(item, arb)
+    exact = _to_arb(item, arb)
     if not isinstance(item, Load):
-        push = _attempted(what, lambda: exact.push(moving(motion)))
+        push = _evaluate_on_arb(what, lambda: exact.push(without_forces(motion)))
         _require_exact(what, push, arb)
         return ProcessForce(push, item.on)
     value = item.value_now
@@ -172,14 +172,14 @@ def _load_on_arb(arb, item, what, motion, solution):
         _require_exact(what, getattr(exact, item.VALUE, 0.0), arb)
         return exact
     if isinstance(value, Table):
-        found = value.read(motion, [np.atleast_1d(part) for part in value.pieces(solution, partial(_copied, arb=arb))])
+        found = value.read(motion, [np.atleast_1d(part) for part in value.pieces(solution, partial(_to_arb, arb=arb))])
     else:
-        found = _attempted(what, lambda: value(moving(motion)))
+        found = _evaluate_on_arb(what, lambda: value(without_forces(motion)))
     _require_exact(what, found, arb)
-    return with_fields(exact, **{item.VALUE: found})
+    return replace_unchecked(exact, **{item.VALUE: found})
 
 
-def _copied(item, arb):
+def _to_arb(item, arb):
     """The item with arb numbers in place of its own; guides through points by direction, not by its length."""
 
     def number(value):
@@ -189,11 +189,13 @@ def _copied(item, arb):
 
     def guide(own):
         if own.exact is None:
-            return with_fields(own, angle=mapped(own.angle, number), guide_offset=mapped(own.guide_offset, number))
-        offset, direction = mapped(own.guide_offset, number), _direction(own.direction, arb)
-        return with_fields(own, angle=None, guide_offset=offset, exact=direction)
+            return replace_unchecked(
+                own, angle=map_numbers(own.angle, number), guide_offset=map_numbers(own.guide_offset, number)
+            )
+        offset, direction = map_numbers(own.guide_offset, number), _direction(own.direction, arb)
+        return replace_unchecked(own, angle=None, guide_offset=offset, exact=direction)
 
-    return mapped(item, number, {Guide: guide})
+    return map_numbers(item, number, {Guide: guide})
 
 
 def _direction(pair, arb):
@@ -204,7 +206,7 @@ def _direction(pair, arb):
     return x / length, y / length
 
 
-def _attempted(what, compute):
+def _evaluate_on_arb(what, compute):
     try:
         return compute()
     except (TypeError, ValueError) as error:
@@ -221,12 +223,12 @@ def magnitude(parts):
     return np.abs(parts[0]) if len(parts) == 1 else np.hypot(*parts)
 
 
-def place_of(solution, index):
+def location_text(solution, index):
     angle = float(np.ravel(solution.crank_angle)[index])
     return f"{solution.mechanism.name} at crank angle {angle!r} rad ({np.degrees(angle):.9g} deg)"
 
 
-def library(name):
+def require_library(name):
     try:
         return importlib.import_module(name)
     except ImportError as error:

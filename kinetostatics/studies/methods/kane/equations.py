@@ -21,12 +21,11 @@ from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBod
 
 from ....machine.group import FRAME
 from ....machine.loads import Gravity
-from ..global_system.applied import Applied
-from ..method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design
-from ..structures import LINK, leading, structure
+from ..method import Method, NotGivenError, require_frictionless, require_one_design, with_numeric_side
+from ..structures import LINK_NUMBERS, cam_numbers, structure
 from .motion import PHI, SPEED, TORQUE, Motion, N, left, linear, planar, rate
 
-LARGEST = 3
+MAX_EQUATIONS_TOGETHER = 3
 """Equations, at most, that are solved together."""
 
 
@@ -77,7 +76,7 @@ class Equations(Motion):
         else:
             body.spin = own[2]
         self.speeds += own
-        mass, along, across, turning = sp.symbols([f"{link}_{part}" for part in LINK])
+        mass, along, across, turning = sp.symbols([f"{link}_{part}" for part in LINK_NUMBERS])
         position = body.joint + along * body.axis + across * left(body.axis)
         centre, frame = Point(link), ReferenceFrame(link)
         centre.set_vel(N, position.dt(N).subs(PHI.diff(), SPEED) + body.at(position))
@@ -164,7 +163,7 @@ class Equations(Motion):
             chosen = next(
                 (
                     (group, wanted)
-                    for size in range(1, LARGEST + 1)
+                    for size in range(1, MAX_EQUATIONS_TOGETHER + 1)
                     for group in combinations(open_ones, size)
                     if len(wanted := set().union(*(names for _, names in group))) == size
                 ),
@@ -185,38 +184,38 @@ class Equations(Motion):
             self.steps[name] = replaced.det(method="berkowitz") / matrix.det(method="berkowitz")
 
 
-WRITTEN = 0, 1, -1
+SUBSTITUTED_VALUES = 0, 1, -1
 """Numbers that are written into the equations."""
 
 
 @cache
-def derived(made):
+def equations_of(made):
     """Equations of a structure, solved."""
     return Equations(made).solved()
 
 
 @cache
-def compiled(made, names, written):
+def compiled_results(made, names, written):
     """Function for some results of a structure, and the names of its arguments.
 
     `written` are pairs of a parameter's name and the value that is written in.
     """
-    equations = derived(made)
+    equations = equations_of(made)
     values = {sp.Symbol(name): sp.Integer(int(value)) for name, value in written}
 
     def final(expression):
         return expression.xreplace(equations.symbols).xreplace(values)
 
     results = [final(part) for name in names for part in equations.results[name]]
-    steps = in_order({symbol: final(step) for symbol, step in equations.steps.items()}, results)
+    steps = sorted_steps({symbol: final(step) for symbol, step in equations.steps.items()}, results)
     shared, reduced = sp.cse([*steps.values(), *results], list=False)
     results = reduced[len(steps) :]
-    steps = in_order(dict(shared) | dict(zip(steps, reduced, strict=False)), results)
+    steps = sorted_steps(dict(shared) | dict(zip(steps, reduced, strict=False)), results)
     arguments = sorted({str(s) for part in (*steps.values(), *results) for s in part.free_symbols - steps.keys()})
     return sp.lambdify(arguments, results, cse=lambda parts: (list(steps.items()), parts)), arguments
 
 
-def in_order(steps, results):
+def sorted_steps(steps, results):
     """The steps that results take, each after those it takes itself."""
     ordered: dict = {}
 
@@ -230,11 +229,11 @@ def in_order(steps, results):
     return ordered
 
 
-def described(solution):
+def structure_and_numbers(solution):
     """Structure of the mechanism, and its numbers by name, without those of loads but for gravity."""
     require_one_design(solution)
     require_frictionless(solution)
-    mechanism = on_a_side(solution.mechanism)
+    mechanism = with_numeric_side(solution.mechanism)
     made, values = structure(mechanism)
     pulls = [item.vector for item in solution.loads if isinstance(item, Gravity)]
     gravity = [sum(parts) for parts in zip((0, 0), *pulls, strict=True)]
@@ -246,8 +245,8 @@ def described(solution):
         "gravity_y": gravity[1],
     }
     for group in mechanism.groups:
-        values |= leading(group, solution.crank_angle)
-    for side, link in derived(made).sides.items():
+        values |= cam_numbers(group, solution.crank_angle)
+    for side, link in equations_of(made).sides.items():
         a, b = function_of(made, (side,), values)()
         cosine, sine = solution.placement.links[link].direction
         values[side] = 1 if np.nansum(np.sign(a * sine - b * cosine)) >= 0 else -1
@@ -260,7 +259,9 @@ def function_of(made, names, values):
     It takes what is known only when it is called, by name.
     """
     plain = {name: value for name, value in values.items() if isinstance(value, int | float)}
-    function, arguments = compiled(made, names, tuple(item for item in plain.items() if item[1] in WRITTEN))
+    function, arguments = compiled_results(
+        made, names, tuple(item for item in plain.items() if item[1] in SUBSTITUTED_VALUES)
+    )
     shape = np.shape(values["crank_angle"])
     fixed = [values.get(name) for name in arguments]
 
@@ -274,18 +275,18 @@ def function_of(made, names, values):
 
 def evaluation(solution, names):
     """Function without arguments that computes results by name, as a list of components."""
-    made, values = described(solution)
-    unknown = [name for name in names if name not in derived(made).results]
+    made, values = structure_and_numbers(solution)
+    unknown = [name for name in names if name not in equations_of(made).results]
     if unknown:
         raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)}")
-    applied = Applied(solution, lambda name: function_of(made, (name,), values))
+    applied = AppliedLoads(solution, lambda name: function_of(made, (name,), values))
     run = function_of(made, names, values | applied.numbers)
     return lambda: run(**applied())
 
 
 def all_forces(solution):
     """Function that computes all reactions and the torque, components by name, with one lambdified function."""
-    forces = derived(described(solution)[0]).forces
+    forces = equations_of(structure_and_numbers(solution)[0]).forces
     run = evaluation(solution, tuple(forces))
 
     def named():

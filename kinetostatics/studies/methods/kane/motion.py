@@ -30,7 +30,7 @@ def left(vector):
     return N.z ^ vector
 
 
-def functions(*names):
+def unknown_functions(*names):
     """Unknown functions of the crank angle."""
     return [sp.Function(name)(PHI) for name in names]
 
@@ -54,7 +54,7 @@ def linear(expression, *unknowns):
 
 def circle(equations, radius, prefix, terms):
     """Radius of a pitch circle with any centre."""
-    (root,) = functions(f"root_{prefix}")
+    (root,) = unknown_functions(f"root_{prefix}")
     x, y, size = sp.symbols([f"{prefix}_{name}" for name in ("x", "y", "radius")])
     square = size**2 - (y * sp.cos(PHI) - x * sp.sin(PHI)) ** 2
     equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
@@ -63,7 +63,7 @@ def circle(equations, radius, prefix, terms):
 
 def cosine_law(equations, radius, prefix, terms):
     """Radius by the cosine law as the sawframe study has it, with a root that changes sign at the singular angle."""
-    height, root = functions(f"height_{prefix}", f"root_{prefix}")
+    height, root = unknown_functions(f"height_{prefix}", f"root_{prefix}")
     names = "mean", "amplitude", "angle", "length", "singular"
     mean, amplitude, guide, length, singular = sp.symbols([f"{prefix}_{name}" for name in names])
     angle, side = PHI - guide, sp.Symbol(f"side_{prefix}")
@@ -83,7 +83,7 @@ def harmonic(equations, radius, prefix, terms):
     equations.define(radius, sp.Add(*parts))
 
 
-def given(equations, function, prefix, terms):
+def sampled(equations, function, prefix, terms):
     """Values and derivatives that a curve gives itself."""
     value, first, second = sp.symbols([f"{prefix}_{order}" for order in range(3)])
     equations.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
@@ -91,7 +91,7 @@ def given(equations, function, prefix, terms):
     equations.derivatives(function, first, second)
 
 
-CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "given": given}
+CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "given": sampled}
 
 
 class Body:
@@ -172,7 +172,7 @@ class Motion:
             if self.slid[link].other == FRAME:
                 ways = frame.x, frame.y
         else:
-            (theta,) = functions(f"theta_{link}")
+            (theta,) = unknown_functions(f"theta_{link}")
             self.angles[link] = theta
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
@@ -211,7 +211,7 @@ class Motion:
                 position = body.joint + along * body.axis + across * left(body.axis)
                 self.places[joint] = position.express(N) if link == "crank" else position
             elif link in self.slid and self.slid[link].joint == joint:
-                (travel,) = functions(f"travel_{link}")
+                (travel,) = unknown_functions(f"travel_{link}")
                 self.travels[link] = travel
                 self.places[joint] = self._foot(self.slid[link]) + travel * body.frame.x
             else:
@@ -273,7 +273,7 @@ class Motion:
         if cam.link in self.travels:
             curve(self, self.travels[cam.link], prefix, cam.terms)
             return
-        theta, (law,) = self.angles[cam.link], functions(f"law_{cam.link}")
+        theta, (law,) = self.angles[cam.link], unknown_functions(f"law_{cam.link}")
         curve(self, law, prefix, cam.terms)
         start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
         self._turned(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))

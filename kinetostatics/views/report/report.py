@@ -1,4 +1,7 @@
-"""What is reported: machines side by side, solved at the angles that a reader can choose, and where they come from."""
+"""What is reported: machines side by side, solved at the angles that a reader can choose, and where they come from.
+
+The public door: a report of a case or of scenes, written whole or not at all.
+"""
 
 import hashlib
 from collections import Counter
@@ -12,14 +15,15 @@ import numpy as np
 from ...casefile.case import Case, load_case
 from ...errors import ParameterError
 from ...machine.loads import period_of
-from ...numbers import checks
+from ...numbers import checks, files
 from ...numbers.lazy import cached_property
 from ...results.comparison import Comparison
 from ...results.tables import extremes_by_name
 from ...solution.scene import Scene
-from ..peaks import between
+from ..canvas import angles_between
+from . import figures, html
 
-MOST = 1440
+MAX_ANGLES = 1440
 """Angles over the period that a reader can choose, at most."""
 
 
@@ -61,7 +65,7 @@ class Machine:
     def between(self):
         """The solution at 0 and at what lies between the angles to choose: extremes of tables, kinks, jumps."""
         ends = np.reshape([row.ends for row in self.extremes.values()], (-1, 2))
-        angles = between(self.solution, np.radians(ends[np.isfinite(ends).all(axis=1), 1]))
+        angles = angles_between(self.solution, np.radians(ends[np.isfinite(ends).all(axis=1), 1]))
         return self.solution.at(np.append(0.0, angles))
 
     @property
@@ -150,7 +154,7 @@ def _of_scenes(scenes, variant, title, command):
             None if isinstance(scene, Scene) else f"{name!r} must be a Scene, got a {type(scene).__name__}"
             for name, scene in scenes.items()
         ),
-        *(f"{name!r} labels several scenes; give each its own" for name in _twice(map(str, scenes))),
+        *(f"{name!r} labels several scenes; give each its own" for name in _duplicates(map(str, scenes))),
     )
     several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
     if several:
@@ -163,7 +167,7 @@ def _of_scenes(scenes, variant, title, command):
     return Subject(title or " and ".join(dict.fromkeys(_kinds(machines))), "", machines, command)
 
 
-def _twice(names):
+def _duplicates(names):
     return [name for name, count in Counter(names).items() if count > 1]
 
 
@@ -180,14 +184,14 @@ def _of_variant(name, variant, step):
     units = variant.units
     derived = variant.scene.parameters
     given = {
-        path: (_meant(path, value, derived), units[path])
+        path: (_number_or_word(path, value, derived), units[path])
         for path, value in variant.parameters.items()
         if value is not None or path in derived
     }
     return Machine(name, variant.scene, step, given, variant)
 
 
-def _meant(path, value, derived):
+def _number_or_word(path, value, derived):
     """A number; what the file has a word for, or leaves to be derived, as that number where it is one."""
     return derived.get(path, value) if value is None or isinstance(value, str) else value
 
@@ -196,5 +200,104 @@ def _step(scenes):
     """Degrees between the angles that can be chosen, of which a turn holds a whole number."""
     longest = max(period_of(scene.loads, scene.mechanism.turns) for scene in scenes)
     return next(
-        step for step in range(1, 361) if 360 % step == 0 and (step * MOST >= np.degrees(longest) or step == 360)
+        step for step in range(1, 361) if 360 % step == 0 and (step * MAX_ANGLES >= np.degrees(longest) or step == 360)
     )
+
+
+PROGRESS_DELAY = 1.0
+"""Seconds of work after which a bar appears."""
+
+
+def report(what, path, *, variant=None, title=None, pdf=None, command="", progress=False):
+    """Write a report: one HTML file that needs no other and makes no request, to read, to turn by hand and to print.
+
+    In it the mechanism turns by slider, play button or arrow keys, with its reactions as arrows; beside it stand
+    figures to zoom, values at the chosen angle, extremes, comparison with published figures, certainty, friction,
+    drive, and what the machines are made of.
+
+    Parameters
+    ----------
+    what : Case, str, path, Scene or mapping of label to Scene
+        A case, the name or path of one, or scenes; the first scene is what the others are compared with.
+    path : path
+        File to write, .html.
+    variant : str, optional
+        Of a case, only this variant beside the reference.
+    title : str, optional
+        In place of the case's title, or of the names of the mechanisms.
+    pdf : path, optional
+        File to print the report to as well, .pdf, by a browser that is installed.
+    command : str
+        What made it, as it stands in the report.
+    progress : bool
+        Whether a bar shows how far it has come, when it takes over a second.
+
+    Returns
+    -------
+    Path
+        Of the HTML file.
+
+    Raises
+    ------
+    FileError
+        A file cannot be written.
+    MissingLibraryError
+        Bokeh is not installed, or no browser for the PDF.
+    CaseError, ParameterError
+        The case or the scenes cannot be used.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> press = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(mass=50.0)), 10.0, loads=ks.ProcessForce(-2e3))
+    >>> ks.report(press, "press.html", title="Press")  # doctest: +SKIP
+    PosixPath('press.html')
+    """
+    case = _read_case(what)
+    inputs = case.files if isinstance(case, Case) else ()
+    checks.require(
+        "report",
+        files.write_problem(path, inputs=inputs, endings=(".html", ".htm")),
+        None if pdf is None else files.write_problem(pdf, inputs=inputs, endings=(".pdf",)),
+        None if title is None or (isinstance(title, str) and title.strip()) else f"title must be a text, got {title!r}",
+    )
+    figures.require_bokeh()
+    if pdf is not None:
+        html.browser()
+    subject = subject_of(case, variant, title, command)
+    from tqdm import tqdm
+
+    with tqdm(
+        desc="report",
+        total=html.PROGRESS_STEPS + (pdf is not None),
+        unit=" parts",
+        delay=PROGRESS_DELAY,
+        leave=False,
+        disable=not progress,
+    ) as bar:
+
+        def tell(text):
+            bar.set_postfix_str(text, refresh=False)
+            bar.update()
+
+        text = html.page(subject, tell)
+        with files.write_atomically(path) as temporary:
+            Path(temporary).write_text(text, encoding="utf-8", errors="replace")  # names of files may be no text
+        if pdf is not None:
+            tell("PDF")
+            with files.write_atomically(pdf) as temporary:
+                html.print_page(path, temporary)
+    return Path(path)
+
+
+def _read_case(what):
+    """The case that is meant, read; scenes as they are."""
+    if isinstance(what, Case | Scene) or hasattr(what, "items"):
+        return what
+    try:
+        return load_case(what)
+    except ParameterError:
+        raise ParameterError(
+            f"report takes a case, the name or path of one, a Scene or a mapping of label to Scene, got a "
+            f"{type(what).__name__}"
+        ) from None

@@ -1,4 +1,10 @@
-"""What a mechanism looks like, read off what its groups and loads declare: lines and plates in each pose.
+"""Signs of drawings as points to be joined: springs, dampers, arrows, blocks, hatches; NaN lifts the pen.
+
+Points are arrays (2, K, N): K corners of a sign in each of N poses; places and unit vectors are (2, N).
+
+How each kind of stroke of a shape is drawn.
+
+What a mechanism looks like, read off what its groups and loads declare: lines and plates in each pose.
 
 Machines that look alike: which move so, and what of counterweights and loads each has of its own.
 """
@@ -7,16 +13,117 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.path import Path
 
 from ..machine.group import FRAME
 from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
-from ..numbers.planar import unturned
-from . import symbols
+from ..numbers.planar import rotate_back
+from .canvas import ACCENT, INK, LOAD, STEEL
 
-THIN = 1e-3
+UP = (np.nan, np.nan)
+SPRING = (
+    (0.0, 0.0),
+    (0.15, 0.0),
+    *((0.15 + 0.7 * (turn + 0.5) / 10, (-1.0) ** turn) for turn in range(10)),
+    (0.85, 0.0),
+    (1.0, 0.0),
+)
+DAMPER = (
+    *((0.0, 0.0), (0.5, 0.0), UP, (0.5, -0.7), (0.5, 0.7), UP),
+    *((0.35, 1.0), (0.65, 1.0), (0.65, -1.0), (0.35, -1.0), UP, (0.65, 0.0), (1.0, 0.0)),
+)
+LINE = ((0.0, 0.0), (1.0, 0.0))
+ARROW = (*LINE, (0.7, 0.5), (1.0, 0.0), (0.7, -0.5))
+_HALF, _BENT = np.linspace(-2.4, 1.4, 24), np.linspace(0.0, 4.5 * np.pi, 60)
+COUPLE = np.array([*np.transpose([np.cos(_HALF), np.sin(_HALF)]), (0.42, 0.72), (0.17, 0.985), (0.32, 1.3)])
+SPIRAL = np.transpose([_BENT * np.cos(_BENT), _BENT * np.sin(_BENT)]) / _BENT[-1]
+RING = np.transpose([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
+RECTANGLE = np.array([(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)])
+
+_quarters = [Path.wedge(0, 90), Path.wedge(180, 270)]
+MASS_CENTRE_PATH = Path.make_compound_path(*_quarters)
+"""Dark quarters of the sign of a mass centre, as a marker."""
+_ticks = np.arange(-0.8, 1.01, 0.4)
+PIVOT = Path.make_compound_path(
+    Path([(0, 0), (-0.7, -1.0), (0.7, -1.0), (0, 0)]),
+    Path([(-1.0, -1.0), (1.0, -1.0)]),
+    *(Path([(x, -1.0), (x - 0.3, -1.4)]) for x in _ticks),
+)
+"""A fixed pivot on hatched ground, as a marker with the pivot at its middle."""
+
+
+def left(direction):
+    """Vectors a quarter turn counter-clockwise from those given."""
+    return np.array([-direction[1], direction[0]])
+
+
+def place_sign(shape, origin, direction, size=1.0, sense=1.0):
+    """A shape (K, 2) in axes with origin and direction (2, N), as points (2, K, N); mirrored where the sense is -1."""
+    along, across = size * np.asarray(shape, dtype=float).T[..., None]
+    return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * (sense * across)
+
+
+def span_sign(shape, start, end, width):
+    """A shape (K, 2) from start to end, across which it has a width."""
+    apart = end - start
+    length = np.hypot(*apart)
+    direction = apart / np.where(length > 0, length, 1.0)
+    along, across = np.asarray(shape, dtype=float).T[..., None]
+    return start[:, None] + apart[:, None] * along + left(direction)[:, None] * width * across
+
+
+def hatched_line(start, end, width):
+    """A straight line from start to end (2,), hatched on its right."""
+    length = np.hypot(*(end - start))
+    direction = (end - start) / (length or 1.0)
+    ticks = np.arange(0.5 * width, length, width)
+    foot = start[:, None] + direction[:, None] * ticks
+    tip = foot - width * (left(direction) + 0.6 * direction)[:, None]
+    strokes = np.stack([foot, tip, np.full_like(foot, np.nan)], axis=-1).reshape(2, -1)
+    return np.column_stack([start, end, UP, strokes])
+
+
+LINES: dict[str, dict[str, Any]] = {
+    "bar": {"color": STEEL, "lw": 2.5, "solid_capstyle": "round", "zorder": 2},
+    "slotted": {"color": STEEL, "lw": 7, "solid_capstyle": "round", "zorder": 2},
+    "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
+    "spring": {"color": INK, "lw": 1, "zorder": 2.5},
+    "damper": {"color": INK, "lw": 1, "zorder": 2.5},
+    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
+    "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
+    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
+}
+"""How each kind of stroke is drawn as a line."""
+PLATES: dict[str, dict[str, Any]] = {
+    "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
+    "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
+    "block": {"fc": STEEL, "ec": "none", "zorder": 3},
+    "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
+}
+"""How each kind of stroke is drawn as a filled shape."""
+
+
+def stroke_artist(ax, stroke, shade):
+    """What a stroke is drawn by, still empty."""
+    if stroke.kind in PLATES:
+        return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
+    return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
+
+
+def set_points(drawn, points):
+    """Give what a stroke is drawn by its points (2, K)."""
+    if isinstance(drawn, Line2D):
+        drawn.set_data(points)
+    else:
+        drawn.set_xy(points.T)
+
+
+THIN_RATIO = 1e-3
 """Breadth of a link, beside its length, up to which it is a straight bar."""
-SECTOR = np.radians(50.0)
+HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
 
@@ -57,7 +164,7 @@ class Shape:
     def slots(self):
         """Slots, each with both ends of the way of its joint, (2, 2), in the axes of its link, the nearer end first."""
         found = [(slot, _ends(self._seen(slot.link, self.turn.position(slot.joint)))) for slot in self.made.slots]
-        return [(slot, ends if slot.rod else _longer(ends, self.unit)) for slot, ends in found]
+        return [(slot, ends if slot.rod else _lengthen(ends, self.unit)) for slot, ends in found]
 
     @cached_property
     def ways(self):
@@ -93,7 +200,7 @@ class Shape:
         """Positions in the axes of a link."""
         found = self.turn.placement.links[link]
         apart = [here - there for here, there in zip(position, found.joint.position, strict=True)]
-        return np.array(np.broadcast_arrays(*unturned(apart, found.direction)))
+        return np.array(np.broadcast_arrays(*rotate_back(apart, found.direction)))
 
     @cached_property
     def rods(self):
@@ -104,20 +211,20 @@ class Shape:
         """Lines and plates of all links in the poses of a motion, the hindmost first."""
         for group in self.made.groups:
             for link, points in group.outlines.items():
-                yield Stroke("outline", _on(pose, link, points))
+                yield Stroke("outline", _link_points(pose, link, points))
         for link, corners in self.corners.items():
-            order = _in_line(corners)
+            order = _line_order(corners)
             if corners.shape[1] > 1:
                 kind = "plate" if order is None else "bar"
-                order = _around(corners) if order is None else order[[0, -1]]
-                yield Stroke(kind, _on(pose, link, corners[:, order]))
+                order = _polygon_order(corners) if order is None else order[[0, -1]]
+                yield Stroke(kind, _link_points(pose, link, corners[:, order]))
         for slot, ends in self.slots:
             yield from self._piston(pose, slot, ends) if slot.rod else self._slot(pose, slot, ends)
         for link, corners in self.corners.items():
             if link in self.made.guides or (corners.shape[1] == 1 and link not in self.rods):
                 turn, place = self._axes(pose, link)
                 size = self.unit if link in self.made.guides else 0.8 * self.unit
-                yield Stroke("block", symbols.placed(symbols.RECTANGLE, place, turn, size))
+                yield Stroke("block", place_sign(RECTANGLE, place, turn, size))
         for joint, radius in self.made.rollers.items():
             size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
             yield Stroke("roller", self._ring(pose.position(joint), size))
@@ -127,7 +234,7 @@ class Shape:
         return pose.as_vector(pose.placement.links[link].direction), pose.position(self.made.references[link])
 
     def _slot(self, pose, slot, ends):
-        line = _on(pose, slot.link, ends)
+        line = _link_points(pose, slot.link, ends)
         yield Stroke("slotted", line)
         yield Stroke("slot", line)
 
@@ -139,12 +246,12 @@ class Shape:
         bottom = joint - axis * max(0.8 * near, far - 0.6 * near)
         yield Stroke("bar", np.stack([joint, bottom], axis=1))
         barrel = [(0.0, -0.5), (0.85 * near / self.unit, -0.5), (0.85 * near / self.unit, 0.5), (0.0, 0.5)]
-        yield Stroke("plate", symbols.placed(barrel, origin, axis, self.unit))
-        yield Stroke("bar", symbols.placed([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
+        yield Stroke("plate", place_sign(barrel, origin, axis, self.unit))
+        yield Stroke("bar", place_sign([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
 
     def _ring(self, place, radius):
         level = np.broadcast_to([[1.0], [0.0]], place.shape)
-        return symbols.placed(symbols.RING, place, level, radius)
+        return place_sign(RING, place, level, radius)
 
     def counterweights(self, pose):
         """Weights of turning links whose mass centres lie beyond what they join, with the same mass centres.
@@ -156,13 +263,13 @@ class Shape:
             arm, reach = np.hypot(along, across), self.corners[name][0].max()
             turns = np.any(link.mass) and name not in self.made.guides and arm > 0.3 * self.unit
             if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
-                yield Stroke("bar", _on(pose, name, np.array([[reach, along], [0.0, across]])))
+                yield Stroke("bar", _link_points(pose, name, np.array([[reach, along], [0.0, across]])))
                 yield Stroke("counterweight", self._ring(pose.position(name), 2.0 * self.unit))
             if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
-                radius = arm * 1.5 * SECTOR / np.sin(SECTOR)
-                angle = np.arctan2(across, along) + np.linspace(-SECTOR, SECTOR, 24)
+                radius = arm * 1.5 * HALF_SECTOR / np.sin(HALF_SECTOR)
+                angle = np.arctan2(across, along) + np.linspace(-HALF_SECTOR, HALF_SECTOR, 24)
                 edge = radius * np.array([np.cos(angle), np.sin(angle)])
-                yield Stroke("counterweight", _on(pose, name, np.column_stack([(0.0, 0.0), edge])))
+                yield Stroke("counterweight", _link_points(pose, name, np.column_stack([(0.0, 0.0), edge])))
 
     @property
     def heavy(self):
@@ -181,19 +288,19 @@ class Shape:
             ahead = np.asarray(self.made.guides[sign.slider].direction, dtype=float)
             end = (self.ways[sign.slider][:, 1] + 6.0 * unit * ahead)[:, None] + 0.0 * sign.start
             start = sign.start + unit * ahead[:, None]
-            yield Stroke("spring", symbols.spanned(symbols.SPRING, start, end, 0.5 * unit))
-            yield Stroke("spring", symbols.spanned([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
+            yield Stroke("spring", span_sign(SPRING, start, end, 0.5 * unit))
+            yield Stroke("spring", span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
         elif sign.kind == "force":
             tip = sign.start + 5.0 * unit * sign.sense * sign.direction
-            yield Stroke("force", symbols.spanned(symbols.ARROW, sign.start, tip, unit))
+            yield Stroke("force", span_sign(ARROW, sign.start, tip, unit))
         elif sign.end is not None:
-            shape = {"spring": symbols.SPRING, "damper": symbols.DAMPER}.get(sign.kind, symbols.LINE)
-            yield Stroke(sign.kind, symbols.spanned(shape, sign.start, sign.end, 0.5 * unit))
+            shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
+            yield Stroke(sign.kind, span_sign(shape, sign.start, sign.end, 0.5 * unit))
         else:
-            shape = {"spiral": symbols.SPIRAL, "ring": symbols.RING}.get(sign.kind, symbols.COUPLE)
+            shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
             level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
             kind = "force" if sign.kind == "couple" else "spring"
-            yield Stroke(kind, symbols.placed(shape, sign.start, level, 1.6 * unit, sign.sense))
+            yield Stroke(kind, place_sign(shape, sign.start, level, 1.6 * unit, sign.sense))
 
     def grounds(self, loads):
         """Fixed points that something turns about or is fastened to, (2,) each."""
@@ -211,7 +318,7 @@ def _signs(item, pose):
     return item.signs(pose) if hasattr(item, "signs") else ()
 
 
-def _on(pose, link, points):
+def _link_points(pose, link, points):
     """Points (2, K) of a link in the poses, (2, K, N)."""
     return np.stack([pose.position((link, along, across)) for along, across in points.T], axis=1)
 
@@ -225,27 +332,27 @@ def _ends(points):
     return np.column_stack(sorted((far, other), key=np.linalg.norm))
 
 
-def _longer(ends, more):
+def _lengthen(ends, more):
     """A line with both ends so much farther out."""
     apart = ends[:, 1] - ends[:, 0]
     step = apart * more / (np.hypot(*apart) or 1.0)
     return ends + np.column_stack([-step, step])
 
 
-def _in_line(points):
+def _line_order(points):
     """Order of points along a straight line, the reference joint first if it is an end; None for no such line."""
     far = points[:, np.argmax(np.hypot(*points))]
     length = np.hypot(*far)
     if not length:
         return np.arange(1)
-    along, across = np.array([far, symbols.left(far)]) @ points / length
-    if np.ptp(across) > THIN * np.ptp(along):
+    along, across = np.array([far, left(far)]) @ points / length
+    if np.ptp(across) > THIN_RATIO * np.ptp(along):
         return None
     order = np.argsort(along)
     return order if order[-1] else order[::-1]
 
 
-def _around(points):
+def _polygon_order(points):
     """Order of points around their middle."""
     x, y = points - points.mean(axis=1, keepdims=True)
     return np.argsort(np.arctan2(y, x))
@@ -254,10 +361,10 @@ def _around(points):
 def whole_turn(solution):
     """The mechanism at many crank angles of the turns after which it repeats."""
     turns = solution.mechanism.turns
-    return posed(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
+    return at_angles(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
 
 
-def posed(solution, degrees):
+def at_angles(solution, degrees):
     """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
     ways = np.unique(np.sign(solution.crank_speed))
     return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
@@ -268,7 +375,7 @@ def moves_alike(solution, other):
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False
-    both = [Shape(posed(item, np.linspace(0.0, 360.0 * made.turns, 25))) for item in (solution, other)]
+    both = [Shape(at_angles(item, np.linspace(0.0, 360.0 * made.turns, 25))) for item in (solution, other)]
     here, there = ([stroke.points for stroke in shape.strokes(shape.turn)] for shape in both)
     reach = 1e-6 * both[0].size
     return len(here) == len(there) and all(
@@ -277,18 +384,18 @@ def moves_alike(solution, other):
     )
 
 
-def loads_drawn(solution, angle):
+def load_strokes(solution, angle):
     """Signs of the loads of a machine in a pose, as strokes."""
-    return list(Shape(whole_turn(solution)).signs(solution.loads, posed(solution, angle)))
+    return list(Shape(whole_turn(solution)).signs(solution.loads, at_angles(solution, angle)))
 
 
-def own_strokes(named, angle):
+def strokes_by_owner(named, angle):
     """Counterweights and signs of loads in a pose, each stroke with the labels of those that have it, in order."""
     found: list[tuple[Any, list[str]]] = []
     for name, solution in named.items():
-        weights = Shape(whole_turn(solution)).counterweights(posed(solution, angle))
-        for stroke in (*weights, *loads_drawn(solution, angle)):
-            same = (owners for other, owners in found if _same(stroke, other))
+        weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
+        for stroke in (*weights, *load_strokes(solution, angle)):
+            same = (owners for other, owners in found if _looks_same(stroke, other))
             owners = next(same, None)
             if owners is None:
                 found.append((stroke, [name]))
@@ -297,7 +404,7 @@ def own_strokes(named, angle):
     return found
 
 
-def _same(stroke, other):
+def _looks_same(stroke, other):
     """Whether two strokes are the same to the eye."""
     if stroke.kind != other.kind or stroke.points.shape != other.points.shape:
         return False

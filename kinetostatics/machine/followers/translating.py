@@ -1,0 +1,265 @@
+"""Roller follower on a cam that turns with the crank: a slider on a guide, its roller pressed outward by the cam.
+
+In the axes of the guide the roller centre is P = (s, e), with s(phi) by a law and e the offset of the guide from O.
+Seen from the cam it moves by (s' + e, -s) with the crank angle, along the pitch curve; the cam pushes across that,
+
+    (s, s' + e) / sqrt(s^2 + (s' + e)^2)
+
+so it leans from the guide by the pressure angle, tan = (s' + e) / s (Norton, *Cam Design and Manufacturing Handbook*,
+2009, chapter 7). The balance along the guide gives the contact force; of what acts along the guide, F, the crank feels
+the moment -F s', whatever the cam looks like.
+
+Flat follower on a cam that turns with the crank: a slider whose face stands across its guide.
+
+In the axes of the guide, from O, the face is at s(phi) by a law, and touches the cam where that moves along the face
+alone: at -s' across the guide, to the left, so that cam force and guide are always parallel. The surface has the radius
+of curvature s + s'', which must stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
+from ...numbers.planar import minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
+from ..cams.roller import Face, Roller
+from ..group import Output
+from ..links import Wrench
+from .follower import GUIDED_RULES, FollowerForces, GuidedFollower
+
+TERMS = {
+    "pushed": ("N", "force of the cam along the guide"),
+    "lean": ("tau", "tangent of the pressure angle"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+def roller_forces(travel, guide, load, push):
+    """Forces on the follower (kernel).
+
+    `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about P.
+    """
+    along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
+    pushed = -plus(along, push)
+    lean = plus(guide.offset, travel.first) / travel.position
+    return FollowerForces(
+        contact=pushed * sqrt(1.0 + lean * lean),
+        guide_force=-(aside + pushed * lean),
+        guide_moment=number_or_zero(minus(None, load.moment)),
+        on_follower=Wrench(rotate((pushed, pushed * lean), guide.direction), pushed * travel.first),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class RollerFollower(GuidedFollower):
+    """Follower on a straight guide whose roller runs on a cam fixed to the crank, as a law of the crank angle says.
+
+    Parameters
+    ----------
+    cam : Law
+        Coordinate of the roller centre along the guide, m, from the foot of O, by the crank angle from +x: one of
+        `laws`, or a function that gives position and three derivatives. What the cam looks like follows: `disk`.
+    guide : Guide
+        From O outward; its offset is that of the roller centre.
+    follower : Link
+        Reference joint `pin`, along the guide; springs and other loads act on it by its name.
+    pin : str
+        Name of the roller centre.
+    label : str
+        Put behind the names of link and forces of a second roller follower in one mechanism.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
+
+    Raises
+    ------
+    ParameterError
+        The law is none, or a value no machine can have; when it is solved: the roller centre comes to the foot of O.
+
+    Notes
+    -----
+    "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
+    follower would lift off. "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment"
+    (N m) about `pin`; "guide", the same force as a vector. "pressure_angle" (rad), of the contact force from the guide;
+    "cam_radius" (m), of the roller centre from O.
+    With a roller "contact_pressure" (Pa), where the force is negative on a ring around the pitch curve.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.05), follower=ks.Link(2.0))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    >>> s = ks.solve(machine, np.pi / 2, crank_speed=10.0, loads=ks.Spring(5e3, 0.0, on="follower"))
+    >>> round(float(s.balancing_torque), 9)  # against -k s s': the spring drives
+    -2.5
+    >>> round(float(np.degrees(s.measure("pressure_angle"))), 6)
+    -11.309932
+    """
+
+    roller: Roller | None = None
+
+    TRUSTED = True
+    RULES = checks.Rules(
+        "roller follower", **GUIDED_RULES, roller=checks.Optional(checks.InstanceOf(Roller, "a Roller"))
+    )
+    forces = staticmethod(forces)
+
+    @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
+
+    @property
+    def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
+        return self.roller
+
+    @property
+    def motions(self):
+        text = "of the contact force from the guide, positive with growing crank angle"
+        return {
+            "pressure_angle" + self.label: Output("rad", False, text),
+            "cam_radius" + self.label: Output("m", False, "of the pitch curve, from O to the roller centre"),
+        }
+
+    def motion(self, name, placement):
+        if name == "cam_radius" + self.label:
+            position, offset = placement.travels[self.moved].position, number_or_zero(self.guide.line.offset)
+            return sqrt(position * position + offset * offset)
+        reach, climb = self._across(placement)
+        return atan(climb / reach)
+
+    def pitch(self, law):
+        """Roller centre and two derivatives at the crank angles of a law's values, complex."""
+        along = complex(*self.guide.direction)
+        return along * (law.position + 1j * self.guide.guide_offset), along * law.velocity, along * law.acceleration
+
+    def _across(self, placement):
+        """Across the pitch curve, along the guide and to its left, not of length 1."""
+        travel = placement.travels[self.moved]
+        return travel.position, plus(self.guide.line.offset, travel.first)
+
+    def closure(self, placement):
+        """Squared cosine of the pressure angle, negative where the roller centre is behind the foot of O."""
+        reach, climb = self._across(placement)
+        return reach * abs(reach) / (reach * reach + climb * climb)
+
+    def requirement(self, placement):
+        lowest = np.min(placement.travels[self.moved].position)
+        return f"the roller centre must stay ahead of O along its guide, but its coordinate falls to {lowest:.6g} m"
+
+
+TERMS = {
+    "pushed": ("N", "force of the cam along the guide"),
+    "lever": ("b", "from the pin to the contact, to the right"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+def flat_forces(travel, guide, load, push):
+    """Forces on the follower (kernel).
+
+    `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about its pin.
+    """
+    along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
+    pushed = -plus(along, push)
+    lever = plus(guide.offset, travel.first)  # of the contact, right of the pin
+    return FollowerForces(
+        contact=pushed,
+        guide_force=-aside,
+        guide_moment=minus(minus(None, load.moment), lever * pushed),
+        on_follower=Wrench(rotate((pushed, 0.0), guide.direction), pushed * travel.first),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FlatFollower(GuidedFollower):
+    """Follower on a straight guide whose flat face, across the guide, rests on a cam fixed to the crank.
+
+    Parameters
+    ----------
+    cam : Law
+        Distance of the face from O along the guide, m, by the crank angle from +x: one of `laws`, or a function that
+        gives position and three derivatives. What the cam looks like follows: `disk`.
+    guide : Guide
+        From O outward; its offset, that of the pin, has to do with the moment on the guide alone.
+    follower : Link
+        Reference joint `pin`, along the guide; springs and other loads act on it by its name.
+    pin : str
+        Name of the point of the face on the guide.
+    label : str
+        Put behind the names of link and forces of a second follower in one mechanism.
+    face : Face, optional
+        Width and material of the face, for its contact pressure.
+
+    Raises
+    ------
+    ParameterError
+        The law is none, or a value no machine can have; when it is solved: the face comes to O.
+
+    Notes
+    -----
+    "contact_force" (N), of the cam on the face, positive outward: where it is negative the follower would lift off.
+    "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment" (N m) about `pin`; "guide",
+    the same force as a vector. "contact_place" (m), of the contact from O along the guide's left normal.
+    "curvature_radius" (m), of the cam there: where it is not positive no cam moves the follower so. With a face
+    "contact_pressure" (Pa), NaN where the follower would lift off.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> follower = ks.FlatFollower(ks.laws.cosine(0.01, 0.05), follower=ks.Link(2.0))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    >>> s = ks.solve(machine, np.pi / 2, crank_speed=10.0, loads=ks.Spring(5e3, 0.0, on="follower"))
+    >>> round(float(s.measure("contact_place")), 12), round(float(s.scalar("contact_force")), 9)
+    (0.01, 250.0)
+    """
+
+    face: Face | None = None
+
+    TRUSTED = True
+    RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.InstanceOf(Face, "a Face")))
+    forces = staticmethod(forces)
+
+    @property
+    def pressed(self):
+        """What the cam presses on: its `Face`, or None."""
+        return self.face
+
+    @property
+    def led(self):
+        return tuple(led._replace(flat=True) for led in super().led)
+
+    def relative_radius(self, name, placement, side):
+        """That of the cam; NaN where nothing touches."""
+        travel = placement.travels[self.moved]
+        return (travel.position + travel.second) * clamped_sqrt(side, 1.0)
+
+    @property
+    def motions(self):
+        return {
+            "contact_place" + self.label: Output("m", False, "of the contact, from O along the guide's left normal"),
+            "curvature_radius" + self.label: Output("m", False, "of the cam at the contact, positive where convex"),
+        }
+
+    def motion(self, name, placement):
+        travel = placement.travels[self.moved]
+        return -travel.first if name == "contact_place" + self.label else travel.position + travel.second
+
+    def pitch(self, law):
+        """Contact and two derivatives at the crank angles of a law's values, complex."""
+        along = complex(*self.guide.direction)
+        return tuple(along * (part - 1j * slope) for part, slope in pairwise(law))
+
+    def closure(self, placement):
+        """Radius of curvature of the cam beside the distance of its contact from O, squared, negative if hollow."""
+        travel = placement.travels[self.moved]
+        radius, reach = travel.position + travel.second, travel.position
+        return radius * abs(radius) / (radius * radius + reach * reach + travel.first * travel.first)
+
+    def requirement(self, placement):
+        travel = placement.travels[self.moved]
+        smallest = np.min(travel.position + travel.second)
+        return f"the cam must be convex, but its radius of curvature s + s'' falls to {smallest:.6g} m"
