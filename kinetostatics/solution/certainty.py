@@ -26,6 +26,7 @@ from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from .condition import state_of
 from .parameters import (
     Parameters,
     keep_numbers,
@@ -411,8 +412,14 @@ class Certainty(Parameters):
         found = sensitivities(program, by, state, leaves, backend)[name]
         first = {path: np.reshape(found[path] * inputs[path], (-1, *self.shape)) for path in by}
         values, rounding = (np.reshape(part, (-1, *self.shape)) for part in (values, rounding))
+        tabled = bool(program.recording.tables)  # rows of tables are read where the moved machine is
+
+        def run(moved):
+            placed = state_of(state.kind.structure, moved, state.crank_angle) if tabled else state
+            return backend.run(program, placed, moved)
+
         try:
-            terms = SecondOrderTerms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
+            terms = SecondOrderTerms(run, values, leaves, by, inputs)
             beyond = find_second_order(terms, len(by), self.crank_angle, first, rounding)
             doubt = None if beyond is None else beyond.doubt(name, quantities.unit_of(self, name), inputs)
         except ParameterError as why:  # a slider beyond its table, for one

@@ -350,7 +350,8 @@ class _Recorded:
 
 def _third_derivative(name, solution):
     """Third derivative of a cam that takes plain numbers only, (..., N), m, by central differences."""
-    cam = next(group.cam for group in solution.mechanism.groups if f"cam{group.label}" == name)
+    groups = solution.mechanism.groups
+    cam = next(group.cam for group in groups if f"cam{group.label}" == name and getattr(group, "cam", None) is not None)
     sides = solution.crank_angle + THIRD_STEP, solution.crank_angle - THIRD_STEP
     after, before = (cam.polar(angle, ray(angle))[2] for angle in sides)
     return (after - before) / (2.0 * THIRD_STEP)
@@ -374,7 +375,7 @@ def _by_differences(solution):
 
     def scene(place=None, step=0.0, turn=0.0):
         changed = [value * (1.0 + step) if own == place else value for own, value in enumerate(numbers)]
-        return _scene(structure, leaves.with_numbers(changed), angle + turn)
+        return state_of(structure, leaves.with_numbers(changed), angle + turn)
 
     def slopes(step, **change):
         after, before = (_parts(scene(**{step: side}, **change)) for side in (DIFFERENCE_STEP, -DIFFERENCE_STEP))
@@ -401,8 +402,8 @@ def _by_differences(solution):
     return plain, sizes_at
 
 
-def _scene(structure, leaves, angle):
-    """Plain scene of a structure at crank angles."""
+def state_of(structure, leaves, angle):
+    """`Dynamics` of a structure with other leaves at crank angles."""
     parts = (iter(part) for part in (leaves.numbers, leaves.tables, leaves.parts))
     mechanism, *others = unflatten(structure, *(part.__next__ for part in parts))
     return Dynamics(mechanism, angle, *others)

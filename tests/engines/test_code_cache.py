@@ -129,7 +129,9 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
 
 @pytest.mark.slow
 def test_processes_that_start_together_share_the_folder(numba, folder):
-    code = f"from kinetostatics.engines.code_cache import load; print(load({TEXT!r}, keep=True).twice(2.1))"
+    code = (
+        f"from kinetostatics.engines.code_cache import load_module; print(load_module({TEXT!r}, keep=True).twice(2.1))"
+    )
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     assert [(process.communicate()[0], process.returncode) for process in started] == [("4.2\n", 0)] * 2
