@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.group import Group, Resolved
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.precision import METHODS
 from support.every import every
 
 TURN = 2 * np.pi * np.arange(24) / 24

@@ -15,7 +15,7 @@ from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 @pytest.fixture
 def few_models(monkeypatch):
     """Of combinations, for tests of simplifications alone."""
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 10)
 
 
 def by_series(solution, order):

@@ -76,7 +76,7 @@ def test_column_named_like_an_output_is_refused(name):
 
 def engines_taken(monkeypatch):
     taken = []
-    monkeypatch.setattr(sweeps, "tried", lambda *call: taken.append(call[2]))
+    monkeypatch.setattr(sweeps, "dry_run", lambda *call: taken.append(call[2]))
     return taken
 
 

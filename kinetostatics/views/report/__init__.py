@@ -1,14 +1,10 @@
-"""A report: one HTML file in which the mechanism turns under the reader's hand, with figures and tables beside it.
+"""A report: one HTML file with the mechanism in motion, figures and tables.
 
-making      the public door: what is reported, to a file
-subject     what is reported: machines side by side, with what a case file says of them
+report      `report` writes the file; the machines side by side with their case file
 movement    drawings of the machines as data: strokes that move as rigid bodies, joints, arrows
-readings    every quantity at every angle that the reader can choose
-tables      tables as text, with units and as many digits as are known
-sections    which tables and figures a subject has
-figures     figures to zoom and read (Bokeh)
-html        all of it in the page, from its template
-printing    the page as PDF, by a browser
+tables      tables as text with units and significant digits, and every quantity at every angle
+figures     interactive figures (Bokeh)
+html        the page from its template, and its PDF by a browser
 
-The folder `page` holds the template, its style and its script.
+The folder `page` contains the template, its style and its script.
 """

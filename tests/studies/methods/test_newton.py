@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.group import MEMBERS, Group
 from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.global_system import constraints, newton
-from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import CHAINS, TURN, error, solved
 from support.machines import CLOSE, KINDS
 
