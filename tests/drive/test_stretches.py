@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.friction import driven_machine
+from kinetostatics.drive.one_dof import driven_machine
 from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, RUBBING, SMALL
 

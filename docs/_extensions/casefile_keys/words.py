@@ -128,7 +128,7 @@ def words_of(function):
         texts._two_points: "two points, pairs of length [m]",
         texts.point: "pair of length [m]",
         variants._coefficient: "number, not negative",
-        tables._ratio: f"number, {', '.join(f'`{json.dumps(word)}`' for word in tables.RATIOS)}",
+        tables._ratio: f"number, {', '.join(f'`{json.dumps(word)}`' for word in tables.NAMED_RATIOS)}",
         parts._read_point: "point: joint, place on a link, or fixed",
         parts._read_two_points: "two points",
     }.get(function, "")

@@ -109,7 +109,7 @@ def _acceleration(problem):
     driven = DrivenMachine("study", problem.scene, None, 0.0, "compiled" if numba_available() else "numpy")
 
     def acceleration(angle, speed):
-        inertia, slope, spare = driven.here(angle, speed)
+        inertia, slope, spare = driven.balance(angle, speed)
         return (spare - 0.5 * speed * speed * slope) / inertia
 
     return acceleration
