@@ -40,7 +40,7 @@ KERNELS = (
     "kinetostatics.mechanics.principal_points",
 )
 """Modules whose local variables are names."""
-GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "placement"))
+GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "kinematic_state"))
 AXES = ("x", "y")
 
 

@@ -51,7 +51,7 @@ class Dynamics(Motion):
             found = self.mechanism.resolve(self.placement, loads, along, self.friction_solver)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
-        if self.mechanism.outgrown:  # the crank's equilibrium has reactions that grow without bound
+        if self.mechanism.has_unbounded_reactions:  # the crank's equilibrium has reactions that grow without bound
             friction = {} if self.friction_solver is None else self.friction_solver.found
             found.scalars["balancing_torque"] = self._torque_with(friction)
         return found

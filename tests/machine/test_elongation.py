@@ -8,7 +8,7 @@ from support.case_files import shipped
 from support.every import every
 
 STRAIGHT = np.linspace(5.7, 6.28, 40)
-"""Crank angles at which the knuckle of the toggle press is nearly straight."""
+"""Crank angles at which the toggle of the toggle press is nearly straight."""
 ENDS = np.r_[-0.3:0.3:30j]
 WAYS = {
     "out": (ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), ENDS),
@@ -23,7 +23,7 @@ def off(found, exact):
     return max(abs(float(one - float(other))) for one, other in zip(exact, found, strict=True))
 
 
-@every("name", [*WAYS, "knuckle"])
+@every("name", [*WAYS, "toggle"])
 def test_elongation_near_dead_centre_is_exact(name, flint):
     """Its error is less than half that of their difference, where it is counted from a place near the dead centre."""
     scene, turn = shipped("toggle_press").variants["idle"].scene, STRAIGHT

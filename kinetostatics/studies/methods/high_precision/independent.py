@@ -13,8 +13,8 @@ from ....errors import NotGivenError
 from ....machine.cams.cam_roller import CamRoller
 from ....machine.cams.cams import Circle, CosineLaw, Harmonic
 from ....machine.crank import Pin
-from ....machine.followers.follower import GuidedFollower
 from ....machine.followers.swinging import SwingingFollower
+from ....machine.followers.translating import GuidedFollower
 from ....machine.group import FRAME, TRAVELS
 from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parse_passage
 from ....machine.groups.cylinder import CylinderGroup
