@@ -33,8 +33,8 @@ from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR, repeating_problem
-from ..solution.drive_and_loads import tables_over_angles
-from ..solution.parted import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
+from ..solution.parameters import tables_over_angles
+from ..solution.piecewise_turns import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
 from ..solution.scene import Scene, scene_hints
 
 MAX_SPLIT_DESIGNS = 128
