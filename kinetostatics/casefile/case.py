@@ -16,7 +16,7 @@ from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..results.comparison import Comparison
-from ..solution import slips
+from ..solution import parameters
 from ..solution.solution import Solution
 from . import build, reading, schema
 from .build import PartsError
@@ -215,7 +215,7 @@ def load_case(path) -> Case:
         warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
     for name, item in variants.items():
-        for hint in slips.plausibility_hints(item.scene.unsolved(np.zeros(1))):
+        for hint in parameters.plausibility_hints(item.scene.unsolved(np.zeros(1))):
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)

@@ -20,7 +20,7 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
 from ..numbers.units import to_si
 from ..results.bends import bent
-from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
+from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import table_limits

@@ -20,7 +20,7 @@ from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
 from ..results.bends import bent
 from ..results.means import NODES
-from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
+from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import parse_output, table_limits

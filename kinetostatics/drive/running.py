@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
-from ..solution.angles import crank_angles, hint_at_angles
+from ..solution.parameters import crank_angles, hint_at_angles
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from .energy_flow import energy_flow, zero_if_rounding

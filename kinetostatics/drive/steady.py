@@ -16,7 +16,7 @@ from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.parameter_tree import replace_unchecked
-from ..solution.angles import crank_angles
+from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
 from .one_dof import driven_machine

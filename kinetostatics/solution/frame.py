@@ -10,7 +10,7 @@ from ..mechanics.quantities import is_still, of_scene
 from ..results.turn import NEAR
 
 COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
-"""Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
+"""Order of kinds of quantities in the table, after the positions of joints; energies are left out."""
 
 
 def solution_frame(solution):

@@ -30,13 +30,13 @@ from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR, repeating_problem
-from ..solution.drive_and_loads import tables_over_angles
-from ..solution.parted import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
+from ..solution.parameters import tables_over_angles
+from ..solution.piecewise_turns import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
 from ..solution.scene import Scene, scene_hints
 
 MAX_SPLIT_DESIGNS = 128
 """Designs whose turns are split at kinks together: enough to hide the cost of a call, few enough for the memory."""
-BLOCK_VALUES = 40_000
+MAX_LOOP_VALUES = 40_000
 """Values of all quantities over designs and angles in a block of the compiled loop: a third of a core's cache."""
 PARTS_PER_THREAD = 8
 """Parts of a chunk for each thread, so that threads end at about the same time."""
@@ -107,7 +107,7 @@ def _compiled_filler(solution, outputs, count, found, threads):
     rows = [first[names.index(item.quantity)] for item in outputs]
     passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
     size = len(program.outputs), angle.shape[1]
-    block = max(1, BLOCK_VALUES // math.prod(size))
+    block = max(1, MAX_LOOP_VALUES // math.prod(size))
     step = max(block, -(-count // (PARTS_PER_THREAD * threads)))
 
     def fill(start):

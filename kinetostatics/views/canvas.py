@@ -18,7 +18,7 @@ from ..numbers import checks
 from ..numbers.formatting import parse_heading
 from ..results.extremes import extrema
 from ..results.rounding import PLACED
-from ..solution.drive_and_loads import tables_over_angles
+from ..solution.parameters import tables_over_angles
 
 
 @dataclass(frozen=True)

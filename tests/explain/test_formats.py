@@ -2,8 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, format_number, write_formula
-from kinetostatics.explain.symbols import Symbol
+from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, Symbol, format_number, write_formula
 from tests.support.every import every
 
 A, B = ("name", 0), ("name", 1)

@@ -1,9 +1,8 @@
 """Formulas: recorded arithmetic as trees, gathered as by hand, the value kept."""
 
 from kinetostatics.engines.graph import Graph, Node
-from kinetostatics.explain.formats import TEXT, write_formula
+from kinetostatics.explain.formats import TEXT, Symbol, write_formula
 from kinetostatics.explain.formulas import formula, names_in
-from kinetostatics.explain.symbols import Symbol
 from tests.support.every import every
 
 

@@ -35,7 +35,7 @@ def test_formulas_are_short_and_name_lines_before_them(name):
 
 def test_a_line_that_is_used_once_and_not_explained_is_part_of_the_formula_that_uses_it():
     _, told_lines = found(solve(SCENES["plain"], np.array(0.7)), "balancing_torque")
-    assert {line.named.kind for line in told_lines} == {"given", "told", "term"}
+    assert {line.named.kind for line in told_lines} == {"given", "protocol", "term"}
 
 
 def test_units_follow_from_those_given():

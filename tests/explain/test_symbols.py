@@ -1,7 +1,7 @@
 """Symbols: what numbers of a scene and quantities are called."""
 
 import kinetostatics as ks
-from kinetostatics.explain.symbols import Symbol, load_keys, path_symbol, quantity_symbol
+from kinetostatics.explain.formats import Symbol, load_keys, path_symbol, quantity_symbol
 from tests.support.every import every
 
 

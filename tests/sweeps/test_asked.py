@@ -83,7 +83,7 @@ def engines_taken(monkeypatch):
 def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     taken = engines_taken(monkeypatch)
-    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 200)
+    monkeypatch.setattr(sweeps, "MIN_VALUES_COMPILED", 41 * 200)
     for options in ({}, {"engine": "numpy"}, {"angles": 199}):
         sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 200} | options)
     monkeypatch.setitem(sys.modules, "numba", None)
@@ -126,7 +126,7 @@ def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
     designs = pd.DataFrame(index=range(2))
     with pytest.raises(ks.errors.NotGivenError, match=r'must not branch on values.*use engine="numpy"'):
         sweep(made, designs, ["rms O"], engine="compiled")
-    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(sweeps, "MIN_VALUES_COMPILED", 1)
     assert sweep(made, designs, ["rms O"])[FAILED].tolist() == ["", ""]
 
 

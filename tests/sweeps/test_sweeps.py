@@ -110,8 +110,8 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     found = sweep(SAW, rising(30), engine="compiled", **options)
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
     monkeypatch.setattr(numba_backend, "core_count", lambda: 2)
-    monkeypatch.setattr(chunk, "VALUES", 50)
     monkeypatch.setattr(chunk, "BLOCK_VALUES", 50)
+    monkeypatch.setattr(chunk, "MAX_LOOP_VALUES", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.reductions import parsed
-from kinetostatics.solution.parted import PiecewiseTurns
+from kinetostatics.solution.piecewise_turns import PiecewiseTurns
 
 OUTPUTS = tuple(map(parsed, ("smallest O", "mean B", "largest balancing_torque", "rms O", "range guide_force")))
 

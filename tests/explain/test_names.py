@@ -8,8 +8,8 @@ import numpy as np
 
 from kinetostatics import machine
 from kinetostatics.engines.graph import Graph
+from kinetostatics.explain.formats import Symbol
 from kinetostatics.explain.named_recording import Names
-from kinetostatics.explain.symbols import Symbol
 
 TERMS = {"wide": ("W", "a wide line"), "explained.given": ("G", "an argument that is explained")}
 
@@ -47,7 +47,7 @@ def test_the_mechanisms_name_comes_before_a_line_of_a_kernel():
     x, y = names.vector(pair, Symbol("R", owner="B"), "reaction", "N")
     assert (x, y) == tuple(pair) or (x is pair[0] and y is pair[1])
     assert names.of[pair[0]].symbol.text == "Rx_B"
-    assert names.is_told(pair[0])
+    assert names.has_own_name(pair[0])
 
 
 def test_a_second_name_is_another_number_that_is_told_from_the_first():

@@ -7,7 +7,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.explain.pages import STYLE
+from kinetostatics.explain.explanation import STYLE
 from support.chains import chain
 from support.friction_machines import Drawn
 

@@ -32,7 +32,7 @@ def test_every_quantity_is_computed_to_the_same_bits():
 def test_names_are_those_of_joints_links_loads_and_reactions():
     solution = solve(SCENES["plain, everything"], np.array(0.7))
     made, _, _ = named(solution, "balancing_torque")
-    names = {found.symbol.text for found in made.names.of.values() if found.kind == "told"}
+    names = {found.symbol.text for found in made.names.of.values() if found.kind == "protocol"}
     assert {"x_A", "y_A'", "ux_coupler", "theta_coupler''", "s_slider", "L_spring"} <= names
     assert {"rx_slider", "Px_coupler", "K_slider", "Fs_slider", "Rx_B", "F_guide", "M_guide", "M_crank", "T"} <= names
 
