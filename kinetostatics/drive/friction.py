@@ -16,7 +16,7 @@ import numpy as np
 from ..engines.numba_backend import numba_available
 from ..errors import DriveError
 from ..machine.links import Rolling, Sliding
-from ..machine.loads import is_given
+from ..machine.loads import has_no_user_code
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.brackets import find_roots
@@ -60,7 +60,7 @@ class DrivenMachineWithFriction(DrivenMachine):
         self._engine = engine
         rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
         self._solved = replace_unchecked(self.scene, friction=replace_unchecked(self.scene.friction, rubs=rubs))
-        self._asks_for_speed = not all(map(is_given, self.scene.loads))
+        self._asks_for_speed = not all(map(has_no_user_code, self.scene.loads))
         self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()

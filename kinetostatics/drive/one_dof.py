@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
-from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
+from ..machine.loads import TURN, Table, has_no_user_code, kink_sources, kinks_of, period_on, value_of
 from ..mechanics.load_values import drive_dependence, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -104,7 +104,9 @@ class DrivenMachine:
     def _asked(self):
         """Loads that are functions, each with what of the crank's drive it reads somewhere in the period."""
         motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
-        functions = [item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table)]
+        functions = [
+            item for item in self.scene.loads if not has_no_user_code(item) and not isinstance(value_of(item), Table)
+        ]
         with np.errstate(all="ignore"):
             return [(item, drive_dependence(item, motion)) for item in functions]
 
@@ -112,7 +114,7 @@ class DrivenMachine:
     def kinks(self):
         """Crank angles in (0, period) at which tables of loads have kinks, rad."""
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
-        for part in kinked(self.scene.loads):
+        for part in kink_sources(self.scene.loads):
             repeats = np.arange(0.0, self.period - ANGLE_TOLERANCE, period_on(part, self.scene.mechanism))[:, None]
             found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
         return distinct_angles(np.concatenate(found), self.period)
@@ -254,7 +256,7 @@ class DrivenMachine:
             raise AssemblyError(error.condition, error.intervals, ": a drive turns the crank all round") from None
 
     def _require_no_acceleration(self, owner):
-        if all(map(is_given, self.scene.loads)):
+        if all(map(has_no_user_code, self.scene.loads)):
             return
         angle = np.linspace(0.1, self.period, 7)
         calm, hasty = (

@@ -11,13 +11,13 @@ frozen dataclass derived from `Group`. It declares, by name,
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
     led         the joints that a cam leads, each a `Led`
-    knots       where the law of a cam bends or jumps, each a `law.Knot`
+    knots       where the law of a cam bends or jumps, each a `law.Breakpoint`
     curves      the joints that run on a curve, with what drawings call it
     rollers     radii of rollers, by the joints that are their centres
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
-    contacts    line contacts by the name of their pressure, each a `roller.Touch`
+    contacts    line contacts by the name of their pressure, each a `roller.LineContact`
     pairs       which of its links rub against what, by reaction, each a pair of `pairs`
 
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
@@ -214,7 +214,7 @@ class Group:
 
     @property
     def knots(self):
-        """Where the law of a cam that leads it bends or jumps, each a `Knot`."""
+        """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
         return ()
 
     @property
@@ -294,7 +294,7 @@ class Group:
 
     @property
     def contacts(self):
-        """Line contacts by the name of their pressure, each a `Touch`; ``relative_radius(name, placement, side)``."""
+        """Line contacts by the name of their pressure, each a `LineContact`; see `relative_radius`."""
         return {}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..engines.program import program_of
 from ..errors import NotGivenError
-from ..machine.loads import STRAIGHT
+from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
@@ -55,7 +55,7 @@ class PiecewiseTurns(NamedTuple):
     engine: str = "numpy"
 
     @classmethod
-    def of(cls, scene, outputs, angles, straight=STRAIGHT, engine="numpy"):
+    def of(cls, scene, outputs, angles, straight=KINK_TOLERANCE, engine="numpy"):
         """For some outputs, of at least so many crank angles, with loads taken as straight where they bend by less."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)

@@ -141,7 +141,7 @@ class FollowerLaw:
 
     @cached_property
     def knots(self):
-        """Where the law bends or jumps, each a `Knot`."""
+        """Where the law bends or jumps, each a `Breakpoint`."""
         return breakpoints_of(self.law)
 
     @property
