@@ -18,7 +18,7 @@ from ..engines.numba_backend import numba_available
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
-from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
+from ..machine.loads import TURN, Table, has_no_user_code, kink_sources, kinks_of, period_on, value_of
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..mechanics.load_values import drive_dependence, title_of
@@ -133,7 +133,9 @@ class DrivenMachine:
     def _function_loads(self):
         """Load functions, each with the inputs of the crank's drive that it reads somewhere in the period."""
         motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
-        functions = [item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table)]
+        functions = [
+            item for item in self.scene.loads if not has_no_user_code(item) and not isinstance(value_of(item), Table)
+        ]
         with np.errstate(all="ignore"):
             return [(item, drive_dependence(item, motion)) for item in functions]
 
@@ -141,7 +143,7 @@ class DrivenMachine:
     def kinks(self):
         """Crank angles in (0, period) at which load tables have kinks, rad."""
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
-        for part in kinked(self.scene.loads):
+        for part in kink_sources(self.scene.loads):
             repeats = np.arange(0.0, self.period - ANGLE_TOLERANCE, period_on(part, self.scene.mechanism))[:, None]
             found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
         return distinct_angles(np.concatenate(found), self.period)
@@ -269,7 +271,7 @@ class DrivenMachine:
         return state
 
     def _require_no_acceleration(self, owner):
-        if all(map(is_given, self.scene.loads)):
+        if all(map(has_no_user_code, self.scene.loads)):
             return
         angle = np.linspace(0.1, self.period, 7)
         calm, hasty = (
@@ -325,7 +327,7 @@ class DrivenMachineWithFriction(DrivenMachine):
         self._engine = engine
         rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
         self._friction_scene = replace_unchecked(self.scene, friction=replace_unchecked(self.scene.friction, rubs=rubs))
-        self._has_load_functions = not all(map(is_given, self.scene.loads))
+        self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
         self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
         self._last_solution: tuple[Any, ...] = (None,)
         self._last_solution_at_angle: Any = ()

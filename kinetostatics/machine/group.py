@@ -256,7 +256,7 @@ class Group:
 
     @property
     def knots(self):
-        """Where the law of a cam that leads it bends or jumps, each a `Knot`."""
+        """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
         return ()
 
     @property

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..engines.program import program_of
 from ..errors import NotGivenError
-from ..machine.loads import STRAIGHT
+from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
@@ -59,7 +59,7 @@ class PiecewiseTurns(NamedTuple):
     engine: str = "numpy"
 
     @classmethod
-    def of(cls, scene, outputs, angles, straight=STRAIGHT, engine="numpy"):
+    def of(cls, scene, outputs, angles, straight=KINK_TOLERANCE, engine="numpy"):
         """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)

@@ -13,7 +13,7 @@ from ..engines.jax_backend import Backend
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import ParameterError
-from ..machine.loads import by_sense, is_given, may_refuse, refusals
+from ..machine.loads import depends_on_sense, has_no_user_code, may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
@@ -263,7 +263,9 @@ class Program:
         """Whether a quantity depends on a parameter, as far as it is recorded; see `unrecorded`."""
         self._require_known((path,))
         place, _ = self._numbers[path]
-        if path == ("crank_speed" if self.scene.sense is None else "sense") and any(map(by_sense, self.scene.loads)):
+        if path == ("crank_speed" if self.scene.sense is None else "sense") and any(
+            map(depends_on_sense, self.scene.loads)
+        ):
             return True
         return self._program.recording.parameters[place] in set(needed(self._program.outputs))
 
@@ -428,7 +430,10 @@ def compile(  # noqa: A001 - the contract's name
     )
     if engine == "compiled":
         require_numba()
-    if not all(map(is_given, scene.loads)) and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1:
+    if (
+        not all(map(has_no_user_code, scene.loads))
+        and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1
+    ):
         require_pure(unchecked_solution(scene, TRIAL_ANGLES))
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     backend = Backend(engine or ("compiled" if numba_available() else "numpy"), precision, device)

@@ -13,7 +13,7 @@ from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
 from ..machine import plausibility
-from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
+from ..machine.loads import KINDS, MAX_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import SceneParts
@@ -374,10 +374,10 @@ def _shapes(scene, angle):
 def _period_problem(loads):
     """Sentence if the common period of the loads is too long, else None."""
     turns = period_of(loads) / TURN if len(loads) > 1 else 1.0
-    if turns <= MOST_TURNS:
+    if turns <= MAX_TURNS:
         return None
     each = ", ".join(f"{getattr(item, 'period', TURN) / TURN:.6g}" for item in loads)
-    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MOST_TURNS} at most"
+    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MAX_TURNS} at most"
 
 
 def _load_problems(mechanism, item):

@@ -18,7 +18,7 @@ import pandas as pd
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import STRAIGHT, TURN, refusals
+from ..machine.loads import KINK_TOLERANCE, TURN, refusals
 from ..mechanics import energy_contact
 from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import component_sizes, components, largest_term, quantity
@@ -203,7 +203,7 @@ class Job:
     threads: int
     streams: bool = False
     kinked: bool = False
-    kink_tolerance: float = STRAIGHT
+    kink_tolerance: float = KINK_TOLERANCE
     hints: tuple[HintWarning, ...] = ()
 
     @property

@@ -167,7 +167,7 @@ def test_knots_mark_jumps_of_acceleration_or_jerk():
 # Segments of a turn
 
 
-CURVES = {
+SEGMENT_MAKERS = {
     "harmonic": laws.harmonic,
     "cycloidal": laws.cycloidal,
     "modified sine": laws.modified_sine,
@@ -178,10 +178,10 @@ CURVES = {
 }
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", SEGMENT_MAKERS)
 def test_every_derivative_is_that_of_the_one_before(name):
     """By the interpolating polynomial between the knots, whose derivative is exact to rounding."""
-    segment = CURVES[name](0.2, -0.3, 1.7)
+    segment = SEGMENT_MAKERS[name](0.2, -0.3, 1.7)
     for low, high in pairwise(segment.knots):
         motion = np.polynomial.Chebyshev.interpolate(lambda x: segment(x).position, 24, [low, high])
         inner = np.linspace(low, high, 9)[1:-1]
@@ -191,10 +191,10 @@ def test_every_derivative_is_that_of_the_one_before(name):
             )
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", SEGMENT_MAKERS)
 def test_peaks_scale_with_stroke_and_angle(name):
     """Velocity by stroke / angle, acceleration by stroke / angle^2, jerk by stroke / angle^3."""
-    segment = CURVES[name](2.0, 1.5, 0.8)
+    segment = SEGMENT_MAKERS[name](2.0, 1.5, 0.8)
     found = [np.abs(part).max() for part in segment(np.linspace(0.0, 0.8, 40_001))[1:]]
     assert_allclose(found, np.array(segment.coefficients) * 0.5 / 0.8 ** np.arange(1, 4), rtol=1e-6)
 

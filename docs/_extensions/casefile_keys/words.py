@@ -104,7 +104,9 @@ def read_by(extra):
             words = words_of(said.func)
             if words:
                 return words
-    return next((by_rule(said) for said in extra if isinstance(said, checks.Pair | parts.Place | parts.Between)), "")
+    return next(
+        (by_rule(said) for said in extra if isinstance(said, checks.Pair | parts.PlaceRule | parts.PlacePairRule)), ""
+    )
 
 
 def words_of(function):

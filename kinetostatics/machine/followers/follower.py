@@ -123,7 +123,7 @@ class FollowerLaw:
 
     @cached_property
     def knots(self):
-        """Kinks and jumps of the law, each a `Knot`."""
+        """Where the law bends or jumps, each a `Breakpoint`."""
         return breakpoints_of(self.law)
 
     @property

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import CaseError, DriveError, KinetostaticsError, NotGivenError, ParameterError
-from ...mechanics.quantities import components, is_still, largest_term, of_scene, unit_of
+from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
 from ...results.comparison import left_out
@@ -125,7 +125,7 @@ def readings(machines):
 
 
 def _is_still(solution, quantity):
-    return quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio)
+    return quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio is None
 
 
 def _values(machine, solution, name):
