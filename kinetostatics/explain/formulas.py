@@ -53,7 +53,7 @@ def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
 
 
 def _is_offset(part, operation):
-    """Whether an argument only keeps a number off zero, as `elementary.apart` does, and changes no digit."""
+    """Whether an argument only keeps a number off zero, as `arithmetic.offset_from_zero` does, and changes no digit."""
     if isinstance(part, Node):
         return (
             operation == "+"

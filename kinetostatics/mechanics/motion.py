@@ -311,7 +311,7 @@ class Motion:
         """A point as the user names it, looked at closely if it is no name."""
         if isinstance(point, str):
             return self.spot(point)
-        point, problem = PLACE_RULE.taken(point, "point")
+        point, problem = PLACE_RULE.check(point, "point")
         checks.require(self.mechanism.name, problem)
         return self.spot(point)
 

@@ -29,7 +29,7 @@ def crank_angles(given, owner="solve"):
         checks.require(owner, "there are no crank angles")
     if isinstance(given, np.ndarray) and given.size:
         checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES_PER_VALUE))
-    angle, problem = ANGLE_RULE.taken(given)
+    angle, problem = ANGLE_RULE.check(given)
     checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 

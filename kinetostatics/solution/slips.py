@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ..engines.program import plausibility_test
 from ..machine import plausibility
 from ..numbers import paths
-from ..numbers.checks import Usual, usual_of
+from ..numbers.checks import PlausibleRange, plausible_range_of
 from ..numbers.parameter_tree import LeafIndex, construct_unchecked, unflatten
 from .parameters import Parameters
 
@@ -18,7 +18,7 @@ class PlausibleNumber(NamedTuple):
 
     path: str
     leaf: int
-    usual: Usual
+    usual: PlausibleRange
     is_own: bool
 
 
@@ -33,7 +33,7 @@ def plausible_numbers(kind):
     ones = _parameters_of(unflatten(kind.structure, lambda: 1.0, lambda: None, lambda: None))
     numbered, found = _parameters_of(kind.numbered), []
     for path, place in paths.places_by_path(ones).items():
-        leaf, usual = place.value(numbered), usual_of(place.rule)
+        leaf, usual = place.value(numbered), plausible_range_of(place.rule)
         if isinstance(leaf, LeafIndex) and usual:
             found.append(PlausibleNumber(path, leaf, usual, place.steps[0] == "mechanism"))
     return found

@@ -106,12 +106,8 @@ class Yoke(Group):
         couple = minus(None, block.moment)
         moment = plus(minus(couple, on.moment), dot(subtract_vectors(pin, base), way) * slot)
         force = vector_or_zero(subtract_vectors(scale_vector(-slot, rotate(way, (0.0, 1.0))), block.force))
-        found = {
-            "slot_force": slot,
-            "slot_moment": number_or_zero(couple),
-            "guide_force": guide,
-            "guide_moment": moment,
-        }
+        turning = number_or_zero(couple)
+        found = {"slot_force": slot, "slot_moment": turning, "guide_force": guide, "guide_moment": moment}
         scalars = {name + label: part for name, part in found.items()}
         return Resolved({self.on + label: force}, scalars, {self.on: Wrench(force, None)})
 

@@ -1,14 +1,6 @@
-"""Loads on the links besides inertia: weight, forces and couples, springs, dampers, and tables of their values.
+"""Loads besides inertia: weight, forces, couples, springs, dampers, and tables of their values.
 
-load        what a load is
-gravity     weight
-slider      spring and process force along a guide
-places      points of links, by which loads say where they act
-points      forces, springs and dampers at points
-torsion     couples on links
-tables      values by crank angle or travel: rows their rows, bending those that bend, crossings where they are passed
-kinked      what loads declare of their kinks and jumps
-period      turns after which loads repeat
+May import errors, numbers and the modules of `machine` that describe links and mechanisms.
 """
 
 from .gravity import Gravity
