@@ -105,7 +105,7 @@ class Guide(checks.Checked):
         (array([0.  , 0.25]), 0.25)
         """
         if guide_angle is None:
-            checks.require("guide", cls.RULES.rules["angle"].rule.taken(guide_angle)[1])
+            checks.require("guide", cls.RULES.rules["angle"].rule.check(guide_angle)[1])
         return cls(guide_angle, guide_offset)
 
     @classmethod

@@ -39,11 +39,11 @@ class GroupsRule:
             return value
         return checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
-        found = [self.rule.taken(group, "a group") for group in value]
-        found += [NAME.taken(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
+        found = [self.rule.check(group, "a group") for group in value]
+        found += [NAME.check(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
         strange = [group for group in value if not isinstance(group, Group)]
         found += [(group, f"{type(group).__name__} is not derived from {GROUP_CLASS}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)

@@ -1,4 +1,4 @@
-"""Mechanics of a scene: motion, forces, friction, assembly, principal points, quantities and their units.
+"""What the machine does: motion, forces, friction, assembly, principal points, quantities and units.
 
 May import errors, numbers, machine.
 """

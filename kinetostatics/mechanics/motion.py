@@ -311,7 +311,7 @@ class Motion:
         """Motion of a point given by the user, checked unless it is a name."""
         if isinstance(point, str):
             return self.spot(point)
-        point, problem = PLACE_RULE.taken(point, "point")
+        point, problem = PLACE_RULE.check(point, "point")
         checks.require(self.mechanism.name, problem)
         return self.spot(point)
 

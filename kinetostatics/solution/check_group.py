@@ -109,7 +109,7 @@ def check(group):
     >>> report.ok
     True
     """
-    _, problem = checks.HasMembers(MEMBERS, "a group").taken(group, "group")
+    _, problem = checks.HasMembers(MEMBERS, "a group").check(group, "group")
     checks.require("check", problem)
     if getattr(group, "passes", False):
         group = replace(group)  # its joint is moved by hand, and on no crank it has no change points

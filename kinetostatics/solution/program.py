@@ -299,7 +299,7 @@ class Program:
             number, rule = self._numbers[path]
             found = rule.quick(value)
             if found is checks.UNDECIDED:
-                found, problem = rule.taken(value, path)
+                found, problem = rule.check(value, path)
                 wrong.append(problem)
             numbers[number] = found
         if wrong:

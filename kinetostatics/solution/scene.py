@@ -336,7 +336,7 @@ def _engine(name, angle, solution):
 
 def _sense(owner, given, speed):
     """The sense of rotation, checked: +1 or -1, equal to the sign of the speed where the crank turns."""
-    sense, problem = SENSE.taken(given, "sense")
+    sense, problem = SENSE.check(given, "sense")
     ways, rates = None if problem else concrete_array(sense), concrete_array(speed)
     if ways is not None and np.any(np.abs(ways) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"

@@ -238,8 +238,8 @@ def _require_table_size(count, parameters, *problems):
     checks.require(
         "designs",
         None if whole and count > 0 else f"how many must be a whole number of at least 1, got {count!r}",
-        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} values; sweep "
-        "them in parts"
+        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} "
+        "values; sweep them in parts"
         if whole and count * parameters > MAX_TABLE_VALUES
         else None,
         *problems,

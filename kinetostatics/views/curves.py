@@ -9,7 +9,7 @@ from ..design.linkage import four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
-from ..numbers.checks import choice, require, singles
+from ..numbers.checks import choice, require, single_numbers
 from ..results.extremes import extremes
 from . import canvas
 from .canvas import (
@@ -324,7 +324,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     >>> ax.get_aspect()
     1.0
     """
-    marks = singles("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
+    marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
     ax = axes(ax)
     named = with_peaks(solutions_by_label(solutions, joint), joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}

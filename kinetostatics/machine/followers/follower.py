@@ -147,7 +147,7 @@ class LawRule:
     def quick(self, value):
         return value if type(value) is FollowerLaw else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if type(value) is FollowerLaw:
             return value, None
         problem = law_problem(value)

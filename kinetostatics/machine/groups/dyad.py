@@ -26,10 +26,10 @@ class TwoJoints:
         named = type(value) is tuple and len(value) == 2 and all(self.rule.quick(name) is name for name in value)
         return value if named and value[0] != value[1] else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
             return value, f"{field} must be the names of two joints, got {checks.shown(value)}"
-        found = [self.rule.taken(name, f"{field} {place}") for place, name in enumerate(value, 1)]
+        found = [self.rule.check(name, f"{field} {place}") for place, name in enumerate(value, 1)]
         problem = found[0][1] or found[1][1]
         if problem is None and value[0] == value[1]:
             problem = f"{field} must name two different joints, got {value[0]!r} twice"

@@ -1,13 +1,6 @@
-"""Loads on the links besides inertia: weight, forces and couples, springs, dampers, and tables of their values.
+"""Loads besides inertia: weight, forces, couples, springs, dampers, and tables of their values.
 
-load          protocol of loads, and their kinks and jumps
-gravity       weight
-slider        springs and forces along a guide
-points        forces, springs and dampers at points of links
-torsion       couples on links
-table         values by crank angle or travel; table_pieces: look-up, kinks, crossings, rounding errors
-
-May import numbers and the other modules of `machine` that describe links and their motion.
+May import errors, numbers and the modules of `machine` that describe links and mechanisms.
 """
 
 from .gravity import Gravity

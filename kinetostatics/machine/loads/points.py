@@ -34,9 +34,9 @@ class PlaceRule:
             return checks.UNDECIDED if checks.UNDECIDED in numbers else (*value[:-2], *numbers)
         return checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, str):
-            return checks.Name().taken(value, field)
+            return checks.Name().check(value, field)
         wrong = f"{field} must be {PLACE_FORMS}, got {checks.shown(value)}"
         try:
             parts = list(value)
@@ -49,7 +49,7 @@ class PlaceRule:
         if len(numbers) != 2 or any(isinstance(part, str) for part in numbers):
             return value, wrong
         of = ("along", "across") if names else ("x", "y")
-        found = [COORDINATE.taken(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
+        found = [COORDINATE.check(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
         return (*names, *(part for part, _ in found)), found[0][1] or found[1][1]
 
     def numbers(self, value):
@@ -72,10 +72,10 @@ class PlacePairRule:
         found = tuple(self.rule.quick(part) for part in value)
         return checks.UNDECIDED if checks.UNDECIDED in found else found
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
             return value, f"{field} must be a pair of points, each {PLACE_FORMS}, got {checks.shown(value)}"
-        found = [self.rule.taken(part, f"{field} {number}") for number, part in enumerate(value, 1)]
+        found = [self.rule.check(part, f"{field} {number}") for number, part in enumerate(value, 1)]
         return tuple(part for part, _ in found), "; ".join(problem for _, problem in found if problem) or None
 
     def numbers(self, value):
@@ -146,12 +146,12 @@ TERMS = {
 class ForceRule(checks.OrFunction):
     """Rule of the value of a force; the message for two components says what to write."""
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) in (int, float) for part in value):
             x, y = value
             write = f"Force({math.hypot(x, y):.6g}, direction={math.atan2(y, x):.6g}, ...)"
             return value, f"{field} is a number, its direction another; for the components {value!r} write {write}"
-        return super().taken(value, field)
+        return super().check(value, field)
 
 
 @dataclass(frozen=True, eq=False)

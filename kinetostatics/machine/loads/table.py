@@ -90,8 +90,8 @@ class Table:
             | dict.fromkeys(tuple(given)[1:], value),
             given,
             checks.choice("over", over, tuple(COLUMNS)),
-            WholeTurns().taken(period, "period")[1],
-            None if slider is None else checks.Name().taken(slider, "slider")[1],
+            WholeTurns().check(period, "period")[1],
+            None if slider is None else checks.Name().check(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
             None if slider is None or over == "travel" else 'slider is for a table over="travel"',
         )
@@ -108,7 +108,7 @@ class Table:
         checks.require("table", table_pieces.order_problem(arrays["x"], over))
         if arrays["x"][0] > arrays["x"][-1]:
             arrays = {name: values[::-1] for name, values in arrays.items()}
-        period = WholeTurns().taken(period)[0]
+        period = WholeTurns().check(period)[0]
         if over == "angle":
             checks.require("table", table_pieces.angle_problem(arrays["x"], arrays["y"], period))
             if table_pieces.repeats_first_row(arrays["x"], period):

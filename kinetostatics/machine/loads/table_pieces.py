@@ -33,7 +33,7 @@ class WholeTurns:
     def quick(self, value):
         return value if value is TURN else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         try:
             value = checks.to_plain(value, "rad")
         except checks.DimensionError as fault:

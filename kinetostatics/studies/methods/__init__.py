@@ -1,4 +1,4 @@
-"""Methods under study: other ways to the library's results, to be measured against it by `precision` and `stability`.
+"""Methods under study: other ways to the same results, to measure the library's own against them.
 
-Nothing in the library's numeric path calls them. May import the rooms above `studies`, and `simplifications`.
+May import the rooms above `studies`; no calculation of the library calls them.
 """

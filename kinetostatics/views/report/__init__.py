@@ -1,10 +1,4 @@
-"""A report: one HTML file with the mechanism in motion, figures and tables.
+"""Report: one HTML page with the moving mechanism, figures and tables; the folder `page` holds its template.
 
-report      `report` writes the file; the machines side by side with their case file
-movement    drawings of the machines as data: strokes that move as rigid bodies, joints, arrows
-tables      tables as text with units and significant digits, and every quantity at every angle
-figures     interactive figures (Bokeh)
-html        the page from its template, and its PDF by a browser
-
-The folder `page` contains the template, its style and its script.
+May import errors, numbers to casefile, and `views`.
 """
