@@ -17,7 +17,7 @@ from ..machine.loads import value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.arithmetic import read_only
-from ..numbers.checks import Usual, usual_of
+from ..numbers.checks import PlausibleRange, plausible_range_of
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis, KeptZero, LeafIndex, construct_unchecked, replace_unchecked, unflatten
 
@@ -46,7 +46,7 @@ def crank_angles(given, owner="solve"):
         checks.require(owner, "there are no crank angles")
     if isinstance(given, np.ndarray) and given.size:
         checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES_PER_VALUE))
-    angle, problem = ANGLE_RULE.taken(given)
+    angle, problem = ANGLE_RULE.check(given)
     checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 
@@ -223,14 +223,14 @@ class PlausibleNumber(NamedTuple):
     path : str
     leaf : int
         Its place among the leaves.
-    usual : Usual
+    usual : PlausibleRange
     is_own : bool
         Whether it belongs to the mechanism.
     """
 
     path: str
     leaf: int
-    usual: Usual
+    usual: PlausibleRange
     is_own: bool
 
 
@@ -247,7 +247,7 @@ def plausible_numbers(kind):
     )
     numbered, found = construct_unchecked(Parameters, **kind.numbered._asdict()), []
     for path, place in paths.places_by_path(ones).items():
-        leaf, usual = place.value(numbered), usual_of(place.rule)
+        leaf, usual = place.value(numbered), plausible_range_of(place.rule)
         if isinstance(leaf, LeafIndex) and usual:
             found.append(PlausibleNumber(path, leaf, usual, place.steps[0] == "mechanism"))
     return found
