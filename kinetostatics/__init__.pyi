@@ -22,6 +22,7 @@ from .errors import MissingLibraryError as MissingLibraryError
 from .errors import NotGivenError as NotGivenError
 from .errors import ParameterError as ParameterError
 from .errors import QuantityError as QuantityError
+from .explain.explanation import Explanation as Explanation
 from .machine.builders import cam_crank_slider as cam_crank_slider
 from .machine.builders import crank_slider as crank_slider
 from .machine.builders import four_bar as four_bar
@@ -70,7 +71,6 @@ from .results.extremes import extremes as extremes
 from .results.losses import Losses as Losses
 from .solution.certainty import Uncertainty as Uncertainty
 from .solution.check_group import check as check
-from .solution.explanation import Explanation as Explanation
 from .solution.program import Program as Program
 from .solution.program import compile as compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene as Scene

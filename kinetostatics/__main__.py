@@ -8,7 +8,7 @@ def main():
     try:
         from .signals import deferred
 
-        with deferred():  # the start of an extension module may lose it
+        with deferred():  # loading an extension module may lose the interrupt
             from .cli import main
         return main()
     except KeyboardInterrupt:

@@ -2,7 +2,7 @@
 
 
 class KinetostaticsError(Exception):
-    """Any fault the library reports on purpose; it can be copied, and sent from one process to another.
+    """Base of all errors of the library; it can be copied and pickled.
 
     Examples
     --------
@@ -19,19 +19,19 @@ class KinetostaticsError(Exception):
 
 
 def _restored(kind, arguments, state):
-    """An error with its message and attributes as they were, whatever its constructor takes."""
+    """Error with the message and attributes of a pickled one, without a call of its constructor."""
     error = kind.__new__(kind, *arguments)
     vars(error).update(state)
     return error
 
 
 class ParameterError(KinetostaticsError, ValueError):
-    """A length, mass, stiffness, angle ... that no machine can have; the message lists every one found.
+    """A length, mass, stiffness, angle ... is impossible; the message lists all of them.
 
     Attributes
     ----------
     designs : array of bool or None
-        Which designs of a batch it is about, None if all.
+        Mask of the designs of a batch with the fault; None for all.
 
     Examples
     --------
@@ -54,14 +54,14 @@ class AssemblyError(KinetostaticsError, ValueError):
     Attributes
     ----------
     intervals : tuple of (float, float)
-        Crank-angle intervals within one turn, in radians, where it does not close. The start lies in [0, 2 pi);
-        an interval that runs through 0 ends beyond 2 pi.
+        Crank-angle intervals, rad, in which the mechanism does not close. The start lies in [0, 2 pi); an interval
+        through 0 ends beyond 2 pi.
     condition : str
-        What does not hold, without the advice.
+        Violated condition, without the advice.
 
     Examples
     --------
-    A coupler as long as the crank's pin is away from the guide does not reach it all the way round.
+    The coupler is too short to reach the guide at all crank angles.
 
     >>> import numpy as np
     >>> import kinetostatics as ks
@@ -80,10 +80,10 @@ class AssemblyError(KinetostaticsError, ValueError):
 
 
 class JammingError(KinetostaticsError, ValueError):
-    """Friction holds the mechanism at some crank angles, or leaves more than one state of its forces.
+    """Friction jams the mechanism at some crank angles, or its forces are not unique.
 
-    Of a guide or pin that rubs alone this is exact. Of several joints of a group it may be so: friction is refused from
-    the bound on up to which there is surely one state of forces, whatever loads and senses of motion are.
+    The condition is exact for one guide or pin with friction. For several joints of a group it is sufficient: friction
+    is refused above the bound up to which the forces are unique for all loads and directions of motion.
 
     Attributes
     ----------
@@ -107,14 +107,14 @@ class JammingError(KinetostaticsError, ValueError):
 
 
 class DriveError(KinetostaticsError, ValueError):
-    """The machine cannot run as asked: its motor is too weak, it does not start, nothing sets its speed ...
+    """The machine cannot run: its motor is too weak, it does not start, nothing determines its speed ...
 
     Attributes
     ----------
     missing : float
-        Torque on the crank that is missing, N m; NaN where that is not what is wrong.
+        Missing torque on the crank, N m; NaN for other faults.
     crank_angle : float
-        Where, rad; NaN where it has no place.
+        Crank angle of the fault, rad; NaN if it has none.
 
     Examples
     --------
@@ -134,12 +134,12 @@ class DriveError(KinetostaticsError, ValueError):
 
 
 class DesignError(KinetostaticsError, ValueError):
-    """No machine meets what is asked of a design; the message says why, and how near the best one comes.
+    """No machine meets the limits of a design; the message gives the reason and the nearest machine.
 
     Attributes
     ----------
     values : dict of path to float, or None
-        Numbers of the nearest one, where a search was made.
+        Numbers of the nearest machine after a search.
 
     Examples
     --------
@@ -163,7 +163,7 @@ class DesignError(KinetostaticsError, ValueError):
 
 
 class QuantityError(KinetostaticsError, AttributeError):
-    """The mechanism has no such joint, link or quantity; the message lists those it has.
+    """The mechanism has no such joint, link or quantity; the message lists the existing ones.
 
     Examples
     --------
@@ -178,7 +178,7 @@ class QuantityError(KinetostaticsError, AttributeError):
 
 
 class NotGivenError(KinetostaticsError):
-    """A method cannot give this quantity of this mechanism; the message says why.
+    """A method cannot compute this quantity of this mechanism; the message gives the reason.
 
     Examples
     --------
@@ -193,7 +193,7 @@ class NotGivenError(KinetostaticsError):
 
 
 class MissingLibraryError(KinetostaticsError, ImportError):
-    """A library of an extra is not installed; the message says how to install it.
+    """An optional library is not installed; the message gives the command.
 
     Examples
     --------
@@ -204,7 +204,7 @@ class MissingLibraryError(KinetostaticsError, ImportError):
 
 
 class FileError(KinetostaticsError, OSError):
-    """A result cannot be written to this file; the message says why.
+    """A result cannot be written to this file; the message gives the reason.
 
     Examples
     --------
@@ -243,7 +243,7 @@ class CaseError(KinetostaticsError, ValueError):
 
 
 class HintWarning(UserWarning):
-    """Something looks like a slip, of units for instance; what was asked for is computed all the same.
+    """An input looks like a slip, of units for instance; it is used as given.
 
     Examples
     --------
@@ -261,16 +261,16 @@ class HintWarning(UserWarning):
 
     @property
     def hint(self):
-        """What it says, without the file, mechanism or function that is told before it."""
+        """Text without the file, mechanism or function before it."""
         return self.args[-1]
 
 
 class ConditionWarning(UserWarning):
-    """The result is right for the numbers given, but small changes of them change it much.
+    """The result is right for the given numbers, but very sensitive to them.
 
     Examples
     --------
-    Crank and coupler of one length fold at 90 degrees, where the slider may as well stay at O.
+    Crank and coupler of equal length fold at 90 degrees, where the slider may also stay at O.
 
     >>> import warnings
     >>> import kinetostatics as ks
@@ -283,7 +283,7 @@ class ConditionWarning(UserWarning):
 
 
 class CacheWarning(UserWarning):
-    """Results are right, but machine code or finished parts on disk could not be used, and are made anew.
+    """Machine code or results on disk cannot be used and are computed again; results are right.
 
     Examples
     --------

@@ -7,11 +7,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def deferred():
-    """SIGINT and SIGTERM take effect when the block ends, not inside it.
+    """SIGINT and SIGTERM take effect at the end of the block.
 
-    Python raises `KeyboardInterrupt` wherever it stands. In a callback from C (LLVM makes some) or in ``__del__`` an
-    exception is printed and lost, and the program goes on. Signals without a handler in Python stay as they are, and
-    so does everything in threads besides the main one, which receive no signals.
+    Inside a callback from C (LLVM has some) or ``__del__`` Python prints and loses a `KeyboardInterrupt`, and the
+    program goes on. Signals without a handler in Python, and threads other than the main one, are unchanged.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -129,11 +129,11 @@ def test_help_starts_with_what_to_call_first():
     shown = "\n".join(text.splitlines()[:FIRST_SCREEN])
     assert "Call first" in shown
     assert all(call in shown for call in ("import kinetostatics as ks", "ks.crank_slider(", ".solve(", "ks.extremes("))
-    assert text.index("Call first") < text.index("load_case") < text.index("Rooms")
+    assert text.index("Call first") < text.index("load_case") < text.index("The table of rooms")
 
 
 def test_help_names_every_public_module():
-    shown = ks.__doc__.partition("Rooms")[0]
+    shown = ks.__doc__.partition("The table of rooms")[0]
     assert all(re.search(rf"\b{name}\b", shown) for name in modules())
 
 

@@ -1,4 +1,4 @@
-"""Case files: what they may hold, how they are read, and the machines built of them.
+"""Case files: their schema, reading them, and the machines they describe.
 
-May import all rooms above: numbers to studies.
+May import errors, numbers to studies.
 """

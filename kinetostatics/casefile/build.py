@@ -1,10 +1,7 @@
-"""Build: a validated variant made a scene, with the counterweights that balance it.
+"""Scene of a validated variant: mechanism, loads, friction, counterweights, and the files beside the case file.
 
-Chains and loads: groups and loads of any kind, made of their tables.
-
-Pieces of mechanisms, made of their tables: links, guides, cams; and many of them at once, with all that is wrong.
-
-What designs may vary: paths into a variant of a case file, as in scenes: "spring.stiffness", "slider2.mass".
+`places_by_path` gives the numbers that designs may vary, by paths as in scenes: "spring.stiffness", "slider2.mass".
+`collect` builds many parts and reports the faults of all.
 """
 
 import typing
@@ -28,30 +25,29 @@ from ..numbers.files import read_columns
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
 from . import schema
-from .schema import MADE_OF, Table
 
 COMPONENTS = {"x": 0, "y": 1, "along": 0, "across": 1}
-"""Names of the components of a pair."""
+"""Index by name of a component of a pair."""
 GUIDE_KEYS = ("guide_angle", "guide_offset")
-"""What two points of the guide fix, if they are given."""
+"""Keys that two points of the guide replace."""
 
 
 class NumberPlace(NamedTuple):
-    """Where a number stands in a validated table: fields and numbers of items, from the outermost; and its unit."""
+    """Place of a number in a validated table: fields and item indices from the outermost, and its SI unit."""
 
     steps: tuple[str | int, ...]
     unit: str
 
 
 def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
-    """Place by path of all numbers in a validated table that can be varied; a label goes behind the first name."""
-    names = getattr(MADE_OF.get(type(table)), "PATHS", {})
+    """Place by path of all numbers that can vary in a validated table; a label is appended to the first name."""
+    names = getattr(schema.MADE_OF.get(type(table)), "PATHS", {})
     found: dict[str, NumberPlace] = {}
     for name, field in type(table).model_fields.items() if not _is_in_file(table) else ():
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
-        if isinstance(value, tuple) and value and isinstance(value[0], Table):
+        if isinstance(value, tuple) and value and isinstance(value[0], schema.Table):
             inner = _places_in_parts(table, value)
         elif isinstance(value, dict):
             inner = {
@@ -67,11 +63,11 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
 
 
 def _places_in_parts(table, parts):
-    """Those of groups or loads; the second load of a kind is numbered so, after one that has a table of its own."""
+    """Places in groups or loads; from the second load of a kind on, its number is appended."""
     found: dict[str, NumberPlace] = {}
     counts: dict[str, int] = {}
     for number, part in enumerate(parts):
-        named = getattr(MADE_OF[type(part)], "PATH", "")
+        named = getattr(schema.MADE_OF[type(part)], "PATH", "")
         counts[named] = counts.get(named, int(bool(named and getattr(table, named, None)))) + 1
         again = str(counts[named]) if counts[named] > 1 else ""
         label = getattr(part, "label", getattr(part, "name", ""))
@@ -81,7 +77,7 @@ def _places_in_parts(table, parts):
 
 
 def _places_in_value(table, name, value, field, path):
-    if isinstance(value, Table):
+    if isinstance(value, schema.Table):
         return places_by_path(value, f"{path}.")
     meant = _unit_or_rule(field)
     if hasattr(meant, "numbers"):
@@ -95,46 +91,46 @@ def _places_in_value(table, name, value, field, path):
 
 
 def _file_of(table):
-    """Name of the file in which the numbers are that a table stands for, or None."""
+    """Name of the file with the numbers of a table, or None."""
     found = (getattr(table, key, None) for key in ("file", "table"))
     return next((name for name in found if name is not None), None)
 
 
 def _is_in_file(table):
-    """Whether a table stands for numbers in a file."""
+    """Whether the numbers of a table are in a file."""
     return _file_of(table) is not None
 
 
 def _unit_or_rule(field):
-    """SI unit of a field, or the rule of its numbers, from its annotation; None if it is no number."""
+    """SI unit of a field, or the rule of its numbers, from its annotation; None for other fields."""
     candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
     found = (item for metadata in candidates for item in metadata if isinstance(item, str) or hasattr(item, "numbers"))
     return next(found, None)
 
 
 def unit_at(table, keys):
-    """SI unit of the field that keys lead to."""
+    """SI unit of the field at these keys."""
     return _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
 
 
 def value_at(table, steps):
-    """Value at a place of a validated table: a number in SI, or the word that stands there."""
+    """Value in a validated table: a number in SI, or the word in its place."""
     for step in steps:
         table = table[step] if isinstance(step, int) or isinstance(table, dict) else getattr(table, step)
     return table
 
 
 def with_values(table, values: dict):
-    """Copy of a validated table with values by steps, as they are: numbers or arrays of designs."""
+    """Copy of a validated table with values by steps, unchecked: numbers or arrays of designs."""
     return tree.with_values(table, values, lambda part, **fields: part.model_copy(update=fields))
 
 
 def named_files(table, keys=()):
-    """Keys that lead to each table that stands for numbers in a file, that table, and the file's name."""
+    """Keys, table and file name of each table whose numbers are in a file."""
     if isinstance(table, tuple):
         for number, part in enumerate(table):
             yield from named_files(part, (*keys, number))
-    elif isinstance(table, Table):
+    elif isinstance(table, schema.Table):
         if _is_in_file(table):
             yield keys, table, _file_of(table)
         for name in type(table).model_fields:
@@ -142,7 +138,7 @@ def named_files(table, keys=()):
 
 
 class PartsError(KinetostaticsError, ValueError):
-    """What is wrong with parts of a variant, pairs of the keys that lead there and a sentence."""
+    """Faults of parts of a variant, pairs of keys and sentence."""
 
     def __init__(self, problems):
         self.problems = tuple(problems)
@@ -150,7 +146,7 @@ class PartsError(KinetostaticsError, ValueError):
 
 
 def collect(makers):
-    """What functions return, by their keys; all problems that they raise in one error."""
+    """Results of functions by their keys; one `PartsError` with all faults they raise."""
     found, problems = {}, []
     for keys, make in makers:
         try:
@@ -165,7 +161,7 @@ def collect(makers):
 
 
 def build_link(table, length=None):
-    """Link of its table; the length of one between two joints tells where its middle is."""
+    """Link of its table; `length` is the distance of its two joints, m, for a centre at mid-length."""
     centre = table.centre
     if isinstance(centre, str):
         if length is None:
@@ -178,7 +174,7 @@ def build_link(table, length=None):
 
 
 def build_guide(table):
-    """Guide of a table that has its keys."""
+    """Guide of a table with keys of a guide."""
     if table.guide_through is None:
         angle, offset = (0.0 if value is None else value for value in (table.guide_angle, table.guide_offset))
         return Guide.at(angle, offset)
@@ -188,7 +184,7 @@ def build_guide(table):
 
 
 def build_cam(table, read, guide_angle):
-    """Cam of its table, or as `read` from its file."""
+    """Cam of its table; `read` is the sampled cam of a file."""
     if isinstance(table, schema.SampledTable):
         return read
     if isinstance(table, schema.CosineLawTable):
@@ -227,7 +223,7 @@ def _friction_pair(table, joint, mechanism):
 
 
 def _chain(table, tabulated):
-    """Mechanism of a variant that lists its groups."""
+    """Mechanism of a variant with a list of groups."""
     crank = Crank(table.crank_length, build_link(table.crank, table.crank_length))
     angle = _guide_angle(table.groups)
     groups = collect(
@@ -238,13 +234,13 @@ def _chain(table, tabulated):
 
 
 def _guide_angle(groups):
-    """Angle of the first guide whose slider hangs on A: what a cam with a law of its own is cut for."""
+    """Angle of the first guide with a slider at A, rad: direction of a cam with a law."""
     guides = (build_guide(part) for part in groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
     return next(guides, Guide()).guide_angle
 
 
 def _group(table, cam, guide_angle):
-    """Group of its table; centres at mid-length follow from the bars it has without them."""
+    """Group of its table; centres at mid-length follow from the lengths of its bars."""
     kind = schema.MADE_OF[type(table)]
     values = {name: getattr(table, name) for name in type(table).model_fields if name in kind.RULES.rules}
     links = {name: part for name, part in values.items() if isinstance(part, schema.LinkTable)}
@@ -265,7 +261,7 @@ def _at_middle(table):
 
 
 def _listed_loads(table, tabulated, mechanism):
-    """Loads of a variant that it lists, looked at one by one."""
+    """Loads in the list of a variant, with the faults of all."""
     found = collect(
         (
             ("loads", number),
@@ -292,7 +288,7 @@ def _load(table, number, tabulated, mechanism, crank_speed):
 
 
 def read_files(table, folder):
-    """What a validated variant has in files, by the keys that lead there: cams, and values of loads."""
+    """Cams, motors and values of loads in the files of a validated variant, by keys."""
     found = list(named_files(table))
     return collect(
         (keys, lambda part=part, keys=keys, name=name: _read(folder / name, part, table, keys))
@@ -301,7 +297,7 @@ def read_files(table, folder):
 
 
 def without_unreadable(table, wrong):
-    """A validated variant without what could not be read at some keys, or None, as without its cam."""
+    """A validated variant without the unreadable files at these keys; None if it needs one of them."""
     values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(value_at(table, keys), schema.ValuesTable)}
     values |= {keys: None for keys in wrong if isinstance(value_at(table, keys), schema.ProcessForceTable)}
     values |= {keys[:1]: None for keys in wrong if isinstance(value_at(table, keys), schema.TorqueTable)}
@@ -309,7 +305,7 @@ def without_unreadable(table, wrong):
 
 
 def _read(path, part, table, keys):
-    """Cam, motor or values in a file that a part of a table names."""
+    """Cam, motor or values of a load in the file of a part."""
     if isinstance(part, schema.TorqueTable):
         columns = read_columns(path, {"speed": "rad/s", "torque": "N m"})
         try:
@@ -330,7 +326,7 @@ def _read(path, part, table, keys):
 
 
 def build_scene(table, tabulated):
-    """Scene of a validated variant with what it has in files, and how it was balanced, or None."""
+    """Scene of a validated variant with the contents of its files, and its balancing or None."""
     mechanism = _mechanism(table, tabulated)
     balanced = _balance(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
@@ -340,7 +336,7 @@ def build_scene(table, tabulated):
 
 
 def require_table_range(table, solution):
-    """Raise an error where a table over travel does not reach as far as its slider."""
+    """Raise `PartsError` if the slider leaves the range of a table over travel."""
     own = len(solution.loads) - len(table.loads)
     read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
     collect(
@@ -414,7 +410,7 @@ def _balance(mechanism, table):
 
 
 def _own_loads(table, tabulated):
-    """Loads that have a table of their own."""
+    """Gravity, spring and process force, which have tables of their own."""
     if table.gravity is not None:
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)

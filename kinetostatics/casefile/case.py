@@ -1,4 +1,4 @@
-"""Case files: TOML with units as text, to scenes ready to solve; every problem of a file reported at once."""
+"""Case: a checked case file, its variants and designs; `load_case` reports all faults of a file at once."""
 
 import re
 import typing
@@ -16,7 +16,7 @@ from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..results.comparison import Comparison
-from ..solution import slips
+from ..solution import parameters
 from ..solution.solution import Solution
 from . import build, reading, schema
 from .build import PartsError
@@ -27,7 +27,7 @@ from .variant import NamedItems, Variant, make_variant
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
 CAM_FORCE = ("smallest cam force", "largest cam force")
-"""Rows of the comparison that variants without a cam lack."""
+"""Rows of the comparison for variants with a cam only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +39,12 @@ class Case:
     title, source : str
     path : Path
     reference : str
-        Variant the others are compared with.
+        Variant with which the others are compared.
     variants : mapping of name to Variant
     tolerances : mapping of parameter to text
-        How parameters spread, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
+        Distributions of parameters, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     designs : mapping of name to Design
-        What the file wants to be found; `.find()` does.
+        Searches that the file describes; `.find()` runs one.
 
     Examples
     --------
@@ -73,7 +73,7 @@ class Case:
 
     @property
     def files(self):
-        """All files that it is made from, a list of paths."""
+        """Paths of the case file and all files it reads, a list."""
         return [self.path, *(path for variant in self.variants.values() for path in variant.files)]
 
     def variant(self, name) -> Variant:
@@ -81,7 +81,7 @@ class Case:
         return self.variants[name]
 
     def solve(self, name, angles=720) -> Solution:
-        """Solution of a variant at so many crank angles, evenly over the period of its loads from 0, end excluded.
+        """Solution of a variant at this number of crank angles, even over the period of its loads, end excluded.
 
         Examples
         --------
@@ -96,7 +96,7 @@ class Case:
         return Comparison(self.solve(reference), self.solve(balanced), (reference, balanced))
 
     def comparison_table(self, balanced, reference=None):
-        """Table of dynamic coefficients with the published figures beside ours, as a pandas DataFrame.
+        """Table of dynamic coefficients with a column of published figures, a pandas DataFrame.
 
         Examples
         --------
@@ -108,7 +108,7 @@ class Case:
         return self.with_published(self.compare(self.reference if reference is None else reference, balanced).frame())
 
     def with_published(self, table):
-        """A table of `Comparison.frame`, the published figures in a column behind it if there are any.
+        """A table of `Comparison.frame` with a last column of published figures, if there are any.
 
         Examples
         --------
@@ -121,7 +121,7 @@ class Case:
         return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
 
     def published_of(self, rows):
-        """Published figures by row, each with what it is in brackets; `CaseError` for one that has no row here."""
+        """Published figures by row, each with its kind in brackets; `CaseError` for an unknown row."""
         printed = {
             quantity: f"{text} ({column})"
             for column in ("ratio", "value")
@@ -133,7 +133,7 @@ class Case:
         return printed
 
     def _row_problem(self, quantity, rows):
-        """What is wrong with the row that a published figure belongs to; one that other variants have is right."""
+        """Fault of the row of a published figure, or None; rows of any variant are right."""
         if quantity in rows or re.fullmatch(r"torque extremum [1-9][0-9]?", quantity):
             return None
         reactions = (
@@ -166,18 +166,18 @@ def load_case(path) -> Case:
     Parameters
     ----------
     path : str or path
-        A TOML file, or the name of a shipped case ("sawframe_2r63"). A file of that very name, without ending, is meant
-        by a path with a folder ("./sawframe_2r63") or a `pathlib.Path`.
+        A TOML file, or the name of a shipped case ("sawframe_2r63"). Write a path with a folder ("./sawframe_2r63") or
+        a `pathlib.Path` for a file of that name without ending.
 
     Returns
     -------
     Case
-        With all that its file and the tables beside it hold; they are not read again.
+        With the contents of all its files; they are not read again.
 
     Raises
     ------
     CaseError
-        The file is missing, unreadable or wrong; the message lists every problem with its key.
+        The file is missing, unreadable or wrong; the message lists all faults with their keys.
 
     Warns
     -----
@@ -196,7 +196,7 @@ def load_case(path) -> Case:
     286772 N
     """
     path, raw = reading.read_toml(reading.find_case(path))
-    head, problems = schema.validated(schema.CaseTable, raw, lambda keys: keys)
+    head, problems = schema.validate(schema.CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
     common = raw.get("common", {})
@@ -215,7 +215,7 @@ def load_case(path) -> Case:
         warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
     for name, item in variants.items():
-        for hint in slips.plausibility_hints(item.scene.unsolved(np.zeros(1))):
+        for hint in parameters.plausibility_hints(item.scene.unsolved(np.zeros(1))):
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
@@ -228,7 +228,7 @@ def _name_variants(path, variants):
 
 
 def _read_variant(name, own, common, folder, problems):
-    """The variant, or None with what is wrong added to the problems."""
+    """The variant, or None; appends its faults to `problems`."""
     merged = reading.inherit(common, own)
 
     def place(keys):
@@ -239,7 +239,7 @@ def _read_variant(name, own, common, folder, problems):
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
         problems += _kind_problems(kind, merged, place)
         return None
-    table, found = schema.validated(schema.VARIANTS[kind], merged, place)
+    table, found = schema.validate(schema.VARIANTS[kind], merged, place)
     problems += found
     if table is None:
         return None
@@ -274,9 +274,9 @@ def _read_variant(name, own, common, folder, problems):
 
 
 def _kind_problems(kind, merged, place):
-    """What is wrong with a variant of no kind there is; if it is clear which is meant, with the rest of it too."""
+    """Faults of a variant of an unknown mechanism, also of its other keys if a mechanism is near."""
     path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
     wrong = [f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS))]
     if meant is None:
         return wrong
-    return wrong + schema.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
+    return wrong + schema.validate(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]

@@ -1,7 +1,4 @@
-"""The designs of a case file: what is wrong with them, and the search that each describes.
-
-The tolerances of a case file: what is wrong with them, and units that look like slips.
-"""
+"""Designs of a case file, the searches they describe, and the faults of designs and tolerances."""
 
 from dataclasses import dataclass, field, fields
 from typing import Any
@@ -22,22 +19,22 @@ from ..numbers.units import base_factor
 from . import schema
 
 CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
-"""Keys of a torque-free cam as `torque_free_cam` takes them."""
+"""Keys of a torque-free cam that are arguments of `torque_free_cam`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What a case file wants to be found.
+    """A search that a case file describes.
 
     Attributes
     ----------
     name : str
-        Under which what is found is written as a variant.
+        Name of the variant with the result.
     source, reference : str
-        Variants: what the search begins with, and what ratios refer to.
+        Variants at the start of the search, and in ratios.
     kind : "optimum", "torque-free-cam" or "front"
     raw : dict
-        What stands in the file.
+        Its table in the file.
     """
 
     name: str
@@ -53,17 +50,17 @@ class Design:
 
     @property
     def spread(self):
-        """How numbers spread if a quantile is the goal, a `ks.design.Spread`; else None."""
+        """Spread of numbers for a robust design, a `ks.design.Spread`; else None."""
         robust = getattr(self.table, "robust", None)
         return None if robust is None else robust.spread
 
     def find(self, *, starts=None, progress=False) -> "Found | Front":
-        """Search for it; `starts` is how many searches, as the file says unless told.
+        """Result of the search; `starts` is the number of searches, by default as in the file.
 
         Raises
         ------
         DesignError
-            There is no such machine; the message tells why, and how near the best comes.
+            No machine meets the limits; the message gives the reason and the nearest machine.
         """
         table = self.table
         source, reference = self._variants[self.source], self._variants[self.reference]
@@ -80,15 +77,14 @@ class Design:
 
 
 def write_found(path, case, found):
-    """Write a case file of what designs of a case found, by their names: ready to run, and to be found again.
+    """Write the results of designs, by name, as a case file that can be run and searched again.
 
-    Besides what is found, of a front one by one, it has what the searches began with, what ratios refer to, and the
-    tables of the designs.
+    It also has the variants at the start of the searches, the references, and the tables of the designs.
 
     Raises
     ------
     ParameterError
-        A part of a scene is a function or an object that case files have no text for.
+        A part of a scene is a function or object without a text in case files.
     """
     designs = [case.designs[name] for name in found]
     names = dict.fromkeys([case.reference, *(name for item in designs for name in (item.reference, item.source))])
@@ -104,10 +100,10 @@ def write_found(path, case, found):
 
 
 def read_designs(tables, reference, variants, problems):
-    """Designs by name, of tables as they stand in the file; what is wrong with them is added to the problems."""
+    """Designs by name, of the tables in the file; appends their faults to `problems`."""
     found = {}
     for name, raw in tables.items():
-        read, wrong = schema.validated(
+        read, wrong = schema.validate(
             schema.OneDesign, {"design": raw}, lambda keys, name=name: _design_keys(name, keys)
         )
         problems += wrong
@@ -131,12 +127,12 @@ def _design_keys(name, keys):
 
 
 def _problems(table, source, reference):
-    """What is wrong with a design of variants that are right, each behind its key."""
+    """Faults of a design of right variants, each after its key."""
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, schema.TorqueFreeCamTable):
         try:
             start = starting_machine(scene, Options.checked(**{name: getattr(table, name) for name in CAM_KEYS}))
-        except DesignError:  # the search says so, with the numbers
+        except DesignError:  # the search reports it with the numbers
             return
         except KinetostaticsError as error:
             yield f": {_without_owner(error)}"
@@ -156,7 +152,7 @@ def _problems(table, source, reference):
 
 
 def _outputs(table):
-    """Texts of what is made least or greatest, by key."""
+    """Texts of the outputs to minimise or maximise, by key."""
     if isinstance(table, schema.FrontTable):
         return [
             (f".minimise[{number}]", text.strip().removeprefix("-")) for number, text in enumerate(table.minimise, 1)
@@ -181,24 +177,24 @@ def _check_output(text, scene, reference):
 
 
 def _check_reference(output, reference):
-    """Refuse a ratio to what the reference has not."""
+    """Raise an error for a ratio to an output that the reference lacks."""
     if output.ratio:
         output.of(reference)
 
 
 def _without_owner(error):
-    """What an error says, without its owner."""
+    """Text of an error without its owner."""
     text = str(error)
     owner, colon, rest = text.partition(": ")
     return rest if colon and owner in ("design", "torque-free cam") else text
 
 
 MAX_SIZE_RATIO = 300.0
-"""How many times a tolerance may be above or below its parameter before its unit is doubted."""
+"""Largest ratio of a tolerance to its parameter, or the inverse, without a hint about its unit."""
 
 
 def tolerance_problems(spreads, variants):
-    """What is wrong with the tolerances: texts that cannot be read, parameters and units that no variant has."""
+    """Faults of the tolerances: unreadable texts, unknown parameters, wrong units."""
     known = {path: unit for item in variants.values() if item for path, unit in item.units.items()}
     for name, text in spreads.items():
         columns = [name]
@@ -211,7 +207,7 @@ def tolerance_problems(spreads, variants):
 
 
 def doubtful_tolerances(spreads, variants):
-    """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
+    """Sentences on tolerances whose size is far from their parameter in every variant."""
     for name, text in spreads.items():
         spread = parse_spread(text)
         size = max(abs(spread.median), spread.deviation) * base_factor(spread.unit)
@@ -225,7 +221,7 @@ def doubtful_tolerances(spreads, variants):
 
 
 def _nominal(variant, path):
-    """Value of a parameter, also where the file has a word for it; None if the variant has none."""
+    """Value of a parameter, also of one that the file gives as a word; None if the variant has none."""
     value = variant.parameters.get(path)
     value = variant.scene.parameters.get(path) if isinstance(value, str) else value
     return value if isinstance(value, float) else None

@@ -1,4 +1,4 @@
-"""Case files as TOML: which file a name means, what it holds, and how a variant inherits from [common]."""
+"""Case files as TOML: find the file, read it with limits, and let a variant inherit from [common]."""
 
 import os
 import re
@@ -8,19 +8,19 @@ from pathlib import Path
 
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
-from ..numbers.files import read_text
-from ..numbers.texts import find_on_disk, normalise
+from ..numbers.files import find_on_disk, read_text
+from ..numbers.formatting import normalise
 from ..numbers.units import quoted
 
 MAX_CASE_BYTES = 300_000
-"""Bytes that a case file may have."""
+"""Largest size of a case file."""
 MAX_DEPTH = 20
-"""Tables within tables that a case file may have; those that are used have three."""
+"""Largest depth of nested tables; the schema has three levels."""
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
 
 
 def shipped_cases():
-    """Path by name of the cases that come with the library.
+    """Path by name of the shipped cases.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def shipped_cases():
 
 
 def find_case(path):
-    """Path of the case file that is meant."""
+    """Path of the case file, or of the shipped case of that name."""
     if not isinstance(path, str | os.PathLike):
         raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {quoted(path)}")
     shipped = shipped_cases()
@@ -54,12 +54,12 @@ def find_case(path):
 
 
 def read_toml(path):
-    """The path and what its file holds."""
+    """Path on disk and content of a case file."""
     shipped = shipped_cases()
     try:
         path = find_on_disk(path)
         missing = not path.exists()
-    except (OSError, ValueError):  # no path at all: reading it says why
+    except (OSError, ValueError):  # no path; `read_text` reports it
         missing = False
     if missing:
         names = f"{', '.join(shipped)}{_file_hint(path) or checks.hint(path.stem, shipped)}"
@@ -77,13 +77,13 @@ def read_toml(path):
 
 
 def _file_hint(path):
-    """Question that names the file beside it that may be meant: its ending left out, or a letter wrong."""
+    """Question "did you mean" with a near file name in the same folder; empty if none is near."""
     beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
     return f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
 
 
 def _exceeds_depth(table, depth):
-    """Whether tables and lists stand within each other more than so deep."""
+    """Whether tables and lists are nested deeper than `depth`."""
     level = [table]
     for _ in range(depth):
         level = [
@@ -96,7 +96,7 @@ def _exceeds_depth(table, depth):
 
 
 def inherit(common, own):
-    """A table with what it has in common with others."""
+    """Table with the keys of `common`, overridden by its own at every level."""
     found = dict(common)
     for key, value in own.items():
         both = isinstance(value, dict) and isinstance(common.get(key), dict)
@@ -105,7 +105,7 @@ def inherit(common, own):
 
 
 def has_keys(table, keys):
-    """Whether keys, each within the one before, lead to something; a list is looked at as a whole."""
+    """Whether nested keys exist in a table; lists are not entered."""
     for key in keys:
         if isinstance(key, int):
             return True

@@ -1,6 +1,6 @@
-"""A variant of a case file: its scene, and the numbers of the file by their paths.
+"""Variant of a case file: its scene, the numbers of its table by path, its drive.
 
-What a case has by name, and the error of a name that it has not.
+`NamedItems` are the variants or designs of a case by name, with an error for unknown names.
 """
 
 import typing
@@ -13,8 +13,9 @@ from ..design import balancing
 from ..drive.motor import Motor
 from ..errors import CaseError
 from ..numbers import checks
+from ..numbers.files import find_on_disk
+from ..numbers.formatting import normalise
 from ..numbers.lazy import cached_property
-from ..numbers.texts import find_on_disk, normalise
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from . import build, schema
@@ -22,21 +23,19 @@ from . import build, schema
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A scene of a case file, what the file says of it, and how it was balanced if it was.
-
-    Of a case it is ``case.variants["plain"]``; the scene is what its file says in numbers, ready to be solved.
+    """A scene of a case file with its table and its balancing: ``case.variants["plain"]``.
 
     Attributes
     ----------
     scene : Scene
     table : pydantic model
-        Its table of the file, checked.
+        Its validated table of the file.
     balanced : Balanced or None
-        How the file's counterweights were found.
+        Result of balancing by the counterweights of the file.
     folder : Path
         Of the file.
     tabulated : mapping of keys to what was read
-        From files beside the case file: cams, tables. They are not read again.
+        Contents of the files beside the case file: cams, tables. They are not read again.
 
     Examples
     --------
@@ -54,7 +53,6 @@ class Variant:
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
     tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
-    """By the keys that lead there what was read from a file in the folder: cams, tables. It is not read again."""
 
     @property
     def mechanism(self):
@@ -99,32 +97,29 @@ class Variant:
 
     @property
     def units(self):
-        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
+        """SI unit by path of every number in the file, defaults included: "slider.mass", "cam.centre.x".
 
-        Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
+        Numbers of the drive are excluded: solutions of a variant are at its crank speed.
         """
         return {path: place.unit for path, place in self._places.items()}
 
     @property
     def parameters(self):
-        """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
+        """Value in the file by path: a number in SI, or the word for a derived one, "mid-length"."""
         return {path: build.value_at(self.table, place.steps) for path, place in self._places.items()}
 
     @property
     def content(self):
-        """What a case's variant is made of as bytes, the same in every session: its table, and what files held.
-
-        Without its drive, which no solution depends on.
-        """
+        """Bytes of its table and files, the same in every session; without the drive, on which no solution depends."""
         return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
             _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
         )
 
     def varied(self, values) -> "Variant":
-        """The variant with other values at some paths of its file, in SI, as if they stood there.
+        """Variant with other values at some paths of its file, in SI.
 
-        What the file derives from others follows: a centre at mid-length, a spring that balances the slider, a cosine
-        law's coupler, counterweights. To vary a number and keep all others, vary the `scene`.
+        Derived numbers follow: a centre at mid-length, a spring that balances the slider, the coupler of a cosine law,
+        counterweights. Use ``scene.varied`` to vary a number and keep all others.
 
         Parameters
         ----------
@@ -138,20 +133,17 @@ class Variant:
 
     @property
     def files(self):
-        """Files that it is made from besides the case file, a list of paths."""
+        """Paths of the files it reads besides the case file, a list."""
         return [find_on_disk(self.folder / name) for _, _, name in build.named_files(self.table)]
 
     def solve(self, angles=720) -> Solution:
-        """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
-
-        The end of the period is left out.
-        """
+        """Solution at this number of crank angles, even over the period of the loads, its end excluded."""
         checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
         return self.scene.solve(angles)
 
 
 def _bytes(item):
-    """What was read from a file as bytes: arrays, and what is made of them."""
+    """Bytes of the content of a file: arrays, and dataclasses of arrays."""
     if is_dataclass(item):
         return b"".join(_bytes(getattr(item, column.name)) for column in fields(item))
     return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
@@ -164,12 +156,12 @@ def make_variant(table, folder, tabulated):
 
 
 class NamedItems(dict):
-    """Items of a case by name, whatever Unicode form that is written in.
+    """Items of a case by name, in any Unicode form.
 
     Attributes
     ----------
     kind : str
-        What they are: "variant".
+        Word for the items: "variant".
     path : Path
         Of the case.
     """
@@ -191,6 +183,6 @@ class NamedItems(dict):
 
 
 class NoSuchNameError(CaseError, KeyError):
-    """A case has nothing of this name; those who look for a `KeyError` find it too."""
+    """A case has no item of this name; it is a `KeyError` too."""
 
     __str__ = Exception.__str__

@@ -1,19 +1,10 @@
-"""The command line: ``kinetostatics run | compare | drive | plot | report | sweep | design CASE``, and others.
+"""Command line ``kinetostatics COMMAND CASE``; it may import all rooms.
 
-options
-    What may be written on the line.
-commands, comparing, driving, sweeping, designing, reporting
-    What each command does.
-printed
-    Tables and words for people, as wide as the terminal.
-machine
-    JSON and CSV for other programs.
-
-``--json`` prints one object: the command, the version, the case, and what the command found, by the names and with the
-units of the Python tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, in the ``unit`` beside it.
-``--csv`` prints one table, ``--csv FILE`` writes it beside what is printed. Nothing else is on standard output then;
-progress and warnings go to standard error, progress only on a terminal and never with ``--json``. Folders are made
-where they are missing, whatever the option that names them or a file in them; of those for a file standard error tells.
+``--json`` prints one object: the command, the version, the case, and the results by the names and units of the Python
+tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, with its ``unit`` beside it. ``--csv`` prints
+one table, ``--csv FILE`` writes it as well. Standard output then holds nothing else; progress and warnings go to
+standard error, progress only on a terminal and never with ``--json``. Missing folders are made; standard error names
+those made for a file.
 """
 
 import os
@@ -32,14 +23,13 @@ from .output import print_error
 
 
 class _Terminated(BaseException):
-    """The system asks this process to end."""
+    """SIGTERM: the system asks this process to end."""
 
 
 def main(arguments=None):
     """Run the command line; returns the exit status.
 
-    0, or 2 for input that cannot be used, or where every design of a sweep fails, 130 if it was interrupted (Ctrl-C),
-    143 if it was told to end (SIGTERM).
+    0, or 2 for unusable input or a sweep whose designs all fail, 130 after Ctrl-C, 143 after SIGTERM.
     """
     status, message = 0, ""
     try:
@@ -70,10 +60,7 @@ def main(arguments=None):
 
 @contextmanager
 def _warning_in_plain_words():
-    """A warning meant for the user is told without the line of the library that gives it.
-
-    A hint is told once: where the case is read, and not of its mechanism again when that is solved.
-    """
+    """Print warnings for users without the source line, and each hint once."""
     before = warnings.formatwarning
     told: set[str] = set()
 
@@ -95,7 +82,7 @@ def _warning_in_plain_words():
 
 @contextmanager
 def _ending_in_order():
-    """SIGTERM, like Ctrl-C, ends the block as an error does; only the main thread can see to that."""
+    """SIGTERM ends the block by an exception, as Ctrl-C does; in the main thread only."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -112,7 +99,7 @@ def _ending_in_order():
 
 @contextmanager
 def _drawing_to_files():
-    """Figures are files, so no backend for a screen is loaded, whatever MPLBACKEND names."""
+    """Draw to files: use the backend agg instead of one for a screen in MPLBACKEND."""
     before = os.environ.get("MPLBACKEND")
     if before is None or "matplotlib" in sys.modules:
         yield
@@ -125,12 +112,12 @@ def _drawing_to_files():
 
 
 WRITTEN = ("csv", "name", "out", "pdf", "plot")
-"""Options that name a file or a folder to be written."""
+"""Options that name a file or folder to write."""
 
 
 @contextmanager
 def _telling_new_folders(options):
-    """Tell which folders the block makes for files, the outermost of each; one that is asked for is no news."""
+    """Print the outermost folders that the block makes for files; not a folder that an option names."""
     given = [Path(path).absolute() for option in WRITTEN if (path := getattr(options, option, None))]
     missing = [(path, place) for path in given for place in path.parents if not os.path.lexists(place)]
     yield
@@ -140,7 +127,7 @@ def _telling_new_folders(options):
 
 
 def _require_output():
-    """What is printed has somewhere to go, in letters that it has."""
+    """Require an open standard output; replace letters that it lacks."""
     if sys.stdout is None:
         raise ParameterError("standard output is closed; open it, or send it to /dev/null")
     for stream in (sys.stdout, sys.stderr):
@@ -149,7 +136,7 @@ def _require_output():
 
 
 def _drop_what_cannot_be_written():
-    """So that the interpreter does not try again when it ends: the pipe is closed, or the disk full."""
+    """Drop output to a closed pipe or full disk, so that the interpreter does not flush it again at its end."""
     try:
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -1,9 +1,11 @@
-"""What each command does with its options: list, new, run, plot, precision, stability; others have a module each.
+"""Commands list, new, run, explain, drive, plot, report, precision and stability; the others have modules of their own.
 
-The command ``drive``: speed, power, energy and start-up under the motor of a case.
+A command imports its libraries when it runs, so that the others start fast.
 """
 
 import os
+import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -21,82 +23,11 @@ from .output import (
     write_table,
 )
 
-
-def drive(options):
-    from ..casefile.case import load_case
-    from ..drive.savings import energy_table, running_table, speed_hint
-    from ..drive.steady import steady
-    from ..drive.transient import start
-
-    case = load_case(options.case)
-    checks.require("--out", files.folder_write_problem(options.out) if options.out else None)
-    require_writable(case, "--csv", options.csv, (".csv",))
-    names = list(case.variants) if options.variant is None else [options.variant]
-    driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
-    if not driven:
-        raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
-    runs: dict[str, Any] = {}
-    starts: dict[str, Any] = {}
-    reasons: dict[str, str] = {}
-    for name in machine.progress(options, driven, "running"):
-        variant = driven[name]
-        system = variant.scene, variant.motor, variant.flywheel
-        try:
-            runs[name], starts[name] = steady(*system), None
-            starts[name] = start(*system, from_angle=options.start)
-        except DriveError as error:
-            reasons[name] = str(error)
-    for name, run in runs.items():
-        if doubt := speed_hint(run, driven[name].scene):
-            reasons[name] = f"{doubt}\n{reasons[name]}" if name in reasons else doubt
-    if not runs:
-        raise DriveError("\n".join(f"{name}: {reason}" for name, reason in reasons.items()))
-    tables = {"running": running_table(runs, starts), "energy_per_turn": energy_table(runs)}
-    paths = _write_results(case, runs, options.out) if options.out else []
-    if machine.wants_json(options):
-        found = {key: machine.rows_by_name(table) for key, table in tables.items()}
-        machine.print_json("drive", case=machine.case_header(case), **found, reasons=reasons, files=paths)
-    elif not machine.quiet(options):
-        _print_drive(case, tables, reasons, paths)
-    if options.csv:
-        machine.write_csv(options, _drive_rows(tables))
-
-
-def _print_drive(case, tables, reasons, paths):
-    print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
-    print_table(tables["running"].rename_axis("over the period"))
-    print("\nwhere the energy of a turn goes\n")
-    print_table(tables["energy_per_turn"].rename_axis("energy per turn"))
-    for name, reason in reasons.items():
-        print_folded(f"\n{name}: {reason}")
-    if paths:
-        print("", *(f"wrote {path}" for path in paths), sep="\n")
-
-
-def _drive_rows(tables):
-    """Both tables as one, a row for each quantity, the table that it is of in the first column."""
-    import pandas as pd
-
-    rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
-    whole = pd.concat(rows)
-    whole.insert(0, "table", whole.pop("table"))
-    return whole
-
-
-def _write_results(case, runs, folder):
-    """Results over the turn as CSV, and the figures; returns the paths."""
-    from ..views.figures import draw_drive
-
-    path = Path(folder) / f"{case.path.stem}_drive.csv"
-    write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
-    return [path, *draw_drive(case, runs, folder)]
-
-
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
-"""What is written of an explanation, by the ending of its file."""
+"""Attribute of an explanation to write, by the ending of its file."""
 
 CHECK_QUANTITY = "balancing_torque_by_power"
-"""Quantity that says again what the power balance says."""
+"""Quantity that the table omits, for the power balance states it."""
 STARTERS = ("crank-slider", "four-bar", "chain")
 """Mechanisms of the case files to start from."""
 
@@ -137,7 +68,7 @@ def new(options):
 
 
 def _other_ending(given, path):
-    """What is wrong with a name that ends as another kind of file does; digits after a point are none: press 2.5."""
+    """Fault of a name with the ending of another kind of file; digits after a point are no ending: press 2.5."""
     kind = given.suffix
     if not kind[1:2].isalpha():
         return None
@@ -164,7 +95,7 @@ def run(options):
 
 
 def _run_results(solution, given):
-    """What ``run`` tells of a variant, by the names that quantities have in Python."""
+    """Results of ``run`` for a variant, by the names of quantities in Python."""
     from ..results.losses import lose
     from ..results.tables import SHOWN, extremes_by_name
     from ..solution.uncertainty_table import largest_with_uncertainty
@@ -305,7 +236,7 @@ def stability(options):
 
 
 def _counts(table):
-    """How often each method does what, the good first."""
+    """Number of places by method and outcome, good outcomes first."""
     counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
     good = [text for text in ("exact", "as near as the condition allows") if text in counts]
     return counts[[*good, *counts.columns.drop(good)]]
@@ -315,11 +246,6 @@ def compare(options):
     from .compare import compare
 
     compare(options)
-
-
-def drive(options):
-
-    drive(options)
 
 
 def sweep(options):
@@ -335,6 +261,83 @@ def design(options):
 
 
 def report(options):
-    from .output import report
+    from ..views.report.report import report as write
 
-    report(options)
+    variant = ["--variant", options.variant] if options.variant else []
+    pdf = ["--pdf", options.pdf] if options.pdf else []
+    command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf])
+    bar = sys.stderr is not None and sys.stderr.isatty()
+    path = write(options.case, options.out, variant=options.variant, pdf=options.pdf, command=command, progress=bar)
+    print(f"wrote {path}; open it in a browser")
+    if options.pdf:
+        print(f"wrote {options.pdf}")
+
+
+def drive(options):
+    from ..casefile.case import load_case
+    from ..drive.savings import energy_table, running_table, speed_hint
+    from ..drive.steady import steady
+    from ..drive.transient import start
+
+    case = load_case(options.case)
+    checks.require("--out", files.folder_write_problem(options.out) if options.out else None)
+    require_writable(case, "--csv", options.csv, (".csv",))
+    names = list(case.variants) if options.variant is None else [options.variant]
+    driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
+    if not driven:
+        raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons: dict[str, str] = {}
+    for name in machine.progress(options, driven, "running"):
+        variant = driven[name]
+        system = variant.scene, variant.motor, variant.flywheel
+        try:
+            runs[name], starts[name] = steady(*system), None
+            starts[name] = start(*system, from_angle=options.start)
+        except DriveError as error:
+            reasons[name] = str(error)
+    for name, run in runs.items():
+        if doubt := speed_hint(run, driven[name].scene):
+            reasons[name] = f"{doubt}\n{reasons[name]}" if name in reasons else doubt
+    if not runs:
+        raise DriveError("\n".join(f"{name}: {reason}" for name, reason in reasons.items()))
+    tables = {"running": running_table(runs, starts), "energy_per_turn": energy_table(runs)}
+    paths = _write_results(case, runs, options.out) if options.out else []
+    if machine.wants_json(options):
+        found = {key: machine.rows_by_name(table) for key, table in tables.items()}
+        machine.print_json("drive", case=machine.case_header(case), **found, reasons=reasons, files=paths)
+    elif not machine.quiet(options):
+        _print_drive(case, tables, reasons, paths)
+    if options.csv:
+        machine.write_csv(options, _drive_rows(tables))
+
+
+def _print_drive(case, tables, reasons, paths):
+    print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
+    print_table(tables["running"].rename_axis("over the period"))
+    print("\nwhere the energy of a turn goes\n")
+    print_table(tables["energy_per_turn"].rename_axis("energy per turn"))
+    for name, reason in reasons.items():
+        print_folded(f"\n{name}: {reason}")
+    if paths:
+        print("", *(f"wrote {path}" for path in paths), sep="\n")
+
+
+def _drive_rows(tables):
+    """Both tables as one, a row for each quantity, with the name of the table in the first column."""
+    import pandas as pd
+
+    rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
+    whole = pd.concat(rows)
+    whole.insert(0, "table", whole.pop("table"))
+    return whole
+
+
+def _write_results(case, runs, folder):
+    """Write results over the turn as CSV, and the figures; returns the paths."""
+    from ..views.figures import draw_drive
+
+    path = Path(folder) / f"{case.path.stem}_drive.csv"
+    write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
+    return [path, *draw_drive(case, runs, folder)]

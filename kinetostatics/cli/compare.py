@@ -1,4 +1,4 @@
-"""The command ``compare``: dynamic coefficients of the variants of a case, published figures beside ours."""
+"""Command ``compare``: dynamic coefficients of the variants of a case, with published figures."""
 
 from math import isnan, nan
 
@@ -42,7 +42,7 @@ def compare(options):
 
 
 def _with_roles(case, name, comparison):
-    """Table of a comparison with columns by what they are, in place of the names of the variants."""
+    """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
     table = case.with_published(comparison.frame())
     table = table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
     table.insert(1, "variant_name", name)
@@ -108,13 +108,13 @@ def _print_comparison(case, found, special):
 
 
 def _of_all(tables, label, name):
-    """An attribute of the row of each table; of a pair that of the variant, NaN of tables without the row."""
+    """Attribute of a row in each table, of a pair its second value; NaN for tables without the row."""
     found = [getattr(table[label], name) if label in table else nan for table in tables.values()]
     return [item[1] if isinstance(item, tuple) else item for item in found]
 
 
 def _columns(headings, shown, values, bounds):
-    """Columns to print, of values and bounds by row."""
+    """Columns to print: heading, values and bounds of the shown rows."""
     return [
         (heading, [values[label][at] for label in shown], [bounds[label][at] for label in shown])
         for at, heading in enumerate(headings)
@@ -122,13 +122,13 @@ def _columns(headings, shown, values, bounds):
 
 
 def _published(shown, figures):
-    """Column of published figures, if rows have any."""
+    """Column of published figures, if there are any."""
     texts = [figures.get(label, "") for label in shown]
     return [("published", texts)] if any(texts) else []
 
 
 def _in_order(lists):
-    """Names of all lists, each behind what stands before it in its own."""
+    """Names of all lists, each after its predecessor in its own list."""
     found: list[str] = []
     for names in lists:
         place = 0

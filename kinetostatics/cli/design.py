@@ -1,4 +1,4 @@
-"""The command ``design``: searches that a case asks for, what they found, and where it is written."""
+"""Command ``design``: run the searches of a case, print and write their results."""
 
 import os
 import sys
@@ -18,9 +18,9 @@ from . import machine
 from .output import print_error, print_folded, print_table, require_writable
 
 SPREAD_SAMPLES = 2048
-"""Machines of a spread that are looked at in the end."""
+"""Machines drawn from a spread for the final quantile."""
 SAME_END_TOLERANCE = 1e-4
-"""Relative difference of ends of searches that count as one."""
+"""Relative difference of two ends of searches that count as the same."""
 
 
 def design(options):
@@ -59,7 +59,7 @@ def design(options):
 
 
 def _as_json(item, found):
-    """What was found, as ``--json`` gives it."""
+    """Result of a design for ``--json``."""
     if isinstance(found, Front):
         return {"outputs": found.outputs, "source": item.source, "before": found.before, "front": found.table}
     return {
@@ -76,7 +76,7 @@ def _as_json(item, found):
 
 
 def _as_rows(found):
-    """All that was found as one table, a row for each number."""
+    """All results as one table, a row for each number."""
     import pandas as pd
 
     rows = []
@@ -91,7 +91,7 @@ def _as_rows(found):
 
 
 def _require_writable(case, names, options):
-    """What is found can be written, and where: nobody searches for what is lost then."""
+    """Refuse unusable output files before the long searches."""
     require_writable(case, "--csv", options.csv, (".csv",))
     if options.plot:
         checks.require("--plot", files.folder_write_problem(options.plot))
@@ -131,15 +131,16 @@ def _print_design(item, found):
 
 
 def _spread_summary(item, found):
-    """The quantile that a robust design keeps, over more machines than it was searched with."""
+    """Quantile of a robust design over more machines than in its search."""
     output = item.table.minimise or item.table.maximise
     values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
     quantile = item.spread.quantile
-    return f"quantile {quantile:g} of {output} over the spread, {SPREAD_SAMPLES} machines: {np.quantile(values, quantile):.6g}"
+    value = np.quantile(values, quantile)
+    return f"quantile {quantile:g} of {output} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}"
 
 
 def _search_summary(found):
-    """How it was found, how far it can be trusted, and what no search can reach."""
+    """Evaluations, agreement of searches, bounds, and power balance of a result."""
     lines = [f"{found.evaluations} evaluations of all derivatives"]
     if len(found.starts) > 1:
         best = min(found.starts)

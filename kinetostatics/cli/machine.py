@@ -1,6 +1,6 @@
-"""Results for other programs, ``--json`` and ``--csv``: numbers in full, and nothing else on standard output.
+"""Output for other programs: ``--json`` and ``--csv``, numbers in full, nothing else on standard output.
 
-NaN, which stands for "has none", is null in JSON and nothing in CSV; infinity is the text "Infinity" in JSON.
+NaN (no value) is null in JSON and empty in CSV; infinity is the text "Infinity" in JSON.
 """
 
 import json
@@ -15,7 +15,7 @@ from .output import STDOUT, write_table
 
 
 def require_one_output(options):
-    """At most one of both is written to standard output."""
+    """Refuse JSON and CSV both on standard output."""
     both = wants_json(options) and wants_csv(options)
     checks.require("--json and --csv", "both would be written to standard output; give --csv a FILE" if both else None)
 
@@ -29,12 +29,12 @@ def wants_csv(options):
 
 
 def quiet(options):
-    """Whether standard output belongs to another program."""
+    """Whether standard output carries JSON or CSV."""
     return wants_json(options) or wants_csv(options)
 
 
 def announce(options, *lines):
-    """Print lines for a person."""
+    """Print lines for people."""
     if not quiet(options):
         print(*lines, sep="\n")
 
@@ -48,7 +48,7 @@ def print_csv(table):
 
 
 def write_csv(options, table):
-    """A table on standard output, or in the file that ``--csv`` names, or nowhere."""
+    """Write a table to standard output or a file, as ``--csv`` says."""
     if wants_csv(options):
         print_csv(table)
     elif options.csv:
@@ -56,22 +56,22 @@ def write_csv(options, table):
 
 
 def case_header(case):
-    """What tells a case."""
+    """Title, path and reference of a case."""
     return {"title": case.title, "path": case.path, "reference": case.reference}
 
 
 def rows_by_name(table):
-    """Rows of a pandas DataFrame by its index."""
+    """Rows of a pandas DataFrame as dicts, by its index."""
     return {str(name): row for name, row in zip(table.index, table.to_dict("records"), strict=True)}
 
 
 def shows_progress(options):
-    """Whether somebody looks at standard error, and wants to."""
+    """Whether to show progress: standard error is a terminal."""
     return not quiet(options) and sys.stderr is not None and sys.stderr.isatty()
 
 
 def progress(options, names, label):
-    """Names one after the other, with a bar on standard error if somebody looks there."""
+    """Yield the names, with a progress bar on a terminal."""
     if not shows_progress(options):
         yield from names
         return
@@ -84,7 +84,7 @@ def progress(options, names, label):
 
 
 def _jsonable(item):
-    """What JSON can hold."""
+    """The item with values that JSON has."""
     if isinstance(item, Mapping):
         return {str(key): _jsonable(value) for key, value in item.items()}
     if hasattr(item, "columns"):  # a pandas DataFrame

@@ -1,26 +1,26 @@
-"""What may be written on the command line: commands, their options, and which texts these take."""
+"""Options of the command line: the parser, its commands, and the types of their arguments."""
 
 import argparse
 
 from ..numbers import checks
-from ..numbers.texts import normalise
+from ..numbers.formatting import normalise
 from ..numbers.units import to_si
 from ..version import __version__
 from . import commands
 from .output import STDOUT
 
 DESIGN = 100
-"""Bytes that a design takes with its outputs."""
+"""Size of a design with its outputs, bytes."""
 
 EPILOG = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
     "wider. For other programs: --json, and --csv where there is a table, write numbers in full and nothing else."
 )
-"""Said under the help of all commands."""
+"""End of the help of every command."""
 
 
 def parser():
-    """The parser; each command's options name the function that carries it out."""
+    """The parser; ``options.command`` is the function of the command."""
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
@@ -189,7 +189,7 @@ def _command(group, name, function, text, of_case=True):
 
 
 def _for_machines(command, table=None, file=True):
-    """Options that write for other programs; ``--csv`` only where there is a table."""
+    """Add the options ``--json`` and, with a table, ``--csv``."""
     command.add_argument("--json", action="store_true", help="results as JSON in place of tables, numbers in full")
     if table is not None:
         text = f"{table}, as CSV to FILE{', or in place of tables without one' if file else ''}"
@@ -206,7 +206,7 @@ def _text(text):
 
 
 def _name(text):
-    """A name of something in a case file, in the form in which that is read."""
+    """Name in a case file, in the Unicode form of case files."""
     return normalise(_text(text))
 
 

@@ -1,9 +1,5 @@
-"""Tables and words as the command line prints them: plain text, as wide as the terminal.
+"""Tables and words on the command line: plain text, as wide as the terminal."""
 
-The command ``report``: one page of a case, and the same printed to a PDF.
-"""
-
-import shlex
 import shutil
 import sys
 import textwrap
@@ -12,25 +8,25 @@ from ..numbers import checks, files
 from ..numbers.formatting import angle, number, parse_heading
 
 STDOUT = "-"
-"""Name of a file that stands for standard output."""
+"""File name for standard output."""
 MIN_WIDTH = 40
-"""Columns that lines have on narrower terminals."""
+"""Smallest width of lines, also on narrower terminals."""
 GAP = 2
 """Blanks between columns."""
 WORD_COLUMNS = ("unit", "published", "limit")
-"""Headings of columns of words that may look like numbers."""
+"""Headings of columns whose words may look like numbers."""
 MIN_FOLDED_WIDTH = 24
-"""Letters to which a column of words is folded at most."""
+"""Smallest width of a folded column of words."""
 
 
 def require_writable(case, option, path, endings):
-    """The file that an option names, if any, can be written, is of these kinds, and no input of the case."""
+    """Refuse a file of an option that cannot be written, has another ending, or is an input of the case."""
     if path not in (None, STDOUT):
         checks.require(option, files.write_problem(path, inputs=case.files, endings=endings))
 
 
 def write_table(table, path):
-    """Write a pandas DataFrame to a file; returns what to say of it."""
+    """Write a pandas DataFrame to a file; returns a line to print."""
     with files.write_atomically(path) as temporary:
         if path.lower().endswith(".parquet"):
             table.to_parquet(temporary)
@@ -45,17 +41,17 @@ def print_error(text):
 
 
 def variant_words(name, options, why):
-    """What is said of the variant that a command takes, and why it takes that one unless told."""
+    """Words on the variant of a command, with the reason for the default."""
     return f"variant {name}" if options.variant else f"variant {name}, {why} (another by --variant)"
 
 
 def width():
-    """Letters of a line: of the terminal, or as many as COLUMNS says; 80 in a pipe or a file."""
+    """Width of a line in letters: of the terminal or by COLUMNS; 80 in a pipe or file."""
     return max(shutil.get_terminal_size((80, 24)).columns, MIN_WIDTH)
 
 
 def print_folded(text, indent=0):
-    """Print words, a paragraph to a line, folded to the width; all lines but the first of each are set in so far."""
+    """Print paragraphs, one per line, folded to the width with a hanging indent."""
     for line in text.split("\n"):
         print(
             textwrap.fill(line, width(), subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
@@ -63,10 +59,9 @@ def print_folded(text, indent=0):
 
 
 def print_table(table, bounds=None):
-    """Print a pandas DataFrame: as it is if it fits, else with headings and words folded, else in parts.
+    """Print a pandas DataFrame; if too wide, with folded headings and words, else in parts one below the other.
 
-    Parts stand below each other, each with the first columns again. `bounds`, a table of the same rows and columns,
-    tells by how much numbers may be wrong, if that is known.
+    Each part repeats the first columns. `bounds` is a table of the bounds on the errors of the numbers.
     """
     index = table.index.to_frame(index=False, name=table.index.name or "index")
     columns = [(name, index.iloc[:, at]) for at, name in enumerate(index)]
@@ -76,7 +71,7 @@ def print_table(table, bounds=None):
 
 
 def print_columns(*columns):
-    """Print a table as `print_table` does, of columns: heading, values and, if known, bounds on their errors."""
+    """Print a table, as `print_table` does, from columns (heading, values[, bounds on their errors])."""
     texts = []
     for heading, values, *bounds in columns:
         errors = bounds[0] if bounds else [0.0] * len(values)
@@ -86,7 +81,7 @@ def print_columns(*columns):
 
 
 def with_published(table, published, path):
-    """Cells as text, the published figure behind ours in brackets."""
+    """Cells as text, with the published figure in brackets."""
     from ..views.report.tables import require_places
 
     require_places(table, published, path)
@@ -107,7 +102,7 @@ def _cell(value, bound=0.0, heading=""):
 
 
 def _parts(columns, room):
-    """Columns, heading and cells each, in parts that fit into a line."""
+    """Columns (heading, cells) in parts that fit into a line."""
     if _breadth(columns) <= room:
         return [columns]
     for hyphens in (False, True):
@@ -127,7 +122,7 @@ def _parts(columns, room):
 
 
 def _fold_words(columns, room):
-    """Columns with those of words folded until all fit, the widest first."""
+    """Columns with words folded, the widest first, until all fit."""
     columns = list(columns)
     words = [at for at, column in enumerate(columns) if _of_words(column)]
     for at in sorted(words, key=lambda at: -_widest(columns[at][1])):
@@ -149,12 +144,12 @@ def _widest(texts):
 
 
 def _fold(text, room, hyphens=False):
-    """Text in lines so wide; words longer than that stay whole, but for those with hyphens if wanted."""
+    """Text folded to a width; long words stay whole, or break at hyphens with `hyphens`."""
     return "\n".join(textwrap.wrap(text, max(room, 1), break_long_words=False, break_on_hyphens=hyphens))
 
 
 def _of_words(column):
-    """Whether cells are words: by the heading, or because none is a number."""
+    """Whether cells are words: by the heading, or without any number."""
     heading, cells = column
     return heading in WORD_COLUMNS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
 
@@ -169,22 +164,9 @@ def _joined_lines(columns):
 
 
 def stack_variants(frames):
-    """Tables by variant as one, the variant in the first column."""
+    """Tables by variant as one, with the variant in the first column."""
     import pandas as pd
 
     table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
     table.insert(0, "variant", table.pop("variant"))
     return table
-
-
-def report(options):
-    from ..views.report.report import report as write
-
-    variant = ["--variant", options.variant] if options.variant else []
-    pdf = ["--pdf", options.pdf] if options.pdf else []
-    command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf])
-    bar = sys.stderr is not None and sys.stderr.isatty()
-    path = write(options.case, options.out, variant=options.variant, pdf=options.pdf, command=command, progress=bar)
-    print(f"wrote {path}; open it in a browser")
-    if options.pdf:
-        print(f"wrote {options.pdf}")

@@ -1,7 +1,4 @@
-"""The command ``sweep``: outputs of many designs of a case.
-
-What ``run --uncertain`` tells: the largest values, how sure they are, and why.
-"""
+"""Command ``sweep``, outputs of many designs, and ``run --uncertain``, the uncertainty of the largest values."""
 
 import itertools
 from functools import partial
@@ -16,9 +13,9 @@ from . import machine
 from .output import print_folded, print_table, require_writable, variant_words, write_table
 
 OUTPUTS = ("mean_absolute balancing_torque", "largest O")
-"""What a sweep tells unless asked for something else."""
+"""Default outputs of a sweep."""
 FRICTION_OUTPUT = "mean friction_loss"
-"""What it tells besides of a variant with friction."""
+"""Further default output for a variant with friction."""
 TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
@@ -80,7 +77,7 @@ def sweep_command(options):
 
 
 def _labels(wanted, varied):
-    """What axes call outputs: with the names that quantities have in other figures."""
+    """Labels of outputs on axes, with the names of quantities in other figures."""
     which = {True: ", reference / design", False: ""}
     return {
         item.column: f"{item.label(varied)}{which[item.ratio]} [{parse_heading(item.column)[1]}]" for item in wanted
@@ -88,7 +85,7 @@ def _labels(wanted, varied):
 
 
 def _arguments(names, wanted, options):
-    """What is said of the variant that designs vary, and of the one that ratios refer to."""
+    """Words on the varied variant and the reference of ratios."""
     varied, reference = names
     why = "the reference" if varied == reference else f"the first besides the reference {reference}"
     against = f"; ratios refer to {reference}" if any(item.ratio for item in wanted) else ""
@@ -132,7 +129,7 @@ OPTION = "--uncertain"
 
 
 def standard_uncertainties(case, names, texts):
-    """Standard uncertainties, SI, of the numbers of each variant of these names, by path."""
+    """Standard uncertainties in SI by variant and path."""
     units = {name: case.variant(name).scene.units for name in names}
     of_case = OF_THE_CASE in texts
     pairs = [_split_uncertainty(text) for text in texts if text != OF_THE_CASE]
@@ -178,7 +175,7 @@ def print_uncertainty(solution, given):
 
 
 def _two_digit_bounds(table):
-    """Bounds with which shares are told with two digits."""
+    """Error bounds that make shares print with two digits."""
     return (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
 
 
@@ -200,6 +197,6 @@ def _size(text, unit):
 
 
 def _deviation(text, unit):
-    """Standard deviation of a spread, SI."""
+    """Standard deviation of a spread, in SI."""
     spread = spreads.parse_spread(text)
     return spread.deviation * factor(spread.unit, unit)

@@ -62,7 +62,8 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
             f"{''.join(f' and {name}' for name in given) or ' only'}"
         )
     first = _set_static_moment(mechanism, link, (0.0, 0.0), given[outer])
-    second = _set_static_moment(first.mechanism, _crank(mechanism), (0.0, 0.0), crank)
+    (crank_name,) = mechanism.crank.links
+    second = _set_static_moment(first.mechanism, crank_name, (0.0, 0.0), crank)
     return Balanced(mechanism, second.mechanism, {**second.counterweights, **first.counterweights})
 
 
@@ -111,11 +112,6 @@ def partial(mechanism, ratio="overall", *, crank):
     return _set_static_moment(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
 
 
-def _crank(mechanism):
-    (name,) = mechanism.crank.links
-    return name
-
-
 WEIGHT_RULES = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
 NORMS = ("largest", "mean", "along", "across", "weighted")
 
@@ -136,8 +132,8 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     angles : int
         Crank angles at which the norm is taken; for the largest of a force, its true extremes join them.
     **counterweights : Counterweight
-        By link, as ``crank=Counterweight(arm=0.03)``; the side they lie on is found, the sign of the arm does not
-        matter. Limits are kept.
+        By link, as ``crank=Counterweight(arm=0.03)``; the search finds the side, whatever the sign of the arm, and
+        keeps the limits.
 
     Returns
     -------
@@ -181,7 +177,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
 
 
 def _search_problems(mechanism, counterweights):
-    """What is wrong with the counterweights to be found."""
+    """Sentences about wrong counterweights."""
     if not counterweights:
         yield "give at least one counterweight, such as crank=Counterweight(arm=0.03)"
     for name, weight in counterweights.items():
@@ -199,7 +195,7 @@ def _weight_problem(name, weight):
 
 
 def _set_static_moment(mechanism, link, moment, weight):
-    """Counterweight that gives a link this static moment."""
+    """`Balanced` with the counterweight that gives a link this static moment."""
     checks.require("balancing", _weight_problem(link, weight))
     change = complex(*moment) - _static_moment(mechanism, link)
     own = mechanism.links[link]
@@ -232,7 +228,7 @@ def _parse_ratio(ratio):
 
 
 def ratio_problem(ratio):
-    """What is wrong with a ratio of partial balancing that is a number, as a sentence, or None."""
+    """Sentence about a ratio of partial balancing outside 0 to 1, or None."""
     if 0.0 <= ratio <= 1.0:
         return None
     return (
@@ -242,7 +238,7 @@ def ratio_problem(ratio):
 
 
 def _require_balanceable(mechanism):
-    """Refuse what full and partial balancing cannot do."""
+    """Refuse mechanisms that full and partial balancing do not cover."""
     _require_masses(mechanism)
     if len(mechanism.groups) > 1 and mechanism.crank.length is not None:
         raise ParameterError(

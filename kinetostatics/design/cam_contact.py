@@ -1,8 +1,8 @@
-"""Contact of a roller with its cam over a turn: side, curvature, Hertz pressure, spin and sliding, life of the pin.
+"""Contact of a roller with its cam over the turn: side, curvature, Hertz pressure, spin, life, and exceeded limits.
 
-A roller that does not slide turns by v / R as its centre moves along the pitch curve at v, one way on a disk and the
-other in a ring: where it changes sides it must reverse. The contact drives it with J dv/dt / R^2 along the cam, and
-against the friction of its pin.
+A rolling roller turns at v / R, v the speed of its centre along the pitch curve; one way on a disk, the other way in a
+ring, so it reverses where it changes sides. The contact must drive it, J dv/dt / R^2 along the cam, against the
+friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
 """
 
 from dataclasses import dataclass, field
@@ -23,9 +23,9 @@ from .follower_speed import lift_off_speed, starting_torque
 
 
 class Reversal(NamedTuple):
-    """The roller changing sides: crank angle, rad; change of its spin, rad/s; energy lost in sliding, J.
+    """The roller changes sides: crank angle, rad; change of its spin, rad/s; energy lost in sliding, J.
 
-    `rise` is how fast the cam force grows there with the crank angle, N/rad.
+    `rise` is the derivative of the cam force by the crank angle, N/rad.
     """
 
     angle: float
@@ -46,7 +46,7 @@ class Reversal(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Roller:
-    """What turns on the pin at A: radius m, mass kg, inertia about the pin kg m2, load rating of its bearing N."""
+    """Roller on the pin at A: radius m, mass kg, inertia about the pin kg m2, load rating of its bearing N."""
 
     cam: Any
     radius: float
@@ -56,7 +56,7 @@ class Roller:
     life_exponent: float
 
     def speed(self, solution):
-        """Of the roller's centre along the pitch curve, m/s, with its derivative by time, m/s2."""
+        """Speed of the roller's centre along the pitch curve, m/s, and its time derivative, m/s2."""
         r, slope, second = self.cam.radius(solution.crank_angle)
         length = np.hypot(r, slope)
         rate = solution.crank_speed
@@ -67,17 +67,17 @@ class Roller:
         return np.where(solution.cam_force > 0.0, -1.0, 1.0) * self.speed(solution)[0] / self.radius
 
     def spin_acceleration(self, solution):
-        """Its angular acceleration between changes of sides, rad/s2."""
+        """Angular acceleration of the roller between changes of sides, rad/s2."""
         return np.where(solution.cam_force > 0.0, -1.0, 1.0) * self.speed(solution)[1] / self.radius
 
     def driving_force(self, solution):
-        """What the contact must give along the cam for the roller to roll, against its motion, N."""
+        """Force along the cam that keeps the roller rolling, against its motion, N."""
         _, growth = self.speed(solution)
-        rubbing = np.abs(solution.friction_at("cam")) * solution.crank_sense
-        return self.inertia * growth / self.radius**2 + rubbing
+        friction = np.abs(solution.friction_at("cam")) * solution.crank_sense
+        return self.inertia * growth / self.radius**2 + friction
 
     def friction_coefficient(self, solution):
-        """Least friction coefficient of the contact with which the roller does not slide."""
+        """Least friction coefficient of the contact that prevents sliding."""
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.abs(self.driving_force(solution)) / np.abs(solution.cam_force)
         return np.where(np.isnan(needed), 0.0, needed)
@@ -110,7 +110,7 @@ class Roller:
         return float(largest * share ** (1.0 / self.life_exponent))
 
     def life(self, solution):
-        """Basic rating life L10, h, from the same."""
+        """Basic rating life L10, h, from a solution at even crank angles over the period."""
         if self.load_rating is None:
             raise ParameterError("contact: the life of the roller's bearing takes its load_rating, C in N")
         load = self.equivalent_load(solution)
@@ -131,7 +131,7 @@ class Roller:
         return np.where(np.isnan(turned), 1.0, turned) / (2.0 * np.pi)
 
     def reversal(self, solution, angle, step=1e-4):
-        """What happens where the roller changes sides."""
+        """The `Reversal` at a crank angle where the roller changes sides."""
         at = solution.at(angle + np.array([-step, 0.0, step]))
         rise = float(at.cam_force[2] - at.cam_force[0]) / (2.0 * step)
         spin = 2.0 * float(np.broadcast_to(self.speed(at)[0], (3,))[1]) / self.radius
@@ -156,7 +156,7 @@ def pressure_from_hardness(brinell):
     Raises
     ------
     ParameterError
-        The hardness is outside what the standard tells of.
+        The hardness is outside the standard.
 
     Examples
     --------
@@ -174,9 +174,9 @@ def pressure_from_hardness(brinell):
 
 
 def hardness_from_pressure(pressure):
-    """Brinell hardness of steel that bears a Hertz pressure in Pa: the same the other way round.
+    """Brinell hardness of steel that bears a Hertz pressure in Pa, the inverse of `pressure_from_hardness`.
 
-    At least 180 HB, the softest that the standard tells of; beyond 400 HB extrapolated.
+    At least 180 HB, the lowest of the standard; extrapolated beyond 400 HB.
 
     Parameters
     ----------
@@ -208,9 +208,9 @@ UPPER_LIMITS = {
     "friction_coefficient": ("largest_friction_coefficient", "1", "friction coefficient that keeps the roller rolling"),
     "starting_torque": ("starting_torque", "N m", "torque to start"),
 }
-"""Largest values that limits are set to: where each is found, unit, what it is."""
+"""Upper limits: attribute of `Contact`, unit, words."""
 LOWER_LIMITS = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
-"""Smallest values that limits are set to: unit, what it is."""
+"""Lower limits: unit, words."""
 CURVE_LIMIT_UNITS = {"pressure_angle": "rad", "curvature_radius": "m"}
 LIMIT_UNITS = {name: of[-2] for name, of in (*UPPER_LIMITS.items(), *LOWER_LIMITS.items())} | CURVE_LIMIT_UNITS
 """Unit of each limit."""
@@ -229,7 +229,7 @@ class Contact:
     modulus : float
         E* of both materials together, Pa.
     roller : Roller
-        What turns: its spin, its pin, its life.
+        Its spin, pin load and life.
     limits : dict of str to float
 
     Examples
@@ -274,12 +274,12 @@ class Contact:
 
     @property
     def crank_angle(self):
-        """The solution's, rad."""
+        """Crank angles of the solution, rad."""
         return self.solution.crank_angle
 
     @property
     def cam_force(self):
-        """Of the cam on the roller along the normal, N, positive toward the inside of the pitch curve."""
+        """Force of the cam on the roller along the normal, N, positive toward the inside of the pitch curve."""
         return self.solution.cam_force
 
     @property
@@ -296,7 +296,7 @@ class Contact:
 
     @property
     def relative_radius(self):
-        """Radius of the cylinder that presses a plane as the roller does the cam, m."""
+        """Radius of the equivalent cylinder on a plane, m."""
         return roller.relative_radius(self._bend, self.roller_radius, _side_of(self.cam_force))
 
     @property
@@ -336,7 +336,7 @@ class Contact:
 
     @cached_property
     def largest_friction_coefficient(self):
-        """Largest friction coefficient that rolling without sliding takes, and where; without bound at a change."""
+        """Largest friction coefficient that rolling needs, and where; infinite at a change of sides."""
         if self.changes:
             return Peak(np.inf, self.changes[0])
         return self._highest(self.roller.friction_coefficient)
@@ -379,17 +379,17 @@ class Contact:
 
     @cached_property
     def reversals(self):
-        """What happens to the roller at each change of sides, as `Reversal`."""
+        """A `Reversal` for each change of sides."""
         return tuple(self.roller.reversal(self.solution, angle) for angle in self.changes)
 
     @cached_property
     def lift_off_speed(self):
-        """Crank speed from which the roller leaves the side it rests on, rad/s; 0 where both carry it at rest."""
+        """Crank speed at which the roller leaves its side at rest, rad/s; 0 if both sides carry it at rest."""
         return lift_off_speed(self.solution)
 
     @cached_property
     def starting_torque(self):
-        """Largest torque on the crank that turns the machine at rest, N m, and where."""
+        """Largest torque that turns the crank from rest, N m, and where."""
         return starting_torque(self.solution)
 
     @property
@@ -409,7 +409,7 @@ class Contact:
 
     @cached_property
     def exceeded(self):
-        """What exceeds the limits, as sentences with both numbers and the crank angle."""
+        """Sentences about exceeded limits, with both numbers and the crank angle."""
         found = []
         for name, (peak, unit, words) in UPPER_LIMITS.items():
             if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
@@ -446,7 +446,7 @@ class Contact:
 
 
 def _side_of(force):
-    """Side of the pitch curve on which a cam is that presses so: +1 around it, -1 inside."""
+    """Side of the pitch curve of a cam with this force: +1 around it (ring), -1 inside (disk)."""
     return np.where(force > 0.0, 1.0, -1.0)
 
 
@@ -456,7 +456,7 @@ MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
     "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS_RULE.usual}),
     "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
 }
-"""Unit and bounds of what is told of each part's material."""
+"""Unit and bounds of each material property."""
 
 
 def contact(
@@ -472,29 +472,28 @@ def contact(
     life_exponent=10 / 3,
     limits=None,
 ):
-    """Contact of the roller with its cam over the turn, and what exceeds limits.
+    """Contact of the roller with its cam over the turn, and exceeded limits.
 
     Parameters
     ----------
     solution : Solution
         Of one design, of a mechanism with a `CamRoller`.
     roller_radius, width : float
-        m; what is left out of these four is that of the scene's own `Roller`.
+        m; of these four, missing ones come from the scene's own `Roller`.
     youngs_modulus : float or (roller, cam)
         Pa.
     poissons_ratio : float or (roller, cam)
     roller_mass : float
-        Of what turns, a part of the block's mass, kg.
+        Mass of the roller, a part of the block's mass, kg.
     roller_inertia : float, optional
-        Of what turns about its pin, kg m2; m R^2 / 2 unless told.
+        About its pin, kg m2; default m R^2 / 2.
     load_rating : float, optional
         Basic dynamic load rating C of its bearing (ISO 281), N.
     life_exponent : float
         10/3 for roller bearings, 3 for ball bearings.
     limits : dict of str to float, optional
         Largest "pressure" (Pa), "pin_load" (N), "friction_coefficient", "pressure_angle" (rad) and "starting_torque"
-        (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s). `exceeded` tells by what
-        they are broken.
+        (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s); see `Contact.exceeded`.
 
     Returns
     -------
@@ -519,11 +518,12 @@ def contact(
     checks.require("contact", checks.solution("solution", solution))
     require_single(solution, "contact", "cam_force")
     groups = solution.mechanism.led_by_ground
-    told = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
-    told |= {"poissons_ratio": poissons_ratio}
+    given = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
+    given |= {"poissons_ratio": poissons_ratio}
     if groups:
-        told = _fill_from_roller(told, groups[0].roller)
+        given = _fill_from_roller(given, groups[0].roller)
     limits = {} if limits is None else limits
+    known = limits if isinstance(limits, dict) else {}
     own = {"roller_mass": (roller_mass, "kg", NOT_NEGATIVE), "life_exponent": (life_exponent, "1", POSITIVE)}
     optional = {
         "roller_inertia": (roller_inertia, "kg*m**2", NOT_NEGATIVE),
@@ -534,9 +534,9 @@ def contact(
         "contact",
         None if groups else _no_roller_problem(solution.mechanism),
         *_limit_problems(limits, load_rating),
-        **_contact_rules(told),
+        **_contact_rules(given),
         **own,
-        **_limit_rules(limits),
+        **{f"limit {name!r}": (known[name], unit, POSITIVE) for name, unit in LIMIT_UNITS.items() if name in known},
     )
     cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
@@ -549,14 +549,14 @@ def contact(
     return found
 
 
-def _contact_rules(told):
-    """Values and rules of what is told of a contact, a material of roller and cam each."""
+def _contact_rules(given):
+    """Values and rules of a contact, the material of roller and cam each."""
     rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
-        name: (told[name], "m", POSITIVE) for name in ("roller_radius", "width")
+        name: (given[name], "m", POSITIVE) for name in ("roller_radius", "width")
     }
     pairs = [
         value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
-        for value in map(told.get, MATERIAL_RULES)
+        for value in map(given.get, MATERIAL_RULES)
     ]
     for part, *both in zip(PARTS, *pairs, strict=True):
         rules |= {
@@ -566,22 +566,16 @@ def _contact_rules(told):
     return rules
 
 
-def _limit_rules(limits):
-    """Values and rules of the limits that there are."""
-    known = {name: limits[name] for name in LIMIT_UNITS if isinstance(limits, dict) and name in limits}
-    return {f"limit {name!r}": (value, LIMIT_UNITS[name], POSITIVE) for name, value in known.items()}
-
-
-def _fill_from_roller(told, roller):
-    """What was told, the rest as of the roller of the scene; refused where that has none either."""
-    lacking = [name for name, value in told.items() if value is None]
+def _fill_from_roller(given, roller):
+    """Given values, missing ones from the roller of the scene; refused without a roller."""
+    lacking = [name for name, value in given.items() if value is None]
     if lacking and roller is None:
         raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
-    return told | {name: _roller_and_cam_value(roller, name.removeprefix("roller_")) for name in lacking}
+    return given | {name: _roller_and_cam_value(roller, name.removeprefix("roller_")) for name in lacking}
 
 
 def _roller_and_cam_value(roller, name):
-    """A number of the roller, of a material also that of its cam where it is another."""
+    """A value of the roller, paired with that of its cam if it has one."""
     own, other = getattr(roller, name), getattr(roller, f"cam_{name}", None)
     return own if other is None else (own, other)
 
@@ -593,7 +587,7 @@ def _no_roller_problem(mechanism):
 
 
 def _limit_problems(limits, load_rating):
-    """What is wrong with the names of limits, as sentences."""
+    """Sentences about wrong names of limits."""
     if not isinstance(limits, dict):
         return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
     rating = "a limit of the life takes the load_rating of the roller's bearing"

@@ -1,4 +1,4 @@
-"""Where the search for a torque-free cam begins: the machine with a cam for the cosine law, and what may vary of it."""
+"""Start of the search for a torque-free cam: the machine with a cam for the cosine law, and its varied numbers."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,7 +19,7 @@ from ..solution.scene import Scene
 
 OWNER = "torque-free cam"
 MAX_HARMONICS = 64
-"""With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
+"""Most harmonics of a search within a minute; with eight the rest is below workshop accuracy."""
 END_RULES = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
 OPTION_RULES: dict[str, tuple[str, dict]] = {
     "guide_offset": ("m", {}),
@@ -27,22 +27,22 @@ OPTION_RULES: dict[str, tuple[str, dict]] = {
     "coupler_spring": ("rad", {}),
     "shaft_radius": ("m", {"low": 0.0, "strict": True}),
 }
-"""Units and limits of what the machine may have of its own."""
+"""Units and limits of optional parts."""
 LENGTH_REACH = 0.5
-"""How far lengths may lie from where the search begins, relative to half the stroke."""
+"""Largest change of lengths from the start of the search, relative to half the stroke."""
 MAX_STIFFNESS_RATIO = 3.0
-"""How many times stiffer the spring may be than one that balances the slider."""
+"""Largest stiffness relative to the spring that balances the slider."""
 HARMONIC_REACH = 0.1
-"""How far, relative to half the stroke, the harmonics of random starts lie from a circle about O."""
+"""Largest harmonics of random starts beside a circle about O, relative to half the stroke."""
 WEIGHT_REACH = 0.1
-"""How far the counterweight may lie from where it balances the coupler's weight, relative to its arm."""
+"""Largest shift of the counterweight from where it balances the coupler's weight, relative to its arm."""
 SPRING_PATH, OFFSET_PATH = "torsion_spring.stiffness", "guide_offset"
 WEIGHT_PATHS = ("crank.centre.along", "crank.centre.across")
 
 
 @dataclass(frozen=True)
 class Machine:
-    """A scene whose coupler keeps the place of its mass centre, as a share of its length."""
+    """A scene whose coupler keeps its mass centre at a share of its length."""
 
     scene: Scene
     share: float
@@ -64,7 +64,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class Start:
-    """Machine that a search begins with.
+    """Start of a search.
 
     Attributes
     ----------
@@ -73,9 +73,9 @@ class Start:
         Extreme positions of the slider, m.
     vary : dict of path to (low, high)
     first : set of str
-        Those that the least squares of the torque find.
+        Paths varied by the least squares of the torque.
     weight : float
-        Of the coupler, what its joint A carries, across the guide to its left, N.
+        Weight of the coupler on its joint A, across the guide to its left, N.
     unit : float
         Mean torque of a plain crank-slider with that stroke, N m.
     """
@@ -96,7 +96,7 @@ class Start:
         return (self.ends[1] - self.ends[0]) / 2
 
     def random(self, names, start, generator):
-        """A start with harmonics anywhere within a tenth of the radius."""
+        """A start with random harmonics within a tenth of the radius."""
         found = start.copy()
         for place, name in enumerate(names):
             if name.startswith(("cam.cosine", "cam.sine")):
@@ -107,7 +107,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Options:
-    """Harmonics of the cam, and what else the machine may have of its own, as `torque_free_cam` takes them."""
+    """Harmonics of the cam and optional parts, as in `torque_free_cam`."""
 
     cosine: int = 8
     sine: int = 0
@@ -121,7 +121,7 @@ class Options:
 
     @classmethod
     def checked(cls, *problems, **given):
-        """Options of what a user gives; all problems in one error, others that are known among them."""
+        """Checked options; one error lists their faults and the given `problems`."""
         asked = cls(**given)
         sine, gravity = asked.sine, asked.gravity
         own = {name: (given[name], *rule) for name, rule in OPTION_RULES.items() if given.get(name) is not None}
@@ -137,7 +137,7 @@ class Options:
 
 
 def _harmonics_problem(name, value):
-    """What is wrong with a number of harmonics, as a sentence, or None."""
+    """Sentence about a wrong number of harmonics, or None."""
     wrong = checks.count(name, value)
     if wrong or value <= MAX_HARMONICS:
         return wrong
@@ -145,7 +145,7 @@ def _harmonics_problem(name, value):
 
 
 def starting_machine(given, options) -> Start:
-    """The machine that a search begins with, made of the links and loads of a scene.
+    """The start of a search, with the links and loads of a scene.
 
     Raises
     ------
@@ -162,7 +162,8 @@ def starting_machine(given, options) -> Start:
     share = group.coupler.centre[0] / group.coupler_length
     links["coupler"] = _coupler_of_length(group.coupler, law.coupler_length, share)
     rate = group.slider.mass * given.crank_speed * given.crank_speed
-    loads = (*_remaining_loads(given.loads, options.gravity), Spring(rate, mean))
+    replaced = Spring if options.gravity else (Spring, Gravity)
+    loads = (*(item for item in given.loads if not isinstance(item, replaced)), Spring(rate, mean))
     carried = group.coupler.mass * (1.0 - share)
     weight = carried * (_gravity_across(loads, guide) if options.gravity else 0.0)
     vary = _default_bounds(options, half, mean, law.coupler_length, rate)
@@ -190,7 +191,7 @@ def starting_machine(given, options) -> Start:
 
 
 def crank_slider_links(given):
-    """Slider group of a scene that is a crank-slider, and its links by name; all else is refused."""
+    """Slider group of a crank-slider scene, and its links by name; other scenes are refused."""
     mechanism = given.mechanism
     roller, slider = crank_slider_parts(mechanism) or (None, None)
     if slider is None or slider.assembly != 1:
@@ -203,7 +204,7 @@ def crank_slider_links(given):
 
 
 def _ends(given, ends):
-    """Extreme positions of the slider: those of the scene unless told."""
+    """Extreme positions of the slider, m; by default those of the scene."""
     low, high = extrema(given.solve(12), "slider_position").range if ends is None else map(float, ends)
     if not (0 < low < high):
         raise DesignError(
@@ -218,13 +219,8 @@ def _coupler_of_length(coupler, length, share):
     return replace(coupler, centre=(share * length, coupler.centre[1]))
 
 
-def _remaining_loads(loads, gravity):
-    """Loads that stay: springs are found anew, weight acts if it shall."""
-    return (item for item in loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity)))
-
-
 def _default_bounds(options, half, mean, length, rate):
-    """Bounds of the cam, the coupler and the linear spring, by path, about where the search begins."""
+    """Bounds of the cam, the coupler and the linear spring by path, around the start."""
     reach = LENGTH_REACH * half
     vary = {"cam.cosine.0": (half - reach, half + reach)}
     vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)}
@@ -257,7 +253,7 @@ def _gravity_across(loads, guide):
 
 
 def _weight_spring(moment, free_angle):
-    """Torsion spring whose couple on the coupler is a moment where the coupler lies along the guide."""
+    """Torsion spring with a given moment on the coupler where the coupler lies along the guide."""
     if not moment:
         raise ParameterError("torque-free cam: coupler_spring carries weight across the guide, but none acts")
     if not moment * free_angle > 0:

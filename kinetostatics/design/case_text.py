@@ -1,7 +1,7 @@
-"""Scenes written as case files: what a design is, ready for `kinetostatics run` and `ks.load_case`.
+"""Scenes written as case files for `kinetostatics run` and `ks.load_case`.
 
-Keys and units are those of the parts' own rules, as case files have them; numbers are written with all their digits.
-Tables of loads and cams stand in CSV files beside it, called by its name, the variant and what they are of.
+Keys and units follow the rules of the parts; numbers keep all digits. Tables of loads and cams go to CSV files beside
+the case file, named by it, the variant and their part.
 """
 
 import json
@@ -30,14 +30,14 @@ CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "ha
 def write_case(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference.
 
-    Before them may stand a comment, behind them tables of designs as they stood in another file.
+    A comment precedes them; tables of designs from another case file follow.
 
     Raises
     ------
     ParameterError
-        A part of a scene is a function or an object that case files have no text for.
+        A part of a scene is a function or an object without a text in case files.
     FileError
-        A file cannot be written, or one of a table is there already.
+        A file cannot be written, or a file of a table exists already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -55,12 +55,12 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None) -> P
 
 
 def tables(path, scenes) -> dict[Path, str]:
-    """Text of each file beside a case file that a table of its scenes stands in.
+    """Text of each file with a table of the scenes, by path beside the case file.
 
     Raises
     ------
     FileError
-        One of them is there already.
+        One of them exists already.
     """
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
     there = [str(file) for file in beside if file.exists()]
@@ -70,19 +70,14 @@ def tables(path, scenes) -> dict[Path, str]:
 
 
 def table(head, raw) -> str:
-    """Text of a table as it was read from a case file, tables within it below."""
+    """Text of a table read from a case file, inner tables below it."""
     inner = {key: value for key, value in raw.items() if isinstance(value, dict)}
-    own = [f"{_key(key)} = {_toml_value(value)}" for key, value in raw.items() if key not in inner]
+    own = [f"{_key(key)} = {_quoted(value)}" for key, value in raw.items() if key not in inner]
     return "\n".join(["", f"[{head}]", *own, *(table(f"{head}.{_key(key)}", value) for key, value in inner.items())])
 
 
-def _toml_value(value):
-    """Text, truth values, numbers and lists of them as TOML and JSON alike have them."""
-    return json.dumps(value, ensure_ascii=False)
-
-
 def variant(name, scene, stem="case") -> str:
-    """Text of a variant of a case file: a scene under a name; its tables are in files that begin with a stem."""
+    """Text of a variant, a scene under a name; names of its table files begin with `stem`."""
     head = f"variants.{_key(name)}"
     keys, tables = _mechanism_keys(scene.mechanism, _table_file(stem, name, "cam"))
     keys["crank_speed"] = _number(scene.crank_speed, "rad/s", "crank_speed")
@@ -115,7 +110,7 @@ def _table_file(stem, variant, what):
 
 
 def _files(variant, scene, path):
-    """Name and text of each file that a variant's tables stand in."""
+    """Name and text of each file with a table of a variant."""
     others = [item for item in scene.loads if not isinstance(item, Gravity)]
     for number, item in enumerate(others, 1):
         found = item.value_now
@@ -138,7 +133,7 @@ def _columns(columns):
 
 
 def _mechanism_keys(mechanism, cam_file):
-    """Keys of a mechanism, and its tables; a cam from a table stands in a file."""
+    """Keys of a mechanism, and its tables; a sampled cam refers to a file."""
     crank = _link_keys(mechanism.crank.link)
     keys: dict[str, str] = {}
     tables = [("crank", crank)] if crank else []
@@ -168,7 +163,7 @@ def _load_word(load):
 
 
 def _keys(item, file=""):
-    """Keys of a part by its rules; those at their defaults are left out, and a table stands in a file."""
+    """Keys of a part by its rules, without defaults; a table refers to a file."""
     defaults = {field.name: field.default for field in fields(item)}
     found: dict[str, str] = {}
     for name, rule in item.RULES.rules.items():
@@ -217,7 +212,7 @@ def _value(value, rule, name):
 
 
 def _table_reference(values, file):
-    """Text of a table of values that stands in a file."""
+    """Text that refers to a table of values in a file."""
     keys = {"file": _quoted(file), "over": _quoted(values.over)}
     if values.period != TURN:
         keys["period"] = _quoted(f"{360 * round(values.period / TURN)} deg")
@@ -257,7 +252,7 @@ def _cam_text(cam, file):
 
 
 KEYS_BY_FIELD = {"pitch_radius": "radius"}
-"""Keys of case files by fields that are called otherwise."""
+"""Keys of case files for fields of another name."""
 
 
 def _inline_table(keys):
@@ -275,12 +270,13 @@ def _single_number(value, name):
 
 
 def _unit_text(unit):
-    """A unit as case files have it."""
+    """A unit as case files spell it."""
     return unit.replace("**", "^").replace("*", " ") or "1"
 
 
-def _quoted(text):
-    return json.dumps(text, ensure_ascii=False)
+def _quoted(value):
+    """Text of a string, boolean, number or list, equal in TOML and JSON."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _key(name):

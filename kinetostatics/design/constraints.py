@@ -1,4 +1,4 @@
-"""What is asked of a design: an output to be made least or greatest, and limits of others, read from texts."""
+"""Constraints of a design: limits of outputs, parsed from texts, and limits by load tables over travel."""
 
 import re
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
 
 @dataclass(frozen=True)
 class Constraint:
-    """An output and what it must be.
+    """A limit of an output.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Constraint:
     value : float
         SI.
     span : float, optional
-        Of a limit that a table over travel sets, the length of the table, m, by which its misses are counted.
+        Length, m, of the table over travel that sets the limit; the unit of its excess.
     """
 
     output: Output
@@ -35,7 +35,7 @@ class Constraint:
 
     @property
     def scale(self):
-        """Size by which misses of the limit are counted."""
+        """Size that makes excesses relative."""
         return self.span or abs(self.value) or 1.0
 
     def __str__(self):
@@ -44,9 +44,9 @@ class Constraint:
 
 
 def parse_constraint(text, known) -> Constraint:
-    """Demand from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
+    """Constraint from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
 
-    `known` is the scene, or what has a mechanism, that the output is of.
+    `known` is the scene, or another object with a mechanism.
 
     Raises
     ------
@@ -70,12 +70,12 @@ def parse_constraint(text, known) -> Constraint:
 
 
 def parse_output(text, known) -> Output:
-    """Output of a design, with its unit; refused if nothing tells how it changes with the numbers.
+    """Output of a design, with its unit; refused if it has no derivatives by the numbers.
 
     Raises
     ------
     ParameterError
-        The text names no reduction and quantity, or the place of an extreme, which jumps.
+        The text names no reduction and quantity, or the angle of an extreme, which jumps.
     """
     output = parsed(text).of(known)
     if output.reduction.endswith("_at"):
@@ -84,7 +84,7 @@ def parse_output(text, known) -> Output:
 
 
 def parse_constraints(texts, known):
-    """Limits from their texts; all that is wrong with them in one error."""
+    """Constraints from texts; one error lists all faults."""
     if not isinstance(texts, str | Iterable):
         raise ParameterError(
             f'design: limits must be texts, such as ["largest O <= 0.75 kN"], got {checks.shown(texts)}'
@@ -100,7 +100,7 @@ def parse_constraints(texts, known):
 
 
 def table_limits(scene):
-    """Limits that keep each slider within the tables over travel that loads read by it."""
+    """Limits that keep each slider within the load tables over its travel."""
     found = {}
     for table in map(value_of, scene.loads):
         if isinstance(table, Table) and table.over == "travel":

@@ -1,7 +1,4 @@
-"""A counterweight on a link, the mechanism with it, and what it did: masses, arms, and the price elsewhere.
-
-Counterweights of balanced variants and what they do, as a table.
-"""
+"""Counterweights on links: the mechanism with them, masses, arms, limits, and their effect on forces and torque."""
 
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,7 +18,7 @@ from .linkage import crank_sliders
 PARALLEL_TOLERANCE = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
 CHANGE_TOLERANCE = 1e-10
-"""Change, per cent, that is rounding."""
+"""Change, per cent, that counts as 0."""
 
 MASS, LENGTH = (checks.Optional(checks.Number(unit, low=0.0, strict=True)) for unit in ("kg", "m"))
 COUNTERWEIGHT_RULES = {
@@ -36,7 +33,7 @@ UNBALANCE_RULE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lo
 
 @dataclass(frozen=True)
 class Counterweight:
-    """What is fixed of a counterweight before its unbalance is known: its mass or its arm, and its limits.
+    """A counterweight of given mass or arm, with limits; its unbalance follows later.
 
     Parameters
     ----------
@@ -109,7 +106,7 @@ class Counterweight:
         return (self.mass or 0.0) * (self.keep_out or 0.0), largest
 
     def problems(self, link, mass, arm):
-        """How a counterweight found breaks its limits, beyond rounding."""
+        """Sentences about limits that a counterweight breaks beyond rounding."""
         if mass == 0:
             return
         for limit, found, unit, sign, words in [
@@ -123,7 +120,7 @@ class Counterweight:
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
-    """A balanced mechanism and what was done to it.
+    """A mechanism with counterweights.
 
     Attributes
     ----------
@@ -151,7 +148,7 @@ class Balanced:
 
     @property
     def ratio(self):
-        """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN where it has no meaning, as after full balancing."""
+        """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN if undefined, as after full balancing."""
         chains = crank_sliders(self.mechanism)
         if not chains:
             return np.nan
@@ -190,7 +187,7 @@ class Balanced:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("link")
 
     def effect(self, *, crank_speed, crank_acceleration=0.0, loads=()):
-        """The price and the gain: largest forces, moments and torque before and after, as a pandas DataFrame.
+        """Largest forces, moments and torque before and after, as a pandas DataFrame.
 
         Examples
         --------
@@ -270,7 +267,7 @@ def counterweight(mechanism, link, unbalance, weight):
 
 
 def _signed_distance(place):
-    """Distance of a point from the joint, negative behind it."""
+    """Distance of a point from the joint, negative if `along` is."""
     return float(np.copysign(np.hypot(*place), place[0]))
 
 
@@ -316,7 +313,7 @@ def _guide_force_rows(mechanism):
 
 
 def balancing_table(reference, variants, sampling=None):
-    """Counterweights of balanced variants and what they do to the shaking force, a column for each link balanced.
+    """Counterweights and shaking forces of balanced variants, a column for each balanced link.
 
     Parameters
     ----------
@@ -324,7 +321,7 @@ def balancing_table(reference, variants, sampling=None):
         Unbalanced mechanism.
     variants : dict of name to (Balanced, Solution)
     sampling : float, optional
-        Crank-angle step (rad) of a published study, to show beside the true extremes what its grid gives.
+        Crank-angle step (rad) of a published study; adds the extremes on its grid.
 
     Returns
     -------
@@ -359,7 +356,7 @@ def balancing_table(reference, variants, sampling=None):
 
 
 def _largest_by_size(values):
-    """Value of largest magnitude with its sign; of several alike but for rounding the first."""
+    """Value of largest magnitude, with its sign; the first of values equal but for rounding."""
     size = np.abs(values)
     return values[np.flatnonzero(size >= (1 - 1e-12) * size.max())[0]]
 

@@ -1,4 +1,4 @@
-"""What sets the speed of a machine with a cam and springs: lift-off, surge of the springs, torque to start."""
+"""Speed limits of machines with a cam and springs: lift-off, surge of the springs, torque to start."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -13,15 +13,15 @@ from ..results.turn import require_single
 from ..solution.scene import Scene
 
 REST_SPEED_RATIO = 1e-6
-"""Share of the crank speed at which contact forces are those at rest, but for the sign of one that vanishes there."""
+"""Share of the crank speed that stands for rest; it keeps the sign of forces that vanish at rest."""
 QUADRATIC_TOLERANCE = 1e-9
-"""How far forces may be from growing with the square of the speed, relative to the largest."""
+"""Deviation of forces from growth with the squared speed, relative to the largest, that counts as 0."""
 MAX_SPEED_RATIO = 1e3
-"""Times its crank speed up to which lift-off is looked for."""
+"""Largest speed of the search for lift-off over the crank speed."""
 
 
 class Surge(NamedTuple):
-    """A spring's own first oscillation between its ends, beside the motion of its end.
+    """First natural oscillation of a spring between its ends, and the harmonics of its end.
 
     Attributes
     ----------
@@ -61,19 +61,19 @@ class Surge(NamedTuple):
 
 
 def lift_off_speed(solution, force="cam_force"):
-    """Crank speed from which the roller leaves the side of the cam that it rests on, at constant speed, rad/s.
+    """Crank speed at which the roller leaves the side of the cam that carries it at rest, rad/s.
 
     Parameters
     ----------
     solution : Solution
-        Of one design, of a mechanism with a `CamRoller` or a follower; its speed tells which way the crank turns.
+        Of one design, of a mechanism with a `CamRoller` or a follower; its speed gives the sense of rotation.
     force : str
         That of the contact: "contact_force" of a follower on a cam that turns, with its label.
 
     Returns
     -------
     float
-        0 where both sides carry it already at rest, inf where none of 1000 times the speed lifts it off.
+        0 if both sides carry it at rest, inf without lift-off up to 1000 times the crank speed.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def lift_off_speed(solution, force="cam_force"):
 
 
 def _lift_off_by_squares(solution, force, fast):
-    """Where forces are F0 + F2 speed^2: the least speed for which they vanish at some crank angle."""
+    """Least speed at which a force F0 + F2 speed^2 vanishes at some crank angle, rad/s."""
 
     def ratio(angle):
         rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
@@ -116,7 +116,7 @@ def _lift_off_by_squares(solution, force, fast):
 
 
 def _lift_off_by_search(solution, force, fast, side, angle):
-    """Where loads hang on the speed in another way."""
+    """Least speed at which the force vanishes at some crank angle, by search, rad/s."""
     from scipy.optimize import brentq
 
     def least(speed):
@@ -131,7 +131,7 @@ def _lift_off_by_search(solution, force, fast, side, angle):
 
 
 def lifted(solution, force="cam_force"):
-    """Crank angles between which a force of contact pulls, so that what it presses on would lift off.
+    """Crank-angle intervals in which a contact force pulls, so the contact would lift off.
 
     Parameters
     ----------
@@ -275,12 +275,12 @@ def _require(solution, owner, name):
 
 
 def _mean_speed(solution):
-    """Mean crank speed over the crank angles given, with its sign; 1 rad/s, its way, of a machine that stands."""
+    """Mean crank speed over the crank angles, signed, rad/s; 1 rad/s in its sense for a machine at rest."""
     return float(np.mean(solution.crank_speed)) or float(np.ravel(solution.crank_sense)[0])
 
 
 def _solution_at(solution, speed, angle):
-    """The solution at another speed of the same sense of rotation, or at rest, about to turn that way."""
+    """Solution at another speed of the same sense of rotation, or at rest in that sense."""
     drive = {"crank_speed": speed, "crank_acceleration": 0.0, "sense": np.copysign(1.0, _mean_speed(solution))}
     return replace(Scene.of(solution), **drive).solve(angle)
 

@@ -1,4 +1,4 @@
-"""Counterweights whose unbalances make a norm of the shaking force least, found by search."""
+"""Counterweights that minimise a norm of the shaking force, by numerical search."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,12 +13,12 @@ from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
 
 PEAK_NORMS = ("largest", "along", "across")
-"""Norms that are the largest of a size over the turn."""
+"""Norms that are a largest value over the turn."""
 
 
 @dataclass(frozen=True, eq=False)
 class ShakingSearch:
-    """What is searched: unbalances of counterweights, relative to the largest static moment.
+    """Norm of the shaking force over unbalances of counterweights, relative to the largest static moment.
 
     Attributes
     ----------
@@ -28,9 +28,9 @@ class ShakingSearch:
         Of force and moment, 1/N and 1/(N m).
     counterweights : dict of link to Counterweight
     size : int
-        Components of each unbalance: 2 if it may lie beside its link's line, else 1.
+        Components of each unbalance: 2 if it may leave its link's line, else 1.
     turn : array
-        Crank angles at which the norm is taken.
+        Crank angles of the norm, rad.
     scale : float
         The largest static moment, kg m.
     reference : float
@@ -48,19 +48,19 @@ class ShakingSearch:
 
     @classmethod
     def of(cls, mechanism, norm, weights, counterweights, size, turn):
-        """The search of a mechanism, with its scale and reference."""
+        """The search for a mechanism, with its scale and reference."""
         scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
         made = cls(mechanism, norm, weights, counterweights, size, turn, scale)
         return replace(made, reference=made.value(made.none) or 1.0)
 
     @property
     def none(self):
-        """Unknowns of no counterweight."""
+        """Unknowns without counterweights."""
         return np.zeros(self.size * len(self.counterweights))
 
     @property
     def starts(self):
-        """Unknowns to begin with: of weights that keep out of a hole on either side of it."""
+        """Initial unknowns; one on each side where weights keep out of a hole."""
         kept_out = any(weight.keep_out for weight in self.counterweights.values())
         return (self.none - 0.5, self.none + 0.5) if kept_out else (self.none,)
 
@@ -73,17 +73,19 @@ class ShakingSearch:
         return result
 
     def solved(self, unknowns):
-        """Its solution at crank speed 1."""
+        """Solution of that mechanism at crank speed 1 rad/s."""
         return Solution(self.balanced(unknowns).mechanism, self.turn, 1.0, 0.0)
 
     def sizes(self, unknowns):
-        """What the norm looks at, at each crank angle, relative to the reference."""
+        """Sizes under the norm at each crank angle, relative to the reference."""
         return _force_sizes(self.solved(unknowns), self.norm) / self.reference
 
     def value(self, unknowns):
         """The norm."""
         if self.norm == "weighted":
-            return _weighted_norm(self.solved(unknowns), self.weights)
+            solved, (by_force, by_moment) = self.solved(unknowns), self.weights
+            force, moment = by_force * magnitude(solved.shaking_force), by_moment * solved.shaking_moment
+            return np.sqrt(np.mean(force * force + moment * moment))
         return (np.mean if self.norm == "mean" else np.max)(_force_sizes(self.solved(unknowns), self.norm))
 
     def objective(self, unknowns):
@@ -92,12 +94,12 @@ class ShakingSearch:
 
 
 def least_shaking(search) -> Balanced:
-    """The mechanism with the best counterweights."""
+    """`Balanced` with the counterweights of the least norm."""
     best = min((_minimise_norm(search.objective, start) for start in search.starts), key=search.objective)
     if search.norm not in PEAK_NORMS:
         return search.balanced(best)
     sizes = partial(_force_sizes, norm=search.norm)
-    for _ in range(8):  # what is largest between the angles joins them
+    for _ in range(8):  # peaks between the angles join them
         best = min(best, _minimise_peak(search.sizes, best), key=search.objective)
         peaks = extremes(search.solved(best), sizes)
         if peaks.range[1] <= search.value(best) + 1e-10 * search.reference:
@@ -107,7 +109,7 @@ def least_shaking(search) -> Balanced:
 
 
 def _minimise_norm(objective, start):
-    """Minimum by Nelder and Mead, begun anew where it stops."""
+    """Minimiser by Nelder and Mead, restarted once."""
     from scipy.optimize import minimize
 
     options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
@@ -122,7 +124,7 @@ def _stop_at_zero(intermediate_result):
 
 
 def _minimise_peak(sizes, start):
-    """Minimum of the largest of many sizes: of a level that none of them exceeds (SLSQP)."""
+    """Minimiser of the largest of many sizes: of a level above all of them (SLSQP)."""
     from scipy.optimize import minimize
 
     found = minimize(
@@ -137,19 +139,14 @@ def _minimise_peak(sizes, start):
 
 
 def _force_sizes(solution, norm):
-    """What the norm looks at, at each crank angle: the shaking force or a component of it."""
+    """Size of the shaking force, or of its component, at each crank angle, N."""
     if norm in ("along", "across"):
         return np.abs((along_guide if norm == "along" else across_guide)(solution))
     return magnitude(solution.shaking_force)
 
 
-def _weighted_norm(solution, weights):
-    force, moment = weights[0] * magnitude(solution.shaking_force), weights[1] * solution.shaking_moment
-    return np.sqrt(np.mean(force * force + moment * moment))
-
-
 def _add_within_limits(mechanism, link, unbalance, weight):
-    """A counterweight of that unbalance, on whichever side, reduced to its limits."""
+    """`Balanced` with a counterweight of this unbalance, on either side, cut to its limits."""
     size = float(np.hypot(*unbalance))
     smallest, largest = weight.unbalances()
     kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])

@@ -1,11 +1,7 @@
-"""Characteristics of the four-bar: where it closes, which joints turn fully, how far and how evenly it swings.
+"""Four-bars: their bars, Grashof's class with the crank angles of assembly, and swing and transmission of the rocker.
 
-The chain unit of the Belarusian study counts its crank angle from +y, clockwise, and starts with the rocker at rest
-angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle into the library's.
-
-Class of a four-bar by Grashof's rule: which joints turn fully, and at which crank angles it closes.
-
-Which everyday mechanism it is, read off its bars, joints and guides: four-bar, crank-slider, or neither.
+The chain unit of the Belarusian study measures its crank angle from +y, clockwise, and the rocker angle from its
+start; `chain_unit` builds it and `chain_unit_angle` converts its crank angle into the library's. Angles are in rad.
 """
 
 from collections.abc import Mapping
@@ -53,7 +49,7 @@ def four_bar_shape(mechanism) -> FourBar | None:
 
 
 def crank_sliders(mechanism) -> tuple[CrankSlider, ...]:
-    """Chains of crank, coupler and slider in a mechanism, as many as couplers lead from the crank to sliders."""
+    """Chains of crank, coupler and slider, one for each coupler from the crank to a slider."""
     joints, bars = mechanism.joints, mechanism.crank.bars
     return tuple(
         CrankSlider(crank, bar, joints[bar.end].link)
@@ -64,7 +60,7 @@ def crank_sliders(mechanism) -> tuple[CrankSlider, ...]:
 
 
 CHANGE_POINT_TOLERANCE = 1e-12
-"""Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
+"""Difference of the two sums of lengths, relative to them, below which a four-bar has a change point."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +156,7 @@ def grashof(mechanism):
 
 
 def four_bar_of(mechanism):
-    """The bars of a four-bar; an error for any other mechanism."""
+    """The bars of a four-bar; refused for any other mechanism."""
     checks.require("linkage", checks.mechanism("mechanism", mechanism))
     bars = four_bar_shape(mechanism)
     if bars is None:
@@ -169,10 +165,10 @@ def four_bar_of(mechanism):
 
 
 def _closed_intervals(lengths, frame_angle, slack):
-    """Crank angles at which A is no nearer to O2 than the difference of coupler and rocker and no farther than the sum.
+    """Crank-angle intervals with the distance A-O2 between difference and sum of coupler and rocker, rad.
 
-    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b);
-    within `slack` of 0 or 1, as rounding of the lengths of a change-point linkage makes it, it is 0 or 1.
+    At the distance D the crank is theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b). Values
+    within `slack` of 0 or 1, from rounded lengths of a change-point linkage, become 0 or 1.
     """
     r, b = lengths["crank"], lengths["frame"]
 
@@ -215,7 +211,8 @@ CHAIN_UNIT_RULES = {
 }
 ANGLE_RULE, START_RULE = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
 QUARTER, TURN, FULL_TURN = pi / 2, 2 * pi, ((0.0, 2 * pi),)
-ROCKER_ANGLES = 720  # crank angles a turn on which a rocker is followed around
+ROCKER_ANGLES = 720
+"""Crank angles per turn that make the rocker angle continuous."""
 
 
 def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
@@ -330,7 +327,7 @@ def rocker_angle(solution, start=QUARTER):
 
 
 def _clockwise(solution, link, beginning):
-    """Angle of a link, clockwise from where another solution has it, from -pi to pi."""
+    """Angle of a link, clockwise from its angle in another solution, from -pi to pi, rad."""
     here, before = (at.placement.links[link].direction for at in (solution, beginning))
     return np.arctan2(cross(here, before), dot(here, before))
 
@@ -403,12 +400,12 @@ class Swing:
 
 
 def has_swinging_rocker(mechanism):
-    """Whether it is a four-bar whose crank turns fully and whose rocker does not."""
+    """Whether the mechanism is a four-bar whose crank turns fully and whose rocker does not."""
     bars = four_bar_shape(mechanism)
-    return bars is not None and _swings(bars, grashof(mechanism))
+    return bars is not None and _rocker_swings(bars, grashof(mechanism))
 
 
-def _swings(bars, found_class):
+def _rocker_swings(bars, found_class):
     return found_class.intervals == FULL_TURN and bars.rocker.start not in found_class.turning_joints
 
 
@@ -442,7 +439,7 @@ def swing(solution, start=QUARTER):
     """
     bars = _bars_of(solution)
     found_class = grashof(solution.mechanism)
-    if not _swings(bars, found_class):
+    if not _rocker_swings(bars, found_class):
         raise ParameterError(
             "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
             f"{found_class.kind}{'' if found_class.intervals == FULL_TURN else ' that does not close all round'}"
@@ -457,8 +454,8 @@ def _bars_of(solution):
     return four_bar_of(solution.mechanism)
 
 
-def _standing(name, solution):
-    """What is wrong with a solution whose speeds are to be compared with the crank's."""
+def _speed_problem(name, solution):
+    """Sentence about a solution without a crank speed to compare with, or None."""
     problem = checks.solution(name, solution)
     if problem is None and np.any(np.asarray(solution.crank_speed) == 0):
         return f"{name}: the crank speed is 0, but speeds are compared with it; give one"
@@ -500,7 +497,7 @@ def characteristics(solutions, reference):
         "characteristics",
         None if named and solutions else f"solutions must be a dict of name to Solution, got {solutions!r}",
         checks.choice("reference", reference, tuple(solutions)) if named and solutions else None,
-        *(_standing(name, solution) for name, solution in (solutions.items() if named else ())),
+        *(_speed_problem(name, solution) for name, solution in (solutions.items() if named else ())),
     )
     columns = {}
     for name, solution in solutions.items():

@@ -1,4 +1,4 @@
-"""Optimisation of any machine under limits: what is made least, what may vary, what must hold, by texts."""
+"""Optimisation of any machine under limits: goal and limits are texts, limits hold at true extremes."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,11 +19,11 @@ from .search import LIMIT_TOLERANCE, Goal, SearchEnd, best_end, excess_over, sea
 ANGLES = 720
 """Crank angles over the period."""
 MIN_ANGLES = 12
-"""Crank angles below which curves say nothing."""
+"""Fewest crank angles of a curve."""
 EXTREME_REDUCTIONS = ("largest", "smallest", "largest_absolute", "range")
-"""Reductions whose true values are true extremes."""
+"""Reductions checked at true extremes."""
 MAX_TIGHTENINGS = 4
-"""How often limits are drawn in until true extremes keep them."""
+"""Tightenings of the limits until true extremes keep them."""
 
 
 def optimise(
@@ -50,7 +50,7 @@ def optimise(
     Parameters
     ----------
     source : Case, Scene or variant
-        Of a case what its file derives from other numbers follows, as for `sweep`.
+        In a case, derived numbers follow the varied ones, as for `sweep`.
     vary : dict of path to (low, high)
         Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
     minimise, maximise : str
@@ -63,14 +63,14 @@ def optimise(
     robust : Spread, optional
         Makes a quantile of the output over spreads of numbers the goal.
     begin : dict of path to float, optional
-        Where the first search begins, in place of the source.
+        Start of the first search, in place of the source.
     starts : int
         Searches: the first begins at the source itself, others at designs within the bounds (scrambled Sobol).
     seed : int
     angles : int
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
-        The loop of many parameters takes a while to compile, and pays for long studies.
+        A loop of many parameters compiles slowly and pays for long studies.
     progress : bool
         Show a bar that counts the steps of the search.
 
@@ -81,9 +81,9 @@ def optimise(
     Raises
     ------
     ParameterError
-        What is asked for cannot be read, or names what the machine has not.
+        A text cannot be read, or names an output that the machine lacks.
     DesignError
-        No design found keeps the limits; the message tells how near the best comes.
+        No design keeps the limits; the message names the nearest.
 
     Examples
     --------
@@ -130,24 +130,24 @@ def parse_goal(minimise, maximise):
 
 
 def goal_text(sign, text, robust):
-    """What is asked for, in words."""
+    """The goal in words."""
     of = "" if robust is None else f"{robust.quantile:g} quantile of "
     return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
 
 
 def goal_of(problem, output, sign, robust):
-    """The goal: an output, or a quantile of it over a spread."""
+    """The `Goal`: an output, or a quantile of it over a spread."""
     checks.require("design", None if robust is None else spread_problem("robust", robust))
     return Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
 
 
 def search_problems(starts, seed):
-    """What is wrong with how many searches begin, and where, as sentences."""
+    """Sentences about a wrong number of starts or seed."""
     return checks.count("starts", starts), checks.seed("seed", seed)
 
 
 def require_resolved(angles, outputs):
-    """Refuse crank angles too few for what is asked."""
+    """Refuse too few crank angles for the outputs."""
     orders = [int(item.reduction[9:]) for item in outputs if item.reduction.startswith("harmonic_")]
     needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
     checks.require(
@@ -165,7 +165,7 @@ def require_reference(reference, output, limits):
 
 
 def without_ratios(problem, goal, limits):
-    """Goal and limits in which a ratio to what does not vary is the number below it."""
+    """Goal and limits with ratios replaced by their denominators, where the reference does not vary."""
     if problem.reference is None or set(problem.names) & set(SHARED_NUMBERS):
         return goal, limits
     reference = scene_of(problem.reference)
@@ -188,7 +188,7 @@ def without_ratios(problem, goal, limits):
 
 
 def ends_as_ratios(problem, output, goal, ends):
-    """What starts came to, as ratios where these were asked for and the number below them was the goal."""
+    """Goals of the starts, as ratios where the search used their denominators."""
     if callable(goal.output) or goal.output.ratio == output.ratio:
         return ends
     above = true_value(without_ratio(output), scene_of(problem.reference))
@@ -196,7 +196,7 @@ def ends_as_ratios(problem, output, goal, ends):
 
 
 def starting_designs(problem, count, seed, begin=None):
-    """Starts: the source's own values or others told, then designs spread over the bounds."""
+    """Designs to start from: the source or `begin`, then a Sobol sequence within the bounds."""
     from scipy.stats import qmc
 
     spread = qmc.Sobol(problem.low.size, rng=seed).random(max(1, 2 ** int(np.ceil(np.log2(max(count - 1, 1))))))
@@ -213,9 +213,9 @@ def starting_designs(problem, count, seed, begin=None):
 
 
 def best_within_limits(problem, goal, limits, starts, asked):
-    """Best end of several searches, kept to limits by true extremes; all limits as asked for; the goal of each end.
+    """Best design that keeps the limits at true extremes; all limits as the user gave them; the goal of each end.
 
-    Limits that tables over travel set are among them; of a robust goal they hold for each machine of the spread.
+    Limits by tables over travel join them; of a robust goal they hold for each machine of the spread.
     """
     robust = goal.output.within_tables() if callable(goal.output) else ()
     own = *problem.table_limits, *robust
@@ -223,8 +223,8 @@ def best_within_limits(problem, goal, limits, starts, asked):
     return tighten_limits(problem, goal, (*limits, *own), best), (*asked, *own), ends
 
 
-def best_of_searches(problem, goal, limits, starts, told=None):
-    """Best end of several searches, and the goal that each came to; limits may be told of in other words.
+def best_of_searches(problem, goal, limits, starts, named=None):
+    """Best end of several searches, and the goal of each; errors name the limits `named`.
 
     Raises
     ------
@@ -235,7 +235,7 @@ def best_of_searches(problem, goal, limits, starts, told=None):
     best = best_end(ends)
     if best.missed > 1e3 * LIMIT_TOLERANCE:
         nearest = dict(zip(problem.names, map(float, best.values), strict=True))
-        raise DesignError(_failure_text(problem, goal, told or limits, best, len(ends)), nearest)
+        raise DesignError(_failure_text(problem, goal, named or limits, best, len(ends)), nearest)
     return best, [goal.sign * end.goal if end.missed <= 1e3 * LIMIT_TOLERANCE else np.inf for end in ends]
 
 
@@ -243,24 +243,24 @@ def _failure_text(problem, goal, limits, best, count):
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
         return (
-            f"no design that can be built was found by {tries} ({_obstacle_text(problem, goal, best.values)}); change the "
-            f"bounds of {', '.join(problem.names)}, or begin with a machine that runs"
+            f"no design that can be built was found by {tries} ({_obstacle_text(problem, goal, best.values)}); change "
+            f"the bounds of {', '.join(problem.names)}, or begin with a machine that runs"
         )
     reached = []
     for limit in limits:
         if worst_excess(problem, [limit], best.values) > 1e3 * LIMIT_TOLERANCE:
             reached.append(f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}")
-    held = [
+    at_bounds = [
         name
         for name, value, low, high in zip(problem.names, best.values, problem.low, problem.high, strict=True)
         if min(value - low, high - value) <= 1e-6 * (high - low)
     ]
-    bounds = f"; at their bounds are {', '.join(held)}" if held else ""
+    bounds = f"; at their bounds are {', '.join(at_bounds)}" if at_bounds else ""
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
 
 
 def _obstacle_text(problem, goal, values):
-    """Why a design cannot be built, as a sentence."""
+    """Sentence about a design that cannot be built."""
     own = _numbers_text(problem, values)
     try:
         solution = scene_of(problem.scene(values)).solve(problem.angles)
@@ -283,7 +283,7 @@ def _numbers_text(problem, values):
 
 
 def tighten_limits(problem, goal, limits, best) -> SearchEnd:
-    """The design with its limits kept at true extremes: they are drawn in by what the samples did not tell."""
+    """The design with limits kept at true extremes: tighten them by the excess between samples and search again."""
     drawn = list(limits)
     for left in reversed(range(MAX_TIGHTENINGS + 1)):
         over, failure = _true_excesses(problem, limits, best.values)
@@ -310,7 +310,7 @@ def tighten_limits(problem, goal, limits, best) -> SearchEnd:
 
 
 def _true_excesses(problem, limits, values):
-    """By how much a design exceeds limits, by its true extremes, and the error where some have no value, or None."""
+    """Excesses of a design over limits at true extremes, and the error if one has no value, or None."""
     scene, over, failure = scene_of(problem.scene(values)), [], None
     for limit in limits:
         try:
@@ -323,20 +323,20 @@ def _true_excesses(problem, limits, values):
 
 
 def _excess_sign(limit, problem, best):
-    """+1 where a design exceeds a limit upwards, -1 downwards."""
+    """+1 if a design exceeds a limit upward, -1 downward."""
     if limit.relation != "=":
         return 1.0 if limit.relation == "<=" else -1.0
     return np.sign(true_extreme(limit.output, scene_of(problem.scene(best.values))) - limit.value)
 
 
 def true_excess(limit, scene):
-    """By how much a scene exceeds a limit, by its true extremes; not positive where it is kept."""
+    """Excess of a scene over a limit at true extremes; not positive if it is kept."""
     excess = true_extreme(limit.output, scene) - limit.value
     return abs(excess) if limit.relation == "=" else -excess if limit.relation == ">=" else excess
 
 
 def true_extreme(output, scene):
-    """Value of an output of a scene; extremes are true ones."""
+    """Value of an output of a scene, with true extremes."""
     if (output.reduction, output.quantity, output.ratio) == ("swing", "balancing_torque", False) and scene.crank_speed:
         return flywheel(scene, 1.0).energy
     if output.ratio or output.reduction not in EXTREME_REDUCTIONS:

@@ -1,4 +1,4 @@
-"""Fronts: the best of one output for each value of another, the ends being the best of each alone."""
+"""Pareto fronts: the best of one output for each value of another, between the best of each alone."""
 
 from dataclasses import dataclass, field
 
@@ -50,7 +50,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     source, vary, limits, variant, reference, starts, seed
         As for `optimise`.
     minimise : (str, str)
-        Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
+        Two outputs; a "-" before one maximises it: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
     points : int
         Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
@@ -64,7 +64,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Raises
     ------
     ParameterError
-        What is asked for cannot be read, or names what the machine has not.
+        A text cannot be read, or names an output that the machine lacks.
     DesignError
         No design keeps the limits.
 

@@ -1,11 +1,7 @@
-"""A design problem: curves of a scene with exact derivatives by the numbers that vary, and outputs of them.
+"""A design problem: curves of a scene over the period, with exact derivatives by the varied numbers, and their outputs.
 
-What follows from the numbers that a design varies: all numbers of its scene, with their derivatives.
-
-A case file derives numbers from others, as a mass centre at mid-length. Its variant is built once on numbers that write
-down every operation, so that what it derives is known for all values, and exactly how it changes.
-
-Progress of searches on the screen: a bar that counts the optimiser's steps.
+The chain rule joins the derivatives of the recorded program by the scene's numbers with those of derived numbers by
+varied ones (`DerivedNumbers`). Ratios divide the reference's output by the design's.
 """
 
 from contextlib import contextmanager
@@ -24,7 +20,7 @@ from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
 from ..numbers.units import to_si
 from ..results.bends import bent
-from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
+from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import table_limits
@@ -32,14 +28,17 @@ from .parted_curves import PartedCurve
 
 
 class DerivedNumbers:
-    """Numbers of a scene as functions of some varied ones.
+    """Numbers of a scene as functions of varied ones, with exact derivatives.
+
+    A case file derives numbers from others, as a mass centre at mid-length. The variant is built once on recording
+    numbers; the recording gives the derived values and their derivatives for all varied ones.
 
     Attributes
     ----------
     names : tuple of str
         Paths of the varied numbers, as the source calls them.
     paths : tuple of str
-        Paths of the scene's numbers that change with them.
+        Paths of the scene's numbers that depend on them.
     """
 
     def __init__(self, source, names):
@@ -84,23 +83,19 @@ BAR_DELAY = 1.0
 
 @contextmanager
 def progress_bar(problem, wanted=True, label=None):
-    """Within the block, steps of searches of a problem move a bar, if one is wanted."""
+    """Context in which steps of a search move a bar."""
     from tqdm import tqdm
 
     with tqdm(desc=label, unit=" steps", delay=BAR_DELAY, leave=False, disable=not wanted) as bar:
         problem.stepped = lambda *_: bar.update()
         yield
-    problem.stepped = no_bar
-
-
-def no_bar(*_):
-    """What steps move where none is shown."""
+    problem.stepped = None
 
 
 SHARED_NUMBERS = ("crank_speed", "crank_acceleration")
-"""Numbers that a reference takes from the design."""
+"""Numbers that the reference shares with the design."""
 MAX_CACHED_DESIGNS = 8
-"""Designs whose curves are remembered."""
+"""Designs with cached curves."""
 
 
 class Problem:
@@ -113,15 +108,15 @@ class Problem:
         SI numbers, or texts with units.
     quantities : sequence of str
     reference : Scene or alike, optional
-        What ratios refer to; it runs at the speed of the design and else stays as it is.
+        Reference of ratios; it runs at the design's speed, its other numbers stay.
     angles : int
         Crank angles evenly over the period.
     engine : "numpy" or "compiled"
 
     Attributes
     ----------
-    table_limits : tuple of Demand
-        Those that keep sliders, whose motion varies, within the tables over travel of the loads.
+    table_limits : tuple of Constraint
+        Limits that keep sliders of varied motion within load tables over travel.
     """
 
     def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
@@ -140,7 +135,7 @@ class Problem:
         self.quantities = tuple(dict.fromkeys([*quantities, *(positions if is_moved else ())]))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
-        self.stepped = no_bar
+        self.stepped: Any = None
         self._curves: dict[bytes, dict] = {}
         self._parted: dict[tuple, Any] = {}
         self._bends: set[str] | None = None
@@ -168,7 +163,7 @@ class Problem:
         return self._curves[key]
 
     def curve(self, output, values):
-        """Curve of a quantity that tells an output of a design: on pieces between bends where it has some."""
+        """Curve of an output's quantity; on pieces between kinks if it has some."""
         if self._bends is None:
             solution = unchecked_turn(scene_of(self.source), 1)
             self._bends = {name for name in self.quantities if bent(solution, name)}
@@ -188,13 +183,13 @@ class Problem:
             parted = PiecewiseTurns.of(
                 scene_of(self.scene(values)), (output,), min(self.angles, START_ANGLES * self.turns)
             )
-            ((_, pieces, told),) = parted.refined((output,))
+            ((_, pieces, values_on),) = parted.refined((output,))
             angle = pieces.angle[0]
             slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]
             found = _curve(self.program(angle, numbers)[output.quantity], slopes, changes, angle)
         except KinetostaticsError:
             return self.curves(values)[output.quantity]
-        shape = told[output.quantity].shape[1:]
+        shape = values_on[output.quantity].shape[1:]
         vector = of_scene(scene_of(self.source))[output.quantity].vector
         return PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
 
@@ -214,7 +209,7 @@ class Problem:
         empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan))
         found = dict.fromkeys(self.quantities, empty)
         for program in (self.program, self._motion) if self.table_limits else (self.program,):
-            try:  # the motion is known where a slider leaves its table
+            try:  # the motion still has values where a slider leaves its table
                 return found | self._curves_of(program, values)
             except KinetostaticsError:
                 continue
@@ -232,7 +227,7 @@ class Problem:
 
 
 class _Reference:
-    """Outputs of the reference, which runs as fast as the design and else stays as it is."""
+    """Outputs of the reference at the design's speed; its other numbers stay."""
 
     def __init__(self, reference, problem):
         shared = [name for name in problem.names if name in SHARED_NUMBERS]
@@ -261,12 +256,12 @@ class _Reference:
 
 
 def without_ratio(output):
-    """An output itself, not its ratio to the reference's."""
+    """The output in place of its ratio to that of the reference."""
     return replace(output, ratio=False)
 
 
 def _curve(values, slopes, changes, angle):
-    """Curve of a quantity from derivatives by the scene's numbers, and theirs by the numbers that vary."""
+    """Curve of a quantity; the chain rule joins derivatives by the scene's numbers and theirs by the varied ones."""
     shape = values.shape[:-1] + angle.shape
     by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
     slopes = np.tensordot(changes.T, by_scene, 1)
@@ -275,7 +270,7 @@ def _curve(values, slopes, changes, angle):
 
 
 def choose_design(source, variant, reference):
-    """The variant or scene to vary, and what ratios refer to."""
+    """The variant or scene to vary, and the reference of ratios."""
     if hasattr(source, "variants"):
         name = reference or source.reference
         first = next((other for other in source.variants if other != name), name)
@@ -290,7 +285,7 @@ def choose_design(source, variant, reference):
 
 
 def _design_problem(name, item, kinds):
-    """What is wrong with what must be one design, as a sentence, or None."""
+    """Sentence about an object that is not one design, or None."""
     if not hasattr(item, "varied") or not hasattr(item, "units"):
         return f"{name} must be {kinds}, got {checks.shown(item)}"
     several = [path for path, value in scene_of(item).parameters.items() if np.size(value) > 1]
@@ -298,18 +293,18 @@ def _design_problem(name, item, kinds):
 
 
 def compared_value(output, scene, reference):
-    """Value of an output of a scene, of a ratio to that of the reference."""
+    """Value of an output of a scene; a ratio refers to the reference."""
     found = true_value(output, scene)
     return true_value(output, reference) / found if output.ratio else found
 
 
 def true_value(output, scene, angles=5760):
-    """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth.
+    """Value of an output of a scene, exact to rounding where the scene is smooth.
 
     Raises
     ------
     DesignError
-        No pieces of the turn tell it.
+        Pieces of the turn do not resolve it.
     """
     plain, turns = without_ratio(output), turns_of(scene)
     if bent(unchecked_turn(scene, 1), output.quantity):
@@ -326,7 +321,7 @@ def true_value(output, scene, angles=5760):
 
 
 def turns_of(scene):
-    """Turns after which a scene repeats."""
+    """Turns of the crank after which a scene repeats."""
     return round(scene.period / TURN)
 
 

@@ -1,4 +1,4 @@
-"""What a search found: the better machine, what binds it, and what each limit and each bound costs."""
+"""The result of a search: the better machine, its active limits, and the price of each limit and bound."""
 
 import warnings
 from dataclasses import dataclass, field
@@ -16,18 +16,18 @@ from .robust import quantile
 from .search import excess_over, minimises_peak
 
 DISTANCE_TOLERANCE = 1e-9
-"""How much nearer to the shaft, relative to the distance, counts as rounding."""
+"""Relative distance to the shaft that counts as rounding."""
 CAM_RADIUS = "cam_radius"
 """Quantity of a mechanism with a cam that leads A: distance of the roller centre from O."""
 RESERVED_NAMES = ("reference", "before")
-"""Variants of the case file beside the design's own."""
+"""Names of the other variants in the case file."""
 ACTIVE_TOLERANCE = 1e-6
-"""How near, relative to its size or range, a design is to a limit or bound that holds it."""
+"""Distance to an active limit or bound, relative to its size or range."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A design that a search found; made by `optimise` and `torque_free_cam`.
+    """The result of a search; made by `optimise` and `torque_free_cam`.
 
     Attributes
     ----------
@@ -38,21 +38,21 @@ class Found:
         What the search began with.
     reference : Scene or None
         What ratios refer to.
-    limits : tuple of Demand
+    limits : tuple of Constraint
     goal : str
-        What was made least or greatest.
+        The goal in words.
     active : tuple of str
-        Limits, and bounds of numbers, that hold the design.
+        Active limits and bounds.
     prices : dict of str to float
-        By what is active: what the goal would gain if it gave way by one of its unit.
+        Gain of the goal if an active limit or bound is relaxed by one unit.
     evaluations : int
         Of all derivatives, by all starts.
     starts : list of float
-        The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
+        The goal of each start; infinite, or a ratio of 0, if its limits are not kept.
     bound : float
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
     spread : (Output, Spread, float) or None
-        Of a robust design what a quantile of was made least, or greatest (sign -1), and over what.
+        Of a robust design: output, spread, and sign (-1: maximised) of its quantile.
     shaft_radius : float or None
         Of the shaft at O, m, where it is known.
 
@@ -110,7 +110,7 @@ class Found:
         if self.spread is not None:
             output, spread, sign = self.spread
             before, after = (
-                quantile(scene, self.reference, output, spread, sign) if output.quantity in known(scene) else np.nan
+                quantile(scene, self.reference, output, spread, sign) if output.quantity in of_scene(scene) else np.nan
                 for scene in (self.before, self.scene)
             )
             alone = {"limit": "", "binds": False, "price": np.nan}
@@ -127,9 +127,9 @@ class Found:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
 
     def _shaft_hint(self):
-        """What is wrong with a cam too near to O for the shaft, as a sentence, or None."""
+        """Sentence if the cam is too near to O for the shaft, or None."""
         roller = self.scene.mechanism.rollers.get("A")
-        if self.shaft_radius is None or CAM_RADIUS not in known(self.scene):
+        if self.shaft_radius is None or CAM_RADIUS not in of_scene(self.scene):
             return None
         nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
         return shaft_hint(nearest, roller, self.shaft_radius)
@@ -180,13 +180,13 @@ class Found:
         return write_case(path, title or f"Design for the {self.goal}", scenes)
 
     def _of(self, output, scene):
-        if output.quantity not in known(scene):
+        if output.quantity not in of_scene(scene):
             return np.nan
         return compared_value(output, scene, self.reference)
 
 
 def shaft_hint(nearest, roller_radius, shaft_radius):
-    """What is wrong with a cam whose roller centre comes so near to O, as a sentence, or None; all in m."""
+    """Sentence if the roller centre is too near to O for the shaft, or None; lengths in m."""
     reach = shaft_radius + (roller_radius or 0.0)
     if nearest >= reach * (1.0 - DISTANCE_TOLERANCE):
         return None
@@ -197,15 +197,10 @@ def shaft_hint(nearest, roller_radius, shaft_radius):
     )
 
 
-def known(scene):
-    """Quantities of a scene by name."""
-    return of_scene(scene)
-
-
 def active_prices(problem, goal, limits, values):
-    """What holds a design, and by how much the goal would gain if it gave way by one of its unit.
+    """Active limits and bounds, and their prices: gain of the goal if one is relaxed by one unit.
 
-    The derivatives of the goal are the sum of those of what binds, each times its price (Kuhn and Tucker).
+    The derivatives of the goal are the sum of those of the active limits, each times its price (Kuhn and Tucker).
     """
     from scipy.optimize import lsq_linear
 
@@ -240,7 +235,7 @@ def active_prices(problem, goal, limits, values):
 
 
 def _slopes(problem, goal, values):
-    """Derivatives (n, peaks) of the goal, of a largest value those of each peak as high as it, the highest first."""
+    """Derivatives (n, peaks) of the goal; a largest value has one column per equal peak, the highest first."""
     output, sign = goal
     if callable(output):
         return sign * output(values)[1][:, None]
@@ -253,7 +248,7 @@ def _slopes(problem, goal, values):
 
 
 def search_result(problem, goal, limits, reached, outputs, label, **more):
-    """The result of a search."""
+    """`Found` of a finished search."""
     active, cost = active_prices(problem, goal, limits, reached.values)
     reference = None if problem.reference is None else scene_of(problem.reference)
     return Found(

@@ -1,14 +1,10 @@
-"""Quantiles of an output over machines as they are made and run: what a design is worth when its numbers spread.
+"""Quantiles of an output over the spread of a design's numbers, with exact derivatives.
 
-Each sample is the design with its own deviations, the same whatever the design, from a scrambled Sobol sequence. The
-quantile is Harrell and Davis's mean of ordered samples, which changes smoothly with the design, by exact derivatives.
-
-How numbers of a design spread, and by which quantile it is judged: samples and their weights.
-
-The samples are a scrambled Sobol sequence, the same whatever the design. The quantile is Harrell and Davis's mean of
-ordered samples (1982), which changes smoothly with the design.
+Each sample is the design with its own deviations, from a scrambled Sobol sequence that is the same for every design.
+The quantile is the mean of ordered samples by Harrell and Davis (1982), smooth in the design.
 """
 
+import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
@@ -24,7 +20,7 @@ from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
 from ..results.bends import bent
 from ..results.means import NODES
-from ..solution.parted import START_ANGLES, PiecewiseTurns, unchecked_turn
+from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import parse_output, table_limits
@@ -36,19 +32,19 @@ MAX_SAMPLES = 2**20
 
 @dataclass(frozen=True)
 class Spread:
-    """How numbers spread, and which quantile of an output counts; for `optimise` and `torque_free_cam`.
+    """Distributions of numbers and the quantile of an output that counts; for `optimise`, `torque_free_cam`.
 
     Parameters
     ----------
     quantile : float
-        Between 0 and 1: of an output to be made greatest that which few fall below, 0.05.
+        Between 0 and 1: for an output to maximise a low one such as 0.05.
     spreads : mapping of path to text
         Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
-        0 % +- 0.5 %". What a text spreads about does not count, so the texts of a case's [tolerances] will do.
+        0 % +- 0.5 %". Only deviations from the median count, so the texts of a case's [tolerances] fit.
     samples : int
-        While it is searched; a power of two.
+        Of the search; a power of two.
     trim : float
-        Share of the design's crank speed within which each machine's own is set to what suits it best.
+        Share of the design's crank speed within which each machine runs at its best speed.
     seed : int
         Of the scrambled Sobol sequence.
 
@@ -109,7 +105,7 @@ def spread_problem(name, value):
 
 
 def deviations(spread, known, count):
-    """Which numbers deviate in shares of their own value, and deviations (count,) of each."""
+    """Paths whose deviations are relative to their value, and deviations (count,) by path."""
     from scipy.stats import qmc
 
     found = spreads.distributions(spread.spreads)
@@ -129,7 +125,7 @@ def deviations(spread, known, count):
 
 
 def harrell_davis_weights(quantile, count):
-    """Weights of the ordered samples in a quantile."""
+    """Weights of the ordered samples in a quantile (Harrell and Davis)."""
     from scipy.special import betainc
 
     first, second = (count + 1) * quantile, (count + 1) * (1.0 - quantile)
@@ -140,31 +136,35 @@ ANGLES, BLOCK_SIZE = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
 GOLDEN_STEPS = 30
-"""Steps of the golden section that trims a speed: to a millionth of the range."""
+"""Golden-section steps of the trimmed speed: to a millionth of the range."""
 GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 class SampledOutput:
-    """An output of a design over its spread; deviations are of the scene's own numbers, from which nothing follows."""
+    """An output of a design over its spread; deviations apply to the scene's own numbers, one by one."""
 
-    def __init__(self, problem, output, spread, sign, samples=None, angles=ANGLES):
-        self.problem, self.output, self.spread, self.sign = problem, output, spread, sign
+    def __init__(self, problem, output, spread, sign, samples=None):
+        self.problem, self.spread, self.sign = problem, spread, sign
         scene = scene_of(problem.source)
         checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
         self.count = spread.samples if samples is None else samples
         self._shares, self._deviations = deviations(spread, scene.units, self.count)
-        self.angle, self.turns = np.linspace(0.0, scene.period, angles, endpoint=False), turns_of(scene)
+        self.angle, self.turns = np.linspace(0.0, scene.period, ANGLES, endpoint=False), turns_of(scene)
         self._derived: Any = DerivedNumbers(problem.source, problem.names) if problem.names else None
         designed = self._derived.paths if self._derived else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
         self._own = scene.parameters
-        zeros = [path for path in self.paths if self._own[path] == 0.0]
-        self.program = compiled(scene, output.quantity, zeros, problem.engine)
-        self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._bent = not spread.trim and bent(unchecked_turn(scene, 1), output.quantity)
+        self._take_output(output)
         self.weights = harrell_davis_weights(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
+
+    def _take_output(self, output):
+        scene = scene_of(self.problem.source)
+        zeros = [path for path in self.paths if self._own[path] == 0.0]
+        self.output, self.program = output, compiled(scene, output.quantity, zeros, self.problem.engine)
+        self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
+        self._has_kinks = not self.spread.trim and bent(unchecked_turn(scene, 1), output.quantity)
 
     def __str__(self):
         return f"{self.output} within the spread"
@@ -178,14 +178,15 @@ class SampledOutput:
         return self.output.ratio
 
     def within_tables(self):
-        """Limits that keep all samples within the tables over travel of the loads, where the spread moves sliders."""
+        """Limits that keep all samples within load tables over travel, if the spread moves sliders."""
         limits = table_limits(scene_of(self.problem.source))
-        found = [replace(limit, output=self._nearest(limit)) for limit in limits]
+        found = [replace(limit, output=self._worst(limit)) for limit in limits]
         return tuple(limit for limit in found if any(map(limit.output.program.depends_on, self.spread.spreads)))
 
-    def _nearest(self, limit):
-        """The output of a limit, of the sample that comes nearest to it or exceeds it most."""
-        found = SampledOutput(self.problem, limit.output, self.spread, self.sign)
+    def _worst(self, limit):
+        """The output of a limit of the sample nearest to it or farthest beyond it; samples and program shared."""
+        found = copy.copy(self)
+        found._take_output(limit.output)
         found.weights = np.zeros(self.count)
         found.weights[-1 if limit.relation == "<=" else 0] = 1.0
         return found
@@ -205,14 +206,15 @@ class SampledOutput:
 
     def _sampled(self, values, sloped):
         design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
-        parts = []
+        padded, parts = np.zeros((len(self.paths), 1, changes.shape[1])), []
+        padded[: len(changes), 0] = changes
         for start in range(0, self.count, BLOCK_SIZE):
             numbers, rises = self._numbers(design, slice(start, start + BLOCK_SIZE))
-            parts.append(self._part(numbers, rises[:, :, None] * _pad_rows(changes, len(self.paths)), sloped))
+            parts.append(self._part(numbers, rises[:, :, None] * padded, sloped))
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
     def _numbers(self, design, part):
-        """Numbers of some samples by path (samples, 1), and how each grows with the design's own (paths, samples)."""
+        """Numbers of some samples by path (samples, 1), and their derivatives by the design's own (paths, samples)."""
         numbers, rises = {}, []
         for path in self.paths:
             value = design.get(path, self._own[path])
@@ -226,13 +228,13 @@ class SampledOutput:
         """Output of some samples, with derivatives (samples, n)."""
         if self.spread.trim:
             curves, slopes, above = self._trimmed(numbers, changes, sloped)
-        elif self._bent:
+        elif self._has_kinks:
             curves, above = self._on_pieces(numbers, changes, sloped), self._above(numbers)
         else:
             (curves, slopes), above = self._curves(numbers, changes, sloped), self._above(numbers)
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
-            if not self._bent:
+            if not self._has_kinks:
                 curve = measures.Curve(curve, slopes[place] if sloped else np.zeros((0, curve.size)))
             value, row = curve.reduced(self.output.reduction, self.turns)
             if self.output.ratio:
@@ -242,7 +244,7 @@ class SampledOutput:
         return found, rows
 
     def _on_pieces(self, numbers, changes, sloped):
-        """Curves of some samples, each on pieces between its own bends."""
+        """Curves of some samples, each on pieces between its own kinks."""
         output = without_ratio(self.output)
         found: list[Any] = [None] * len(next(iter(numbers.values())))
         parted = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
@@ -287,7 +289,7 @@ class SampledOutput:
         return without_ratio(self.output).estimated(curves, self.turns)[0]
 
     def _of_reference(self, numbers):
-        """Curves of the reference, with those of the numbers that spread that it has too."""
+        """Curves of the reference (samples, N), with the deviations of the numbers that it shares."""
         found = self._reference(numbers).solve(self.angle)
         return np.broadcast_to(
             values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
@@ -299,7 +301,7 @@ class SampledOutput:
         return reference.varied({path: numbers[path] for path in known})
 
     def _trimmed(self, numbers, changes, sloped):
-        """Curves at the speed within the trim that makes each sample's output best."""
+        """Curves at the speed within the trim at which each sample's output is best."""
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
@@ -320,7 +322,7 @@ class SampledOutput:
         return numbers | {SPEED: np.full_like(numbers[SPEED], self._own[SPEED] * share)}
 
     def _require_trim(self):
-        """Refuse to trim what does not change with the square of the speed alone, which two speeds tell."""
+        """Refuse trim for outputs that are not linear in the squared speed; three speeds test it."""
         problem = None
         if SPEED in self.problem.names:
             problem = f"trim sets {SPEED}, so it cannot vary too"
@@ -337,13 +339,6 @@ class SampledOutput:
                     f"{self.output} does not, as with friction or dampers"
                 )
         checks.require("spread", problem)
-
-
-def _pad_rows(changes, count):
-    """Derivatives of a scene's numbers by those of a design (paths, 1, n), with zeros for paths that it has not."""
-    found = np.zeros((count, 1, changes.shape[1]))
-    found[: len(changes), 0] = changes
-    return found
 
 
 def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
@@ -409,18 +404,18 @@ def quantile(scene, reference, output, spread, sign):
 
 
 def _sampled_scene(scene, reference, output, spread, sign, samples=None):
-    """An output over a spread of a scene of which no design varies anything."""
+    """An output of a fixed scene over a spread."""
     bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
     return SampledOutput(bare, output, spread, sign, samples)
 
 
 def _interpolate(one, other, share):
-    """Values between those at two speeds: inertia grows with the square of the speed, all else stays."""
+    """Values between those at two speeds, linear in the squared speed."""
     return one * (1.0 - share) + other * share
 
 
 def _golden_section(function, count):
-    """Where, from 0 to 1, each of several functions is least, by the golden section."""
+    """Minimiser in [0, 1] of each of several functions, by golden section."""
     low, high = np.zeros(count), np.ones(count)
     inner, outer = high - GOLDEN_RATIO, low + GOLDEN_RATIO
     at_inner, at_outer = function(inner), function(outer)

@@ -1,10 +1,11 @@
-"""The search for a design: a problem set up for SciPy's SLSQP, with variables that count alike.
+"""Search for a design: a problem set up for SciPy's SLSQP, in variables scaled by singular values of the derivatives.
 
-Mean magnitudes and squares are smooth; of a largest value each part of the period is a limit of its own, and where it
-is to be made least, of one more unknown. Variables are turned and stretched so that each changes what is asked by about
-as much: of a cam's harmonics some combinations change the torque a thousand times as much as others.
+Mean magnitudes and squares are smooth. Of a largest value each part of the period is a limit of its own; to minimise
+it, an extra unknown bounds them. Scaling matters: some combinations of a cam's harmonics change the torque a thousand
+times as much as others.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,25 +14,25 @@ from . import measures
 from .constraints import Constraint
 
 MAX_ROUNDS = 8
-"""How often the variables are turned anew before a search ends."""
+"""Rounds of a search; each rescales the variables."""
 MAX_STEPS = 200
-"""Steps of one round."""
+"""SLSQP steps of a round."""
 FIRST_TOLERANCE, LATER_TOLERANCE = 1e-10, 1e-9
-"""Relative change of the goal, and miss of a limit, at which the first round ends, and others."""
+"""Relative change of the goal that ends the first round, and later ones."""
 GOAL_TOLERANCE = 1e-7
-"""Relative change of what is made least that ends a search."""
+"""Relative change of the goal that ends a search."""
 LIMIT_TOLERANCE = 1e-9
-"""By how much, relative to its size, a limit may be missed."""
+"""Excess over a limit, relative to its size, that counts as kept."""
 MAX_RESTORING_STEPS, MAX_RESTORED_EXCESS = 5, 1e-4
-"""Newton's steps back to limits that are missed, and by how much less than that, relative to their sizes."""
+"""Newton steps back to the limits, and the largest relative excess that they correct."""
 MIN_SHARE = 1e-9
-"""Share of the way from a start to a design that cannot be built down to which one that can be built is looked for."""
+"""Smallest share of the way to a design that cannot be built, in the search for one that can."""
 INFEASIBLE_GOAL = 1e6
-"""What a design that cannot be built counts as, in units of the first one's."""
+"""Goal of a design that cannot be built, in units of the start's goal."""
 
 
 class Goal(NamedTuple):
-    """What is made least: `sign` times an output, or a function of designs that returns it with its derivatives."""
+    """To minimise: `sign` times an output, or a function of designs that returns value and derivatives."""
 
     output: Any
     sign: float = 1.0
@@ -47,9 +48,9 @@ class SearchEnd(NamedTuple):
     goal : float
         Least value of the goal.
     missed : float
-        By how much, relative to its size, the worst limit is missed.
+        Excess over the worst limit, relative to its size.
     message : str
-        What the optimiser says.
+        Message of the optimiser.
     """
 
     values: np.ndarray
@@ -74,7 +75,7 @@ def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
 
 
 def _better(one, other):
-    """The one of two designs that keeps its limits, or misses them by less; of two that do the better one."""
+    """The better of two designs: first by limits, then by goal."""
     if max(one.missed, other.missed) <= LIMIT_TOLERANCE:
         return min(one, other, key=lambda found: found.goal)
     return min(one, other, key=lambda found: found.missed)
@@ -95,9 +96,12 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
     if not np.isfinite(turned.unit):
         return SearchEnd(start, np.inf, np.inf, "the start cannot be built")
     constraints: Any = [{"type": "ineq", "fun": turned.inside, "jac": lambda _: turned.walls}]
-    for kind, fun, jac in (("ineq", turned.under, turned.under_slopes), ("eq", turned.level, turned.level_slopes)):
-        if fun(turned.zero).size:
-            constraints.append({"type": kind, "fun": fun, "jac": jac})
+    for kind, equal in (("ineq", False), ("eq", True)):
+        if turned.margins(turned.zero, equal)[0].size:
+            margins = partial(turned.margins, equal=equal)
+            constraints.append(
+                {"type": kind, "fun": lambda x, of=margins: of(x)[0], "jac": lambda x, of=margins: of(x)[1]}
+            )
     found = minimize(
         turned.goal,
         turned.zero,
@@ -118,13 +122,13 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
 
 
 def within_tables(problem, limits, start):
-    """The design nearest to a start that keeps sliders within the limits of tables; the start where none is found."""
+    """Nearest design to a start that keeps sliders within load tables; the start if there is none."""
     from scipy.optimize import minimize
 
     reach, scales = problem.high - problem.low, np.array([limit.scale for limit in limits])
 
     def sides(steps):
-        """How far within the limits, in units of their sizes, and derivatives by the steps."""
+        """Margins of the limits, in units of their sizes, and derivatives by the steps."""
         found = [problem.output(limit.output, start + steps * reach) for limit in limits]
         signs = [1.0 if limit.relation == ">=" else -1.0 for limit in limits]
         room = [sign * (value - limit.value) for sign, (value, _), limit in zip(signs, found, limits, strict=True)]
@@ -147,9 +151,9 @@ def within_tables(problem, limits, start):
 
 
 def restore_limits(problem, limits, values):
-    """The design nearest to one that misses limits by little that keeps them, by Newton's method; or that one.
+    """Nearest design that keeps limits, by Newton's method from small excesses; the same design if that fails.
 
-    SLSQP may stop a little beside limits where rounding hides from it which way is down.
+    SLSQP may stop a little beyond limits where rounding hides the descent.
     """
     off = worst_excess(problem, limits, values)
     reach = problem.high - problem.low
@@ -169,7 +173,7 @@ def restore_limits(problem, limits, values):
 
 
 def _restoring_step(excess, slopes, reach, low, high):
-    """Change, least in units of the reach, that takes off what limits are missed by; what would leave bounds stays."""
+    """Least change, in units of the reach, that removes the excess; variables that would leave their bounds stay."""
     free = np.ones(reach.size, dtype=bool)
     while True:
         step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)
@@ -180,17 +184,17 @@ def _restoring_step(excess, slopes, reach, low, high):
 
 
 def _active_excesses(problem, limits, values):
-    """By how much limits are missed, or just kept, in units of their sizes (parts,), and derivatives (parts, n)."""
+    """Excesses of active limits in units of their sizes (parts,), and derivatives (parts, n)."""
     excess, slopes = zip(*(excess_over(problem, limit, values) for limit in limits), strict=True)
     sizes = [np.full(part.size, limit.scale) for part, limit in zip(excess, limits, strict=True)]
     equal = [np.full(part.size, limit.relation == "=") for part, limit in zip(excess, limits, strict=True)]
     found = np.concatenate(excess) / np.concatenate(sizes)
-    held = (found > -LIMIT_TOLERANCE) | np.concatenate(equal)
-    return found[held], (np.hstack(slopes) / np.concatenate(sizes)).T[held]
+    active = (found > -LIMIT_TOLERANCE) | np.concatenate(equal)
+    return found[active], (np.hstack(slopes) / np.concatenate(sizes)).T[active]
 
 
 def worst_excess(problem, limits, values):
-    """By how much the worst limit is missed, relative to its size; infinite where a design cannot be built."""
+    """Excess over the worst limit relative to its size; infinite if the design cannot be built."""
     worst = 0.0
     for limit in limits:
         excess, _ = excess_over(problem, limit, values)
@@ -199,7 +203,7 @@ def worst_excess(problem, limits, values):
 
 
 def excess_over(problem, limit, values):
-    """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
+    """Excess of a design over a limit (parts,), not positive if it is kept, and derivatives (n, parts)."""
     output, relation = limit.output, limit.relation
     sign = -1.0 if relation == ">=" else 1.0
     bounded = not callable(output) and output.reduction in measures.SIDES and not output.ratio and relation != "="
@@ -211,7 +215,7 @@ def excess_over(problem, limit, values):
 
 
 class _ScaledProblem:
-    """The problem in variables that count alike, around a start."""
+    """The problem in scaled variables around a start."""
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
@@ -230,7 +234,7 @@ class _ScaledProblem:
         self.walls = np.hstack([self.walls, np.zeros((2 * count, int(self.raised)))])
 
     def _turn(self):
-        """Directions of the unit box, each as long as changes goal and limits by about their size, at most the box."""
+        """Directions of the unit box, each scaled to change goal and limits by about their size, at most to the box."""
         rows = [*self._rows()]
         stacked = np.vstack(rows) * (self.problem.high - self.problem.low)
         if not np.isfinite(stacked).all():
@@ -260,7 +264,7 @@ class _ScaledProblem:
         return np.clip(values, self.problem.low, self.problem.high)
 
     def reached(self, values):
-        """The goal of a design; infinite where it cannot be built."""
+        """The goal of a design; infinite if it cannot be built."""
         found = self._goal(values)[0]
         return found if np.isfinite(found) else np.inf
 
@@ -281,31 +285,19 @@ class _ScaledProblem:
         return np.nan_to_num(self._goal(self.values(unknowns))[1] @ self.matrix / self.unit)
 
     def inside(self, unknowns):
-        """How far within the bounds, in units of their range."""
+        """Margins of the bounds, in units of their range."""
         values, problem = self.values(unknowns), self.problem
         reach = problem.high - problem.low
         return np.concatenate([(values - problem.low) / reach, (problem.high - values) / reach])
 
-    def under(self, unknowns):
-        return self._sides(unknowns, False)[0]
-
-    def under_slopes(self, unknowns):
-        return self._sides(unknowns, False)[1]
-
-    def level(self, unknowns):
-        return self._sides(unknowns, True)[0]
-
-    def level_slopes(self, unknowns):
-        return self._sides(unknowns, True)[1]
-
-    def _sides(self, unknowns, equal):
-        """How far under the limits, each in units of its size, with derivatives by the unknowns."""
+    def margins(self, unknowns, equal):
+        """Margins of the limits, each in units of its size, with derivatives by the unknowns."""
         key = unknowns.tobytes(), equal
         if self._last[0] != key:
-            self._last = key, self._computed_sides(unknowns, equal)
+            self._last = key, self._computed_margins(unknowns, equal)
         return self._last[1]
 
-    def _computed_sides(self, unknowns, equal):
+    def _computed_margins(self, unknowns, equal):
         values = self.values(unknowns)
         parts, slopes = [np.empty(0)], [np.empty((self.start.size, 0))]
         for limit in self.limits:
@@ -330,7 +322,7 @@ class _ScaledProblem:
 
 
 def minimises_peak(goal):
-    """Whether the goal is a largest value, which an unknown of its own bounds."""
+    """Whether the goal is a largest value to minimise, bounded by an extra unknown."""
     if callable(goal.output) or goal.output.ratio:
         return False
     return goal.output.reduction in measures.SIDES and (goal.sign > 0) == (goal.output.reduction != "smallest")

@@ -1,16 +1,16 @@
-"""How far a spring with a follower must be stretched at each crank angle to hold a given energy, exactly.
+"""Stretch of a follower's spring over the crank angle that balances a given energy of the machine, exactly.
 
-A follower of mass m on a spring of rate k, moved by a cam on a crank of constant speed, holds with mu = m omega^2
+A follower of mass m on a spring of rate k, moved by a cam on a crank of constant speed, satisfies with mu = m omega^2
 
     mu x'^2 / 2 + k x^2 / 2 = C - E(phi)
 
-where x is the stretch, E the energy of the machine that it balances, C the level. By the derivative, the force of the
-cam is mu x'' + k x = -E' / x': it presses wherever the follower runs out as E falls, and back as E rises. Where E is
-least x' vanishes with x'' = a, a root of mu a^2 + k x a + E'' = 0, which is real for (k x)^2 > 4 mu E'' only.
+where x is the stretch, E the energy of the machine, C the level. By the derivative, the cam force is
+mu x'' + k x = -E' / x': it presses where the follower runs out as E falls and back as E rises. At a minimum of E, x'
+vanishes with x'' = a, a root of mu a^2 + k x a + E'' = 0, real only for (k x)^2 > 4 mu E''.
 
-Solutions of the first-order equation run together from a greatest E outward to the least beside it, both ways: so one
-starts there, and goes from panel to panel by Chebyshev collocation. At a kink of E the follower keeps x, x' and x'',
-and swings over to the curve behind it.
+Solutions of the first-order equation converge from a maximum of E to the minima beside it, both ways: integration
+starts at maxima and goes from panel to panel by Chebyshev collocation. At a kink of E the follower keeps x, x' and
+x'' and continues on the curve after the kink.
 """
 
 import numpy as np
@@ -20,34 +20,34 @@ from ..errors import ParameterError
 from ..numbers.panels import PANEL_DEGREE, Panels
 
 MAX_NEWTON_STEPS = 40
-"""Iterations at most."""
+"""Newton steps on a panel."""
 NEWTON_TOLERANCE = 3e-15
-"""Change, relative to the stretch, at which iteration ends."""
+"""Change relative to the stretch at which Newton's method ends."""
 SERIES_TOLERANCE = 1e-13
-"""Last coefficients, relative to the largest stretch, from which on a panel is narrow enough."""
+"""Size of the last coefficients, relative to the largest stretch, of a resolved panel."""
 CONTACT_TOLERANCE = 1e-9
-"""Share of the fastest stretch that counts as standing still."""
+"""Wrong-way power relative to the largest speed times slope that counts as rounding."""
 MIN_PANEL = 1e-7
-"""rad."""
+"""Width of the narrowest panel, rad."""
 _NODES = -np.cos(np.pi * np.arange(PANEL_DEGREE + 1) / PANEL_DEGREE)
 _FIT = np.linalg.inv(chebyshev.chebvander(_NODES, PANEL_DEGREE))
 _DERIVATIVE = np.array([chebyshev.chebval(_NODES, chebyshev.chebder(row)) for row in _FIT.T]).T
-"""Derivative at the points _T by values there."""
+"""Matrix from values at _NODES to derivatives there."""
 
 
 def reserve(energy, low, level, mass, stiffness):
-    """Force of the spring at a least energy over what contact needs there, 2 sqrt(mu E''); `mass` is m omega^2."""
+    """Spring force at an energy minimum over the force for contact, 2 sqrt(mu E''); `mass` is mu = m omega^2."""
     force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
     return float(force / (2.0 * np.sqrt(mass * _second_derivative(energy, low))))
 
 
 def _second_derivative(energy, angle, beside=1e-9):
-    """E'' at a place, the larger of both sides of a kink."""
+    """E'' at a crank angle, the larger of both sides of a kink."""
     return max(float(energy.at(angle + side, 2)[2]) for side in (-beside, beside))
 
 
 def spring_stretch(energy, level, mass, stiffness):
-    """Stretch x of the spring by crank angle, as `Panels`, for an energy in panels; `mass` is m omega^2.
+    """Stretch x of the spring over the crank angle, as `Panels`, m, for an energy in panels; `mass` is m omega^2.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def _derivative(panels):
 
 
 def _march_panels(energy, slope, start, stop, level, mass, stiffness):
-    """Panels (low, high, coefficients) from a greatest energy to the least beside it."""
+    """Panels (low, high, coefficients) from an energy maximum to the neighbouring minimum."""
     forth = stop > start
     edges = np.concatenate([energy.edges[:-1] + turn * energy.period for turn in (-1, 0, 1, 2)])
     low, high = min(start, stop), max(start, stop)
@@ -109,7 +109,7 @@ def _march_panels(energy, slope, start, stop, level, mass, stiffness):
 
 
 def _collocate(rest, width, share, value):
-    """Stretch at the points of a panel, by x^2 + share x'^2 = rest and its `value` at the start; None: not resolved."""
+    """Stretch at the nodes of a panel by x^2 + share x'^2 = rest and x = `value` at the start; None if not resolved."""
     rate = 2.0 / width * _DERIVATIVE
     x = _euler_steps(rest, width, share, value)
     for _ in range(MAX_NEWTON_STEPS):
@@ -133,7 +133,7 @@ def _collocate(rest, width, share, value):
 
 
 def _euler_steps(rest, width, share, value):
-    """The same by implicit Euler steps from point to point: roughly, but from anywhere."""
+    """Rough stretch at the nodes by implicit Euler steps, the start of Newton's method."""
     x = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
     for step, there in zip(np.diff(_NODES) * width / 2.0, rest[1:], strict=True):
         q = share / (step * step)
@@ -143,7 +143,7 @@ def _euler_steps(rest, width, share, value):
 
 
 def _require_contact(nodes, x, width, slope, forth):
-    """Raise if the spring is let out where the energy rises."""
+    """Refuse a stretch that grows with the machine's energy: there the contact would pull."""
     rate = 2.0 / width * (_DERIVATIVE @ x)
     wrong = rate * slope
     worst = int(np.argmax(wrong))

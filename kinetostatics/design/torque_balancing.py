@@ -1,10 +1,8 @@
 """A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
 
-What the machine stores and gives back over a turn, E = integral of T - mean(T), a spring can store instead: the cam
-lets it out as E rises, so that the motor sees the mean alone. `spring_follower` has the equation, which counts the
-follower's own inertia in and so needs no iteration.
-
-What a torque-balancing cam gives and costs: the machine with it, what is left of the unevenness, contact, angles.
+The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T): the cam relaxes it as E
+rises, so the motor gives the mean torque alone. The equation of `spring_follower` includes the follower's own inertia,
+so no iteration is needed.
 """
 
 from dataclasses import dataclass, replace
@@ -31,9 +29,9 @@ from .result import shaft_hint
 
 ANGLE_COUNT = 4096
 ANGLES = (np.arange(ANGLE_COUNT) + 0.382) * 2 * np.pi / ANGLE_COUNT
-"""Crank angles at which torques are compared; at none of them anything is likely to jump."""
+"""Crank angles of torque means; the odd offset avoids jumps."""
 MEAN_TOLERANCE = 1e-10
-"""Mean of a torque, relative to its unevenness, that counts as none."""
+"""Mean of a torque relative to its unevenness that counts as 0."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,17 +43,17 @@ class TorqueBalancing:
     scene : Scene
         With the follower and its spring.
     reference : Scene
-        As it was.
+        The scene without the cam.
     follower : RollerFollower
     spring : Spring
     mean_torque : float
-        What the motor gives all the way, N m.
+        Constant torque of the motor, N m.
     energy : float
-        What the spring takes up and gives back, J.
+        Energy that the spring stores and returns, J.
     stretch : (float, float)
-        Of the spring, least and largest, m; weight of the follower counted in.
+        Of the spring, least and largest, m; includes the weight of the follower.
     reserve : float
-        Times the force with which the spring must pull for contact, 2 omega sqrt(m E''), at least; above 1.
+        Least ratio of the spring force to the force for contact, 2 omega sqrt(m E''); above 1.
     shaft_radius, roller_radius : float or None
         m, as given.
 
@@ -81,12 +79,12 @@ class TorqueBalancing:
 
     @property
     def travel(self):
-        """Of the follower, m."""
+        """Travel of the follower, m."""
         return self.stretch[1] - self.stretch[0]
 
     @property
     def preload(self):
-        """Force of the spring where it is stretched least, N."""
+        """Force of the spring at its least stretch, N."""
         return float(self.spring.stiffness * self.stretch[0])
 
     @cached_property
@@ -97,7 +95,7 @@ class TorqueBalancing:
 
     @property
     def remaining(self):
-        """What is left of the unevenness."""
+        """Unevenness after over unevenness before."""
         return self.uneven[1] / self.uneven[0]
 
     @cached_property
@@ -119,7 +117,7 @@ class TorqueBalancing:
 
     @property
     def lifts_off(self):
-        """Crank angles (start, stop) between which the roller would leave the cam, rad; none as designed."""
+        """Crank-angle intervals (start, stop) of lift-off, rad; empty as designed."""
         return lifted(self._solution, "contact_force" + self.follower.label)
 
     @cached_property
@@ -157,7 +155,7 @@ class TorqueBalancing:
         return pd.DataFrame(rows)
 
     def report(self):
-        """What it is and what it costs, as text; with a warning where the cam cuts into the shaft."""
+        """Report as text, with a warning if the cam cuts into the shaft."""
         nearest, roller, shaft = self.cam_radius, self.follower.rollers[self.follower.pin], self.shaft_radius
         hint = None if shaft is None else shaft_hint(nearest.value, self.roller_radius or roller, shaft)
         low, high = self.stretch
@@ -191,10 +189,11 @@ class TorqueBalancing:
 
 OWNER, TURN = "torque_balancing_cam", 2 * np.pi
 UNEVENNESS_TOLERANCE = 1e-10
-"""Unevenness of the torque, relative to the largest part of it, that counts as none."""
+"""Unevenness relative to the largest term of the torque that counts as 0."""
 JUMP_TOLERANCE = 1e-6
-"""Jump of the torque across its mean, relative to the largest, that counts as one."""
+"""Jump of the torque across its mean, relative to the largest torque, that is refused."""
 ANGLE_BESIDE = 1e-9
+"""Crank angle beside a crossing of the mean, rad, that tests for a jump."""
 SWITCH_RULES = {"switches": checks.Number("rad", table=True)}
 OPTIONAL = ("stiffness", "base_radius", "roller_radius", "shaft_radius")
 DEFAULT_PRESSURE_ANGLE, MAX_PRESSURE_ANGLE = np.radians(30.0), np.radians(85.0)
@@ -228,11 +227,11 @@ def torque_balancing_cam(
     travel : float
         Of the follower, m. A longer one needs a softer spring and less force.
     stiffness : float, optional
-        N/m; unless told that with which the spring is stretched twice as far at most as at least.
+        N/m; by default the largest stretch of the spring is twice the least.
     guide_angle, guide_offset : float
         Of the follower's guide, from O outward; rad and m.
     base_radius : float, optional
-        Least coordinate of the roller centre along the guide, m; unless told the least that keeps to `pressure_angle`.
+        Least coordinate of the roller centre along the guide, m; by default the least within `pressure_angle`.
     pressure_angle : float
         Largest, rad; a limit where `base_radius` is given too.
     roller_radius : float, optional
@@ -242,7 +241,7 @@ def torque_balancing_cam(
     pin, label : str
         Of the `RollerFollower`.
     switches : sequence of float
-        Crank angles at which a load switches, rad; those not told are found.
+        Crank angles at which a load switches, rad; a search finds the others.
 
     Returns
     -------
@@ -292,19 +291,19 @@ def torque_balancing_cam(
 
 
 def _parse_values(scene, given):
-    """Values of what is given, by name."""
+    """Checked values by name."""
     rules = dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE))
     rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
     rules |= {"pressure_angle": ("rad", POSITIVE | {"high": MAX_PRESSURE_ANGLE}), "guide_angle": ("rad", {})}
     rules |= {"guide_offset": ("m", {})}
-    told = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
+    given = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
     return checks.single_numbers(
-        OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in told.items()}
+        OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in given.items()}
     )
 
 
 def _reserve(values, energy, lows, level, moving, stiffness):
-    """Times the force that contact needs with which the spring pulls, the least; refused where that does not do."""
+    """Least ratio of the spring force to the force for contact; refused if it is not above 1."""
     reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
     reserve = min(reserves.values())
     if reserve <= 1.0:
@@ -313,7 +312,7 @@ def _reserve(values, energy, lows, level, moving, stiffness):
 
 
 def _scene_problem(scene):
-    """What is wrong with a scene, as a sentence, or None."""
+    """Sentence about an unsuitable scene, or None."""
     if not isinstance(scene, Scene):
         return f"takes a Scene, as of a case's variant, got {checks.shown(scene)}"
     if np.ndim(scene.crank_speed) or np.ndim(scene.crank_acceleration) or scene.crank_acceleration:
@@ -328,10 +327,13 @@ def _scene_problem(scene):
 
 
 def _energy(scene, switches):
-    """Torque as panels, and the integral of what it is above its mean."""
+    """Torque as panels, and the integral of torque less mean, J."""
     solution = scene.solve(720)
     require_single(solution, OWNER, "balancing_torque")
-    _require_uneven(solution.balancing_torque, solution.dynamics.largest_torque_term)
+    size = solution.dynamics.largest_torque_term
+    if not np.ptp(solution.balancing_torque) > UNEVENNESS_TOLERANCE * size:
+        mean = np.mean(solution.balancing_torque)
+        raise ParameterError(f"{OWNER}: the torque is even as it is, {mean:.6g} N m all the way")
     kinks = Turn.of(solution).kinks
     try:
         torque = Panels.of(lambda angle: solution.at(angle).balancing_torque, TURN, [*kinks, *switches])
@@ -340,14 +342,8 @@ def _energy(scene, switches):
     return torque, torque.plus(-torque.mean).integral
 
 
-def _require_uneven(torque, size):
-    """Raise if the torque is its mean but for rounding of the torques that it is a sum of."""
-    if not np.ptp(torque) > UNEVENNESS_TOLERANCE * size:
-        raise ParameterError(f"{OWNER}: the torque is even as it is, {np.mean(torque):.6g} N m all the way")
-
-
 def _energy_swing(torque, energy):
-    """Range of the machine's energy, its peak, and the crank angles where it is least."""
+    """Range and peak of the machine's energy, J, and the crank angles of its minima."""
     mean = torque.mean
     size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, ANGLE_COUNT)))))
     turns = torque.plus(-mean).roots
@@ -367,7 +363,7 @@ def _energy_swing(torque, energy):
 
 
 def _spring_rate(values, swing):
-    """Stiffness, and least stretch, by the energy between both ends of the travel."""
+    """Stiffness and least stretch for the energy between both ends of the travel."""
     travel = values["travel"]
     stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
     least = swing / (stiffness * travel) - travel / 2.0
@@ -381,7 +377,7 @@ def _spring_rate(values, swing):
 
 
 def _no_contact_text(values, low, reserve):
-    """Why the follower does not stay on the cam: (k x)^2 must exceed 4 m omega^2 E'' where E is least."""
+    """Text of lost contact: (k x)^2 must exceed 4 m omega^2 E'' at minima of E."""
     mass = values["mass"]
     return (
         f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
@@ -391,7 +387,7 @@ def _no_contact_text(values, low, reserve):
 
 
 def _base_radius(stretch, least, values):
-    """Least coordinate of the roller centre; unless given that which keeps to the pressure angle and off the shaft."""
+    """Least coordinate of the roller centre; by default the least within the pressure angle and off the shaft."""
     angle = np.linspace(0.0, TURN, ANGLE_COUNT)
     x, rate = stretch.at(angle, 1)
     steep = np.tan(values["pressure_angle"])

@@ -1,19 +1,13 @@
-"""Cams that need no torque: the cam-balanced crank-slider whose energy stays constant over the turn.
+"""Torque-free cams: the cam-balanced crank-slider whose energy stays constant over the turn.
 
-Constant crank speed needs no torque exactly if kinetic energy and potential of weight and springs do not change
-together. Harmonics of the cam, the coupler's length, the spring's rate and free position are found for that, the ends
-of the stroke kept: first the least squares of the torque (Gauss and Newton, from the cosine law's cam), then the least
-of what is asked, under limits.
+Constant crank speed needs no torque if kinetic energy and potential energy of weight and springs have a constant sum.
+The search varies harmonics of the cam, the coupler's length, and rate and free position of the spring, at fixed ends
+of the stroke: first the least squares of the torque (Gauss-Newton, from the cosine law's cam), then the goal under
+limits.
 
-The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all else of
-a symmetric machine is odd, so that no symmetric cam can balance it: sine terms, a torsion spring on the coupler, or a
-counterweight on the crank with an offset guide can, each at a price.
-
-Least squares of the torque by harmonics of a cam, with the ends of the stroke among them.
-
-Steps of Gauss and Newton, from the exact derivatives of torque and position.
-
-What carries the coupler's weight where a symmetric cam cannot, and what each way costs.
+The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all other
+torque of a symmetric machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or
+a counterweight on the crank with an offset guide do; `weight_options` compares them.
 """
 
 import warnings
@@ -25,6 +19,7 @@ import numpy as np
 
 from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
+from ..mechanics.quantities import of_scene
 from ..numbers import checks
 from ..results.reductions import Output
 from .cam_start import Options, crank_slider_links, starting_machine
@@ -41,20 +36,20 @@ from .optimise import (
     without_ratios,
 )
 from .problem import Problem, choose_design, progress_bar, scene_of, true_value
-from .result import Found, known, search_result
+from .result import Found, search_result
 from .search import Goal
 
 TORQUE, POSITION = "balancing_torque", "slider_position"
 LEAST_SQUARES_PASSES = ((2.0, 1.0), (2e3, 0.0))
-"""Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
-torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
+"""Weights of each pass: of a miss of the stroke's ends by half the stroke, in mean torques, and of the cam's waves. The
+first pass approaches from far away, the second keeps the ends."""
 MAX_LEAST_SQUARES_STEPS = 100
 
 
 def least_squares(problem, start, values):
-    """Design of least squares of the torque, with the ends of the stroke among them, by Gauss and Newton's steps.
+    """Design of least squares of torque and misses of the stroke's ends, by Gauss-Newton steps.
 
-    Numbers besides those of the cam, the coupler and the linear spring stay as they are.
+    Only numbers of the cam, the coupler and the linear spring change.
     """
     columns = [place for place, name in enumerate(problem.names) if name in start.first]
     for weight, smooth in LEAST_SQUARES_PASSES:
@@ -63,7 +58,7 @@ def least_squares(problem, start, values):
 
 
 def _least_squares_pass(problem, start, values, columns, weight, smooth):
-    """Least squares by some of the numbers, with weights of the ends of the stroke and of the waves of the cam."""
+    """Least squares over some numbers, with weights of the stroke's ends and of the cam's waves."""
     from scipy import optimize
 
     waves = smooth * np.array([waviness(problem.names[place]) for place in columns]) / start.half
@@ -78,15 +73,15 @@ def _least_squares_pass(problem, start, values, columns, weight, smooth):
 
     def residuals(steps):
         curves = problem.curves(placed(steps))
-        torque, place = curves[TORQUE].values, curves[POSITION].values
+        (torque, _), (place, _) = curves[TORQUE], curves[POSITION]
         missed = (np.array([place.min(), place.max()]) - ends) / start.half
         found = [torque / (start.unit * np.sqrt(count)), weight * missed, waves * placed(steps)[columns]]
         return np.nan_to_num(np.concatenate(found), nan=1e3)
 
     def slopes(steps):
         curves = problem.curves(placed(steps))
-        place = curves[POSITION]
-        extreme = place.slopes[:, [place.values.argmin(), place.values.argmax()]]
+        place, rises = curves[POSITION]
+        extreme = rises[:, [place.argmin(), place.argmax()]]
         rows = np.hstack([curves[TORQUE].slopes / (start.unit * np.sqrt(count)), weight * extreme / start.half])
         return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
 
@@ -104,15 +99,15 @@ def _least_squares_pass(problem, start, values, columns, weight, smooth):
 
 
 def waviness(name):
-    """How much a harmonic of the cam bends it: the square of its order, from the second on."""
+    """Square of the order of a cam harmonic from the second on; 0 for other numbers."""
     kind, _, order = name.rpartition(".")
     return float(order) ** 2 if kind in ("cam.cosine", "cam.sine") and int(order) > 1 else 0.0
 
 
 MIN_ANGLES, ANGLES_PER_HARMONIC = 360, 32
-"""Crank angles at least, and for each harmonic of the cam."""
+"""Fewest crank angles, and crank angles per harmonic of the cam."""
 BOUND_MARGIN = 1.05
-"""How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
+"""Limit over the bound of symmetric cams that is refused at once; the bound changes a little with the cam."""
 REPORTED_OUTPUTS = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
@@ -153,7 +148,7 @@ def torque_free_cam(
     engine="numpy",
     progress=False,
 ) -> Found:
-    """Cam-balanced crank-slider that needs least torque, or is best in what else is asked of it.
+    """Cam-balanced crank-slider with the least torque, or the best in another output.
 
     Parameters
     ----------
@@ -163,8 +158,8 @@ def torque_free_cam(
     cosine, sine : int
         Harmonics of the cam.
     minimise, maximise : str, optional
-        Output to be made least or greatest, as for `optimise`; the mean magnitude of the torque is made least unless
-        told. "rms balancing_torque" is the least squares.
+        Output to minimise or maximise, as for `optimise`; default: minimise the mean magnitude of the torque.
+        "rms balancing_torque" is the least squares.
     limits : sequence of str
         As for `optimise`; "smallest cam_radius >= 40 mm" keeps the roller centre off the shaft.
     ends : (low, high), optional
@@ -208,19 +203,10 @@ def torque_free_cam(
     5.25e+04
     """
     source, reference = choose_design(source, variant, reference)
-    options = Options.checked(
-        *search_problems(starts, seed),
-        None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
-        cosine=cosine,
-        sine=sine,
-        ends=ends,
-        gravity=gravity,
-        guide_offset=guide_offset,
-        coupler_spring=coupler_spring,
-        counterweight=counterweight,
-        cubic=cubic,
-        shaft_radius=shaft_radius,
-    )
+    wrong = None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}"
+    asked = {"cosine": cosine, "sine": sine, "ends": ends, "gravity": gravity, "guide_offset": guide_offset}
+    asked |= {"coupler_spring": coupler_spring, "counterweight": counterweight, "cubic": cubic}
+    options = Options.checked(*search_problems(starts, seed), wrong, **asked, shaft_radius=shaft_radius)
     given = _without_friction(scene_of(source), gravity)
     compared = None if reference is None else _without_friction(scene_of(reference), gravity)
     start = starting_machine(given, options)
@@ -249,7 +235,7 @@ def torque_free_cam(
 
 
 class _Aims(NamedTuple):
-    """What is to be least or greatest, by its text and its output, and the limits, ends of the stroke among them."""
+    """The goal as sign, text and output, and the limits with the ends of the stroke."""
 
     sign: float
     text: str
@@ -282,7 +268,7 @@ def _problem(start, compared, aims, order, vary, engine):
 
 @contextmanager
 def _advise_on_failure(start, problem, compared, limits, first):
-    """Where the search fails and the torque is limited, say what else may balance weight."""
+    """Add to the error of a failed search with limited torque what else balances weight."""
     try:
         yield
     except DesignError as error:
@@ -293,9 +279,9 @@ def _advise_on_failure(start, problem, compared, limits, first):
 
 
 def ratio_bound(start, scene, reference):
-    """Greatest ratio of mean torques that a symmetric cam reaches: the coupler's weight stays.
+    """Greatest ratio of mean torques of a symmetric cam, which leaves the torque of the coupler's weight.
 
-    It rises and falls twice a turn to the greatest height of A, whatever else balances.
+    That weight rises and falls twice a turn by the greatest height of A.
     """
     if reference is None or not start.weight:
         return np.inf
@@ -308,7 +294,7 @@ def ratio_bound(start, scene, reference):
 
 
 def _without_friction(scene, gravity):
-    """The scene at constant speed without friction, nor gravity if that shall not act; says what it leaves out."""
+    """The scene at constant speed without friction, and without gravity unless `gravity`; warns of omissions."""
     left = [f"friction at {', '.join(scene.friction.acting)}"] if scene.friction.acting else []
     if np.any(scene.crank_acceleration):
         left.append("the crank acceleration")
@@ -335,7 +321,7 @@ def _require_possible(problem, start):
 
 
 def _require_within_bound(start, problem, limits, reference, values):
-    """Refuse a ratio of mean torques that the weight alone forbids a symmetric cam."""
+    """Refuse a ratio of mean torques beyond the bound of a symmetric cam under weight."""
     advice = _advice(start, problem, reference, values)
     if not advice:
         return
@@ -349,7 +335,7 @@ def _require_within_bound(start, problem, limits, reference, values):
 
 
 def _advice(start, problem, reference, values):
-    """What else may balance weight, where a symmetric cam cannot."""
+    """Sentence naming what else balances weight where a symmetric cam cannot."""
     helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
     limit = ratio_bound(start, scene_of(problem.scene(values)), reference)
     if helped or not np.isfinite(limit):
@@ -362,9 +348,9 @@ def _advice(start, problem, reference, values):
 
 
 def _reported_outputs(scene, reference, outputs):
-    """Outputs that a report shows: those asked for, and the usual ones."""
+    """Outputs of a report: goal and limits, and the usual ones."""
     texts = REPORTED_OUTPUTS if reference is not None else REPORTED_OUTPUTS[1:]
-    usual = (parse_output(text, scene) for text in texts if text.split()[-1] in known(scene))
+    usual = (parse_output(text, scene) for text in texts if text.split()[-1] in of_scene(scene))
     return tuple(dict.fromkeys([*outputs, *usual]))
 
 
@@ -373,7 +359,7 @@ QUARTER_TURN = np.pi / 2
 
 
 def weight_options(source, cosine=8, *, variant=None, reference=None, counterweight=None, **options):
-    """Torque-free cams under weight, each carrying it in another way, and its price: a row for each.
+    """Torque-free cams under weight, a row for each way of carrying the weight.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Where the energy of a turn goes: from the motor through its rotor to loads and joints, and what is held and returned.
+"""Energy of a turn: from the motor through its rotor to loads and joints, and the energy stored and returned.
 
-An induction motor takes torque times the speed of its field through the air gap and gives torque times its own speed at
-the shaft; the difference heats the rotor. What arrives at the crank, loads take and friction of the joints loses;
-flywheel, links, weights and springs hold energy for a while and give all of it back within the period.
+An induction motor takes torque times synchronous speed through the air gap and gives torque times its own speed at the
+shaft; the difference heats the rotor. Loads take the rest, and friction of the joints loses it. Flywheel, links,
+weights and springs store energy and return all of it within the period.
 """
 
 from dataclasses import dataclass
@@ -20,22 +20,22 @@ from ..numbers.parameter_tree import replace_unchecked
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
 SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"
 ENERGY_TOLERANCE = 1e-13
-"""Energy, relative to what flows to and fro, that is rounding and taken as 0."""
+"""Energy relative to the energy exchanged that counts as 0."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """What gives, takes or holds energy.
+    """A part that gives, takes or stores energy.
 
     Attributes
     ----------
     name : str
     kind : str
-        "source": gives `energy`; "loss", "load" and "joint": take it, negative if they give; "held": kept and returned.
+        "source": gives `energy`; "loss", "load" and "joint": take it, negative if they give; "held": stores energy.
     energy : float
         In a turn, J.
     swing : float
-        Largest less smallest energy held over the period, J; NaN of what keeps nothing.
+        Largest less smallest stored energy over the period, J; NaN of parts that store none.
     """
 
     name: str
@@ -51,7 +51,7 @@ class EnergyFlow:
     Attributes
     ----------
     parts : tuple of Part
-        Each with ``.name``, ``.kind``, ``.energy`` in a turn and ``.swing``, what it holds and returns, J.
+        Each with ``.name``, ``.kind``, ``.energy`` in a turn and ``.swing`` of its stored energy, J.
     turn_time : float
         Duration of a turn of the crank, s.
 
@@ -70,7 +70,7 @@ class EnergyFlow:
     turn_time: float
 
     def __getitem__(self, name):
-        """Energy in a turn of a part by its name, J."""
+        """Energy of a part in a turn, by its name, J."""
         found = {part.name: part.energy for part in self.parts}
         problem = checks.choice("part", name, tuple(found))
         if problem:
@@ -88,7 +88,7 @@ class EnergyFlow:
 
     @property
     def residual(self):
-        """What the source gives and nothing takes, relative to all that flows in a turn."""
+        """Energy of the source that no part takes, relative to all energies of the turn."""
         given = sum(part.energy for part in self.parts if part.kind == SOURCE)
         taken = sum(part.energy for part in self.parts if part.kind != SOURCE)
         size = sum(abs(part.energy) for part in self.parts)
@@ -116,10 +116,7 @@ class EnergyFlow:
 
 
 def energy_flow(run) -> EnergyFlow:
-    """Where the energy of a turn of periodic running goes.
-
-    Every part by an integral of its own; that they balance is told by `residual`.
-    """
+    """Energies of a turn of periodic running, each by its own integral; `residual` is their imbalance."""
     pieces, speed, acceleration, inertia = run.on_pieces
     angle, shape = pieces.angle.ravel(), pieces.angle.shape
     moving = {"crank_speed": speed.ravel(), "crank_acceleration": acceleration.ravel()}
@@ -147,7 +144,7 @@ def energy_flow(run) -> EnergyFlow:
 
 
 def zero_if_rounding(energy, flowing):
-    """An energy, or 0 where it is rounding of what flows to and fro."""
+    """An energy, or 0 if it is rounding of the energy that flows."""
     return 0.0 if abs(energy) <= ENERGY_TOLERANCE * flowing else energy
 
 
@@ -160,7 +157,7 @@ def _motor_parts(run):
 
 
 def _loads_by_title(loads: tuple[Any, ...]):
-    """Loads by their titles, those of one title numbered."""
+    """Loads by their titles; equal titles get numbers."""
     titles = [title_of(item) for item in loads]
     counts: dict[str, int] = {}
     named = {}

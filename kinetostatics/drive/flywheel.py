@@ -1,4 +1,4 @@
-"""Flywheels for a coefficient of fluctuation: by the textbook, and true."""
+"""Flywheels for a coefficient of fluctuation: by the textbook rule without motor, exact with one."""
 
 import math
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..numbers import checks
-from .friction import driven_machine
+from .one_dof import driven_machine
 from .resolution import resolved
 from .running import Running, find_flywheel, parse_fluctuation
 from .steady import steady
@@ -49,8 +49,8 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
 
     Without motor as in textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and Shigley,
     *Theory of Machines and Mechanisms*, on flywheels): the torque is that at constant speed, the motor gives its mean,
-    and the energy E between the extremes of what is left over makes J = E / (fluctuation * speed^2), with fluctuation
-    by the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by
+    and the energy E between the extremes of the excess energy gives J = E / (fluctuation * speed^2), with fluctuation
+    by the mean of largest and smallest speed. With a motor exact: periodic running (`steady`) whose `fluctuation`, by
     the mean over time, is the one given.
 
     Parameters
@@ -103,9 +103,6 @@ def _textbook_flywheel(scene, wanted, engine):
 def _exact_flywheel(scene, wanted, motor, engine):
     driven = driven_machine("flywheel", scene, motor, 0.0, engine)
     unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
-    return _found(*find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit))
-
-
-def _found(inertia, running):
+    inertia, running = find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit)
     low, high = running.speed_range
     return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)

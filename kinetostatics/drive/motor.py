@@ -1,4 +1,4 @@
-"""Motors: torque over speed at their own shaft, and what the crank feels of it."""
+"""Motors: torque over speed at their own shaft, and reduced to the crank."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 
 MAX_SPEED_RATIO = 2.0
-"""Speeds up to so many times a motor's own are looked at for steady running."""
+"""Largest speed of the search for steady running over the motor's idle or synchronous speed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,12 +163,12 @@ class Motor:
 
     @property
     def field_speed(self) -> float | None:
-        """Speed of the field that it slips behind, rad/s; None of a motor that has none."""
+        """Speed of the field, rad/s; None of a motor without slip."""
         return None
 
     @property
     def top(self) -> float:
-        """Speed of the motor's shaft beyond which it is not looked for, rad/s."""
+        """Largest motor speed of the search for steady running, rad/s."""
         raise NotImplementedError
 
     @property
@@ -183,15 +183,15 @@ class Motor:
 
     @property
     def inertia_at_crank(self):
-        """Inertia of its rotor as the crank feels it, kg m2."""
+        """Inertia of the rotor reduced to the crank, kg m2."""
         return self.inertia * self.transmission**2
 
     def torque_at_crank(self, crank_speed):
-        """Torque that the crank feels, by crank speed, N m."""
+        """Torque on the crank at a crank speed, N m."""
         return self.transmission * self.torque(self.transmission * crank_speed)
 
     def slope_at_crank(self, crank_speed):
-        """Derivative of that torque by the crank speed, N m s."""
+        """Derivative of the torque on the crank by the crank speed, N m s."""
         return self.transmission**2 * self.slope(self.transmission * crank_speed)
 
 
@@ -269,7 +269,7 @@ class Constant(Motor):
 
 @dataclass(frozen=True, eq=False)
 class TableMotor(Motor):
-    """Motor by a table; see `Motor.table`. Beyond its ends the curve goes on straight, for iterations to find back."""
+    """Motor by a table; see `Motor.table`. Straight lines continue the curve, so that iterations can return."""
 
     speeds: np.ndarray
     torques: np.ndarray
@@ -296,8 +296,6 @@ class TableMotor(Motor):
         return float(self.speeds[0]), float(self.speeds[-1])
 
 
-# What a motor must be given
-
 POSITIVE = {"low": 0.0, "strict": True}
 SYNCHRONOUS_SPEED = {**POSITIVE, "usual": checks.PlausibleRange(700.0, "is it in rpm?", math.pi / 30.0)}
 TABLE_COLUMNS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
@@ -308,14 +306,14 @@ def _transmission_rules(transmission, inertia):
 
 
 def _rated_speed_problem(speed, synchronous_speed):
-    """What is wrong with a rated speed, or None."""
+    """Sentence if the rated speed is not below the synchronous speed, or None."""
     if speed < synchronous_speed:
         return None
     return f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
 
 
 def _row_problems(speed, torque):
-    """What is wrong with the rows of a table of torque over speed, as sentences."""
+    """Sentences about faulty rows of torque over speed."""
     if np.ndim(speed) != 1 or np.ndim(torque) != 1:
         return [
             f"{name} must be a row of numbers"

@@ -1,10 +1,10 @@
-"""A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles.
+"""A machine in periodic running: speed, powers, energies, and its solution at the true speed and acceleration.
 
-Powers and energies of a machine in periodic running, by integrals over its period.
+With the energy U = (Jf + J) omega^2 / 2 at Chebyshev points of the period, the speed is omega = sqrt(2 U / (Jf + J)).
+Means over time are integrals over the crank angle with the weight 1 / omega. Angles and torques are positive
+counter-clockwise; energies and powers of motor and friction are positive where the machine receives or loses them.
 
-The solution of a machine in periodic running: at its true speed and acceleration, whatever the crank angles.
-
-Search for the flywheel with which a machine runs as evenly as is asked.
+`find_flywheel` varies the flywheel until the running has a given coefficient of fluctuation.
 """
 
 import math
@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
-from ..solution.angles import crank_angles, hint_at_angles
+from ..solution.parameters import crank_angles, hint_at_angles
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from .energy_flow import energy_flow, zero_if_rounding
@@ -29,112 +29,11 @@ from .pieces import Pieces
 from .savings import DrivenComparison
 
 
-class Powers:
-    """What the motor gives, and what takes it; each is found once."""
-
-    scene: Any
-    motor: Any
-    turns: Any
-    duration: Any
-    _driven: Any
-    _pieces: Any
-    _speed: Any
-    _state: Any
-    _powers: Any
-    _at_points: Any
-    _forward: Any
-    _transmission: Any
-    _motor_torque: Any
-
-    @cached_property
-    def energy_per_turn(self):
-        """Energy that the motor gives at its shaft in a turn, J."""
-        torque = self._transmission * self._motor_torque(self._speed)
-        energy = self._pieces.total(self._driven.direction * torque)
-        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
-        return zero_if_rounding(energy, flowing) / self.turns
-
-    @cached_property
-    def energy_flow(self):
-        """Where the energy of a turn goes: an `EnergyFlow`, with a table by `.frame()`."""
-        return energy_flow(self)
-
-    @cached_property
-    def air_gap_energy_per_turn(self):
-        """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
-        if not self.has_air_gap:
-            raise DriveError(
-                "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
-            )
-        power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
-        return self._pieces.total(power / np.abs(self._speed)) / self.turns
-
-    @property
-    def has_air_gap(self):
-        """Whether the motor is an induction motor, whose losses by slip are known."""
-        return self.motor is not None and self.motor.field_speed is not None
-
-    @property
-    def rotor_loss_per_turn(self):
-        """Energy that an induction motor loses in its rotor by slip in a turn, J."""
-        return self.air_gap_energy_per_turn - self.energy_per_turn
-
-    @property
-    def mean_power(self):
-        """Mean over time of the motor's power at its shaft, W."""
-        return self.energy_per_turn * self.turns / self.duration
-
-    @cached_property
-    def rms_motor_torque(self):
-        """Root of the mean over time of the square of the motor's torque at its shaft, N m: what heats it."""
-        square = self._motor_torque(self._speed) ** 2
-        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
-
-    @cached_property
-    def rms_power(self):
-        """Root of the mean over time of the square of the motor's power, W."""
-        return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
-
-    @cached_property
-    def peak_power(self):
-        """Largest power of the motor, with its sign, W."""
-        return self._pieces.peak(self._powers)
-
-    @cached_property
-    def peak_motor_torque(self):
-        """Largest torque of the motor at its shaft, with its sign, N m."""
-        return self._pieces.peak(self._motor_torque(self._speed))
-
-    @cached_property
-    def load_energy_per_turn(self):
-        """Energy that weight and loads take of the crank in a turn, friction left out, J."""
-        return self._pieces.total(self._driven.unrubbed(self._pieces.angle, self._speed).torque) * self._forward
-
-    @property
-    def friction_energy_per_turn(self):
-        """Energy that friction takes at all joints in a turn, J."""
-        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
-
-    def friction_energy_per_turn_at(self, joint):
-        """Energy that friction takes at a joint, named as in `friction`, in a turn, J; 0 where nothing rubs."""
-        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
-        return self._pieces.total(lost / self._speed) * self._forward
-
-    @property
-    def mean_friction_loss(self):
-        """Mean over time of the power lost by friction at all joints, W."""
-        return self.friction_energy_per_turn * self.turns / self.duration
-
-    def mean_friction_loss_at(self, joint):
-        """Mean over time of the power lost by friction at a joint, W."""
-        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
-
-
 @dataclass(frozen=True, eq=False)
 class RunningSolution(Solution):
-    """A `Solution` whose crank speed and acceleration are those of periodic running.
+    """A `Solution` at the crank speed and acceleration of periodic running.
 
-    `running` gives them at any crank angles, so that extremes, means and tables look between the angles given.
+    `running` returns both at any crank angle, so extremes, means and tables are exact between the given angles.
     """
 
     running: Any = None
@@ -168,14 +67,15 @@ class RunningSolution(Solution):
 
 
 MAX_DOUBLINGS = 60
-"""How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
+"""Doublings of the flywheel before the search ends."""
 INERTIA_TOLERANCE = 1e-13
+"""Relative error of the flywheel."""
 MIN_FLYWHEEL_RATIO = 1e-3
-"""Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
+"""Smallest flywheel of the search relative to the machine's own inertia, where lighter ones do not run."""
 
 
 def parse_fluctuation(owner, fluctuation):
-    """A coefficient of fluctuation as a float, between 0 and 2."""
+    """Coefficient of fluctuation as a float; refused outside 0 to 2."""
     wanted, wrong = checks.single_number("fluctuation", fluctuation, "1", low=0.0, strict=True)
     if not wrong and not wanted < 2.0:
         wrong = f"fluctuation must be less than 2, got {wanted:g}"
@@ -184,13 +84,13 @@ def parse_fluctuation(owner, fluctuation):
 
 
 def find_flywheel(wanted, running_with, unit):
-    """Flywheel, kg m2, with which running has a coefficient of fluctuation, or 0 where none is needed; and the running.
+    """Flywheel in kg m2 for a coefficient of fluctuation, 0 where none is needed, and the running with it.
 
     Parameters
     ----------
     wanted : float
     running_with : function
-        Running with a flywheel, kg m2; raises `DriveError` where there is none.
+        Returns the `Running` with a flywheel in kg m2; raises `DriveError` where there is none.
     unit : float
         The machine's own inertia, kg m2.
     """
@@ -199,7 +99,7 @@ def find_flywheel(wanted, running_with, unit):
     runs: dict[float, Any] = {}
 
     def excess(inertia):
-        """Logarithm of the fluctuation over the one wanted; large where the machine does not run."""
+        """Logarithm of fluctuation / wanted; infinite where the machine does not run."""
         try:
             runs[inertia] = running_with(inertia)
         except DriveError:
@@ -228,7 +128,7 @@ def find_flywheel(wanted, running_with, unit):
 
 
 @dataclass(frozen=True, eq=False)
-class Running(Powers):
+class Running:
     """A machine in periodic running; made by `steady`.
 
     Attributes
@@ -311,7 +211,7 @@ class Running(Powers):
 
     @property
     def fluctuation_arithmetic(self):
-        """The same over the mean of largest and smallest speed, as textbooks have it."""
+        """Coefficient of fluctuation of textbooks: over the mean of largest and smallest speed."""
         low, high = self.speed_range
         return 2.0 * (high - low) / (high + low)
 
@@ -337,7 +237,7 @@ class Running(Powers):
 
     @cached_property
     def motor_torque(self):
-        """Torque of the motor at its shaft, its rotor's inertia not taken off, (..., N), N m."""
+        """Torque of the motor at its shaft, without the inertia torque of its rotor, (..., N), N m."""
         return read_only(self._motor_torque(self.speed))
 
     @property
@@ -352,11 +252,11 @@ class Running(Powers):
 
     @property
     def crank_torque(self):
-        """Torque that the machine itself takes at the crank: its balancing torque, (..., N), N m."""
+        """Balancing torque of the machine at the crank, (..., N), N m."""
         return self.solution.balancing_torque
 
     def motion(self, angle):
-        """Speed and acceleration of the crank at any crank angles, rad/s, rad/s2."""
+        """Speed and acceleration of the crank at any crank angles, rad/s and rad/s2."""
         driven, angle = self._driven, np.mod(angle, self.period)
         energy, inertia = self._pieces.evaluate(self._energy_series, angle), driven.inertia(angle)
         speed = driven.direction * np.sqrt(2.0 * energy / inertia)
@@ -366,12 +266,12 @@ class Running(Powers):
 
     @cached_property
     def solution(self):
-        """`Solution` at the crank angles with the true speed and acceleration, for tables, extremes, plots, compare."""
+        """`Solution` at the crank angles with the true speed and acceleration."""
         return RunningSolution.of(self)
 
     @property
     def crank_flywheel(self):
-        """Flywheel on the crank without the rotor of the motor, kg m2."""
+        """Flywheel on the crank without the motor's rotor, kg m2."""
         return self.flywheel - (0.0 if self.motor is None else self.motor.inertia_at_crank)
 
     def with_flywheel(self, inertia):
@@ -443,11 +343,96 @@ class Running(Powers):
         }
         return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
 
+    # energy and power
+
+    @cached_property
+    def energy_per_turn(self):
+        """Energy of the motor at its shaft in a turn, J."""
+        torque = self._transmission * self._motor_torque(self._speed)
+        energy = self._pieces.total(self._driven.direction * torque)
+        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
+        return zero_if_rounding(energy, flowing) / self.turns
+
+    @cached_property
+    def energy_flow(self):
+        """Where the energy of a turn goes: an `EnergyFlow`, with a table by `.frame()`."""
+        return energy_flow(self)
+
+    @cached_property
+    def air_gap_energy_per_turn(self):
+        """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
+        if not self.has_air_gap:
+            raise DriveError(
+                "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
+            )
+        power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
+        return self._pieces.total(power / np.abs(self._speed)) / self.turns
+
+    @property
+    def has_air_gap(self):
+        """Whether the motor is an induction motor with known slip losses."""
+        return self.motor is not None and self.motor.field_speed is not None
+
+    @property
+    def rotor_loss_per_turn(self):
+        """Slip loss in the rotor of an induction motor in a turn, J."""
+        return self.air_gap_energy_per_turn - self.energy_per_turn
+
+    @property
+    def mean_power(self):
+        """Mean over time of the motor's power at its shaft, W."""
+        return self.energy_per_turn * self.turns / self.duration
+
+    @cached_property
+    def rms_motor_torque(self):
+        """Root mean square over time of the motor's torque at its shaft, N m; it determines the heating."""
+        square = self._motor_torque(self._speed) ** 2
+        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
+
+    @cached_property
+    def rms_power(self):
+        """Root mean square over time of the motor's power, W."""
+        return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
+
+    @cached_property
+    def peak_power(self):
+        """Largest power of the motor, with its sign, W."""
+        return self._pieces.peak(self._powers)
+
+    @cached_property
+    def peak_motor_torque(self):
+        """Largest torque of the motor at its shaft, with its sign, N m."""
+        return self._pieces.peak(self._motor_torque(self._speed))
+
+    @cached_property
+    def load_energy_per_turn(self):
+        """Energy that weight and loads take from the crank in a turn, without friction, J."""
+        return self._pieces.total(self._driven.without_friction(self._pieces.angle, self._speed).torque) * self._forward
+
+    @property
+    def friction_energy_per_turn(self):
+        """Energy lost by friction at all joints in a turn, J."""
+        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
+
+    def friction_energy_per_turn_at(self, joint):
+        """Energy lost by friction in a turn at a joint, named as in `friction`, J; 0 without friction."""
+        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
+        return self._pieces.total(lost / self._speed) * self._forward
+
+    @property
+    def mean_friction_loss(self):
+        """Mean over time of the power lost by friction at all joints, W."""
+        return self.friction_energy_per_turn * self.turns / self.duration
+
+    def mean_friction_loss_at(self, joint):
+        """Mean over time of the power lost by friction at a joint, W."""
+        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
+
     # on the points of the pieces
 
     @property
     def on_pieces(self):
-        """Pieces of the period; speed, acceleration and inertia of the links at their points."""
+        """Pieces of the period; crank speed, acceleration and the links' inertia at their points."""
         return self._pieces, self._speed, self.motion(self._pieces.angle)[1], self._state.inertia
 
     @property
@@ -457,7 +442,7 @@ class Running(Powers):
 
     @property
     def _forward(self):
-        """Direction of the crank, by the turns of the period."""
+        """Direction of the crank over the turns of the period: turns an integral over a period into one of a turn."""
         return self._driven.direction / self.turns
 
     @cached_property
@@ -501,7 +486,7 @@ class Running(Powers):
         return self._transmission * self._motor_torque(self._speed) * self._speed
 
     def _time_after(self, turned):
-        """Time in which the crank turns by so much from angle 0, less than a period, in its own direction, s."""
+        """Time, s, to turn from angle 0 by `turned`, less than a period, in the crank's own direction."""
         slowness = 1.0 / np.abs(self._speed)
         series = self._pieces.series(self._pieces.integrated(slowness))
         if self.direction > 0:

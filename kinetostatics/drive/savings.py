@@ -1,6 +1,6 @@
-"""What balancing saves: two machines in periodic running under their motors compared.
+"""Figures of periodic running in tables: speeds, fluctuation, powers, losses, start-up, and energies of a turn.
 
-What running comes to, in tables: speeds, fluctuation, powers, losses, start-up; and where the energy goes.
+`DrivenComparison` compares two machines under their motors: the effect of balancing, or of another flywheel.
 """
 
 import math
@@ -24,13 +24,13 @@ DRIVE_FIGURES = {
     "fluctuation, by the mean over time": ("fluctuation", "1"),
     "fluctuation, by the mean of the extremes": ("fluctuation_arithmetic", "1"),
 }
-"""Names of a `Running`'s figures and their units, by what tables call them."""
+"""Attributes of `Running` and their units, by their titles in tables."""
 AIR_GAP_FIGURES = ("air_gap_energy_per_turn", "rotor_loss_per_turn")
 
 
 @dataclass(frozen=True, eq=False)
 class DrivenComparison(Comparison):
-    """Dynamic coefficients of two machines in periodic running, and what their drives take; made by `compare`.
+    """Dynamic coefficients of two machines in periodic running and figures of their drives; made by `compare`.
 
     Examples
     --------
@@ -90,7 +90,7 @@ class DrivenComparison(Comparison):
         Parameters
         ----------
         fluctuation : float, optional
-            That of the reference with its own flywheel unless told.
+            Default: that of the reference with its own flywheel.
         """
         runs = self.reference.running, self.balanced.running
         wanted = runs[0].fluctuation if fluctuation is None else fluctuation
@@ -114,7 +114,7 @@ class DrivenComparison(Comparison):
         return (reference - balanced) / radius**2
 
     def drive_frame(self, fluctuation=None):
-        """What the drives take, a pandas DataFrame: quantity, unit, its value with each machine, ratio, difference."""
+        """Figures of both drives, a pandas DataFrame: quantity, unit, value of each machine, ratio, difference."""
         import pandas as pd
 
         figures = {(text, unit): self.of_drives(name) for text, (name, unit) in DRIVE_FIGURES.items()}
@@ -138,7 +138,7 @@ def _ratio(reference, balanced):
 
 
 MAX_SPEED_RATIO = 1.5
-"""Times by which the speed under a motor may be off that of the scene before a word is said of it."""
+"""Ratio of running speed and scene speed beyond which a hint is due."""
 
 
 def running_table(runs, starts):
@@ -155,7 +155,7 @@ def running_table(runs, starts):
 
 
 def energy_table(runs):
-    """Where the energy of a turn goes, a pandas DataFrame with a column for each of a mapping of label to Running."""
+    """Energies of a turn, a pandas DataFrame with a column for each entry of a mapping of label to Running."""
     columns = {
         name: {
             (f"{part.name}, largest less smallest" if part.kind == HELD else part.name, "J"): (
@@ -169,7 +169,7 @@ def energy_table(runs):
 
 
 def speed_hint(run, scene):
-    """What is told of a machine whose motor turns it much faster or slower than its scene says; None otherwise."""
+    """Hint that the motor turns the crank much faster or slower than the scene's crank speed, or None."""
     meant, mean = abs(float(scene.crank_speed)), abs(run.mean_speed)
     if meant == 0.0 or meant / MAX_SPEED_RATIO <= mean <= meant * MAX_SPEED_RATIO:
         return None
@@ -180,7 +180,7 @@ def speed_hint(run, scene):
 
 
 def _table(columns):
-    """Values by what they are and their unit, of each column, in one table with NaN for what a column lacks."""
+    """One table of columns {(title, unit): value}; NaN where a column lacks a row."""
     import pandas as pd
 
     rows = {row: None for column in columns.values() for row in column}
@@ -189,7 +189,7 @@ def _table(columns):
 
 
 def _running_rows(run, start):
-    """Values by what they are and their unit."""
+    """Values by title and unit."""
     low, high = run.speed_range
     low_angle, high_angle = map(math.degrees, run.speed_range_angles)
     rows = {

@@ -1,14 +1,10 @@
-"""Exact periodic running of a machine under its motor, or under the constant torque that textbooks assume.
+"""Periodic running of a machine under its motor, or under a constant torque, exact to rounding.
 
-Newton's iteration on the energy of periodic running.
-
-The state is U = (Jf + J(phi)) omega^2 / 2 as a function of the crank angle: dU/dphi = motor torque - load torque, with
-no derivative of J. Each step is a linear equation u' = a u + g that is solved by its integrating factor in Chebyshev
-series between the kinks; it converges to rounding in about four steps.
-
-Running found by following a machine in time, where Newton's iteration alone does not find it.
-
-The operating speed: where the mean torques of motor and loads agree, before running is known.
+The state is the energy U = (Jf + J(phi)) omega^2 / 2 over the crank angle: dU/dphi = motor torque - load torque, which
+needs no derivative of J. Newton's method linearises this to u' = a u + g, with a = d(net torque)/dU, solved by its
+integrating factor in Chebyshev series between the kinks; about four steps reach rounding. It starts at the operating
+speed, where the mean torques of motor and loads agree. Where it does not converge, an integration in time from a high
+speed gives the start.
 """
 
 import math
@@ -20,32 +16,26 @@ from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.parameter_tree import replace_unchecked
-from ..solution.angles import crank_angles
+from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
-from .friction import driven_machine
+from .one_dof import driven_machine
 from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
 from .resolution import require_inertia, resolved_with_bends
 from .running import Running
 
 MAX_GROWTH_EXPONENT = 4.0
-"""Integral of a over a piece, at most: more takes digits."""
+"""Largest integral of a over a piece; a larger one costs digits."""
 SPEED_ROUNDING = 1e-14
-"""Relative change of speed that is rounding, for what a motor's torque makes of it."""
+"""Rounding of the speed, relative; the motor's slope turns it into rounding of the torque."""
 MAX_NEWTON_STEPS = 40
 MAX_HALVINGS = 3
-"""How often all pieces are halved where the iteration does not settle, as that of stiff motors on wide ones."""
+"""Halvings of all pieces where the iteration does not converge, as with stiff motors."""
 ENERGY_TOLERANCE = 1e-14
 
 
-def energy_interpolant(pieces, energy):
-    """Energy as a function of other pieces."""
-    series = pieces.series(energy)
-    return lambda finer: pieces.evaluate(series, finer.angle)
-
-
 def solve_near(driven, pieces, guess):
-    """Pieces and energy of periodic running near a guess, a function of pieces, halved while that helps; or None."""
+    """Pieces and energy of periodic running near `guess(pieces)`, on finer pieces if needed; else None."""
     for halving in range(MAX_HALVINGS + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
@@ -57,7 +47,7 @@ def solve_near(driven, pieces, guess):
 
 
 def _split_stiff_pieces(driven, pieces, guess):
-    """Pieces divided where the motor is stiff, as near a guess."""
+    """Pieces divided where the integral of a near a guess is large."""
     _, _, _, growth = linearise(driven, pieces, guess(pieces))
     parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / MAX_GROWTH_EXPONENT, MOST_PIECES + 1.0)).astype(int)
     if parts.max() <= 1 or parts.sum() > MOST_PIECES:
@@ -68,7 +58,7 @@ def _split_stiff_pieces(driven, pieces, guess):
 
 
 def unresolved_pieces(driven, pieces, energy):
-    """Which pieces have series that are not done, and can be halved."""
+    """Mask of the pieces whose series are not resolved and that can be halved."""
     state, inertia, speed, growth = linearise(driven, pieces, energy)
     drive = driven.motor_torque(speed)
     wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
@@ -81,7 +71,7 @@ def unresolved_pieces(driven, pieces, energy):
 
 
 def linearise(driven, pieces, energy, state=None):
-    """State, inertia, speed, and derivative of the net torque by U, at the points of pieces."""
+    """State, total inertia, speed, and a = d(net torque)/dU at the points of pieces."""
     angle = pieces.angle
     if driven.by_speed:
         inertia = driven.inertia(angle)
@@ -97,7 +87,7 @@ def linearise(driven, pieces, energy, state=None):
 
 
 def _newton(driven, pieces, energy):
-    """Energy U of periodic running near a guess; None if the iteration does not settle on stable running."""
+    """Energy U of stable periodic running near a guess, by Newton's method; None without convergence."""
     state, before = None, math.inf
     for _ in range(MAX_NEWTON_STEPS):
         state, _, speed, growth = linearise(driven, pieces, energy, state)
@@ -121,7 +111,7 @@ def _newton(driven, pieces, energy):
 
 
 def _periodic_solution(pieces, growth, rest):
-    """Periodic solution of u' = growth u + rest; None where it grows over the period, or neither grows nor fades."""
+    """Periodic solution of u' = growth u + rest; None where it overflows or growth vanishes over the period."""
     with np.errstate(over="ignore", invalid="ignore"):
         raised = pieces.integral(growth)
         gathered = pieces.integral(rest * np.exp(-raised))
@@ -141,7 +131,7 @@ def _periodic_solution(pieces, growth, rest):
         for end, part in chain:
             left.append(value)
             value = value * end + part
-    else:  # the way in which differences fade
+    else:  # backward, where errors decay
         value = 0.0
         for end, part in reversed(chain):
             value = (value - part) / end
@@ -153,25 +143,26 @@ def _periodic_solution(pieces, growth, rest):
 
 
 INTEGRATION_TOLERANCE = 1e-6
-"""Tolerance to which a machine is followed from above."""
+"""Relative tolerance of the integration from a high speed."""
 MIN_GROWTH, MAX_GROWTH = 1e-10, 1e6
-"""Relative change of the energy of motion over a turn, by its own, of motors that cannot be followed to running."""
+"""Integrals of abs(a) over the period between which an integration in time reaches periodic running."""
 MAX_TURNS = 100
-"""Turns that are followed."""
+"""Periods of that integration."""
 
 
 def settle_by_integration(driven, pieces, start):
-    """Running found by following the machine from a high speed, where Newton's iteration alone does not find it.
+    """Pieces and energy of periodic running, by integration from a high speed where Newton's method alone fails.
 
-    Motions of one degree of freedom do not cross, so from above the highest periodic running is met, or none exists.
+    Motions of one degree of freedom do not cross, so a motion from above reaches the fastest periodic running, or
+    there is none.
     """
     from scipy.integrate import solve_ivp
 
     period, direction = driven.period, driven.direction
 
     def net(angle, energy):
-        angle, inertia = float(angle), driven.inertia_here(float(angle))
-        return driven.here(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
+        angle, inertia = float(angle), driven.inertia_at(float(angle))
+        return driven.balance(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
 
     most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
 
@@ -204,7 +195,7 @@ def settle_by_integration(driven, pieces, start):
             )
         last, energy = energy, float(found.y[0, -1])
         if abs(energy - last) < 0.05 * last:
-            running = solve_near(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
+            running = solve_near(driven, pieces, partial(_path_energy, found.sol, 1e-9 * most))
             if running is not None:
                 return running
             if abs(energy - last) < 1e-4 * last:
@@ -216,7 +207,7 @@ def settle_by_integration(driven, pieces, start):
 
 
 def _remedy(driven, pieces, start):
-    """What keeps running from being found, by how the motor answers to speed."""
+    """Remedy to name where no running converges, by how much the torque depends on the speed."""
     inertia = driven.inertia(pieces.angle)
     *_, growth = linearise(driven, pieces, 0.5 * inertia * start * start)
     share = float(np.abs(pieces.whole(growth)).sum())
@@ -233,20 +224,21 @@ def _remedy(driven, pieces, start):
     return "give a larger flywheel"
 
 
-def _on_path(pieces, path, least):
+def _path_energy(path, least, pieces):
+    """Energy of an integrated path at the points of pieces, at least `least`."""
     return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), least)
 
 
 MEAN_LOAD_ANGLES = 96
-"""Crank angles by which mean load torques are judged."""
+"""Crank angles of a mean load torque."""
 SPEED_COUNT = 512
-"""Speeds at which the mean torques of motor and loads are compared."""
+"""Speeds of the search for the operating speed."""
 FRICTION_SPEED_COUNT = 16
-"""Speeds at which mean torques of friction are computed at first, those between guessed from these."""
+"""Speeds with computed mean friction torque; the search interpolates between them at first."""
 
 
 def operating_speed(driven):
-    """Crank speed at which the mean torques of motor and loads agree and the motor yields to more load, rad/s."""
+    """Highest crank speed with equal mean torques of motor and loads, stable against more load, rad/s."""
     motor, name = driven.motor, driven.scene.mechanism.name
     if math.isfinite(motor.top):
         speed = motor.top * np.linspace(0.0, 1.0, SPEED_COUNT)
@@ -260,8 +252,10 @@ def operating_speed(driven):
         )
     load = _interpolated_mean_load if driven.smooth_by_speed else _mean_load
     load, spare, ends = _spare_torque(driven, speed, load)
-    if driven.smooth_by_speed and (ends is None or not _parts(_spare_torque(driven, np.array(ends))[1])):
-        load, spare, ends = _spare_torque(driven, speed)
+    if driven.smooth_by_speed:  # the interpolated load may place the interval wrongly
+        above, below = (1.0, 1.0) if ends is None else _spare_torque(driven, np.array(ends))[1]
+        if not above > 0.0 >= below:
+            load, spare, ends = _spare_torque(driven, speed)
     if ends is not None:
         from scipy.optimize import brentq
 
@@ -289,7 +283,7 @@ def operating_speed(driven):
 
 
 def _spare_torque(driven, speed, load_at=None):
-    """Mean load torque at speeds of the motor's shaft, the motor's less it, and the highest two that part the signs."""
+    """Mean load torque at motor speeds, motor torque less it, and the highest interval where that turns negative."""
     motor = driven.motor
     load = (load_at or _mean_load)(driven, speed / motor.transmission) / motor.transmission
     spare = motor.torque(speed) - load
@@ -297,12 +291,8 @@ def _spare_torque(driven, speed, load_at=None):
     return load, spare, (speed[crossing[-1]], speed[crossing[-1] + 1]) if crossing.size else None
 
 
-def _parts(spare):
-    return spare[0] > 0.0 >= spare[1]
-
-
 def _required_strength(load, torque):
-    """How many times as strong a motor must be to carry the loads at some speed, as words."""
+    """Text of how many times stronger the motor must be to carry the loads at some speed."""
     drives = torque > 0.0
     if not drives.any():
         return "that drives "
@@ -310,7 +300,7 @@ def _required_strength(load, torque):
 
 
 def require_within_motor_table(driven, speed):
-    """Refuse crank speeds at which a table of the motor tells nothing."""
+    """Refuse crank speeds outside the motor's table."""
     own = driven.motor.transmission * speed
     low, high = driven.motor.limits
     if own.min() < low or own.max() > high:
@@ -330,15 +320,15 @@ def _mean_load(driven, speed):
 
 
 def _interpolated_mean_load(driven, speed):
-    """The same where friction makes it smooth: from a few of the speeds, as nearly a line over their squares."""
+    """Mean load torque interpolated linearly over the squared speed, from a few speeds."""
     few = np.linspace(0, speed.size - 1, FRICTION_SPEED_COUNT).astype(int)
     return np.interp(speed**2, speed[few] ** 2, _mean_load(driven, speed[few]))
 
 
 MAX_FRICTION_UPDATES = 60
-"""How often friction is found anew under a constant torque, at most."""
+"""Updates of friction under a constant torque."""
 SPEED_TOLERANCE = 2e-15
-"""Relative change of speed that is rounding."""
+"""Relative change of speed at which these updates end."""
 
 
 def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
@@ -386,16 +376,17 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     """
     direction = _direction_without_motor(scene) if motor is None else None
     driven = driven_machine("steady", scene, motor, flywheel, engine, direction)
-    checks.require("steady", _angles_problem(angles))
-    scene = replace_unchecked(scene, sense=None)  # running never stands: its sense is that of its speed
+    is_count = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+    checks.require("steady", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE) if is_count else None)
+    scene = replace_unchecked(scene, sense=None)  # the sense is the sign of the speed, which never vanishes in running
     pieces, energy = (_run_at_mean_speed if motor is None else _run_under_motor)(driven, scene)
-    angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
+    angle = np.linspace(0.0, driven.period, angles, endpoint=False) if is_count else crank_angles(angles)
     again = partial(steady, scene, motor, angles=angles, engine=engine)
     return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy, again)
 
 
 def _run_under_motor(driven, scene):
-    """Pieces, and the energy U at their points, of stable periodic running under a motor."""
+    """Pieces, and energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
     pieces, bends = resolved_with_bends(driven, start)
     require_inertia(driven, pieces)
@@ -403,27 +394,23 @@ def _run_under_motor(driven, scene):
     pieces, energy = found or settle_by_integration(driven, pieces, start)
     for _ in range(LEVELS):
         speed = linearise(driven, pieces, energy)[2]
-        moved = parted(driven, pieces, driven.forces_on(pieces.angle, speed), bends)
+        moved = parted(driven, pieces, driven.forces_in_running(pieces.angle, speed), bends)
         if moved is None:
-            finer = _halve_unresolved(driven, pieces, energy)
-            if finer is None:
+            marked = unresolved_pieces(driven, pieces, energy)
+            if not marked.any() or len(pieces.half) > MOST_PIECES:
                 break
+            finer = pieces.split(marked)
         else:
             finer, bends = moved
-        found = solve_near(driven, finer, energy_interpolant(pieces, energy))
+        series = pieces.series(energy)
+        found = solve_near(driven, finer, lambda finer, old=pieces, series=series: old.evaluate(series, finer.angle))
         pieces, energy = found or settle_by_integration(driven, finer, start)
     require_within_motor_table(driven, linearise(driven, pieces, energy)[2])
     return pieces, energy
 
 
-def _halve_unresolved(driven, pieces, energy):
-    """Pieces halved where series are not done; None where all are, or there are too many."""
-    marked = unresolved_pieces(driven, pieces, energy)
-    return pieces.split(marked) if marked.any() and len(pieces.half) <= MOST_PIECES else None
-
-
 def _run_at_mean_speed(driven, scene):
-    """Pieces, and the energy U at their points, under the constant torque that keeps the mean speed of the scene."""
+    """Pieces, and energy U at their points, under the constant torque that keeps the scene's mean speed."""
     if driven.loads_by_speed:
         raise DriveError(
             f"{scene.mechanism.name}: loads depend on the speed, so no constant torque is known that carries them; "
@@ -447,26 +434,26 @@ def _run_at_mean_speed(driven, scene):
 
 
 def _under_constant_torque(driven, pieces, speed):
-    """Energy U at a mean speed, the inverse of the speed, and the acceleration; the torque goes to `driven`.
+    """Energy U at a mean speed, inverse of the speed, and acceleration; sets `driven.constant_torque`.
 
-    Friction that hangs on speed and acceleration is found anew until they stay.
+    Friction depends on speed and acceleration: solve, update friction, repeat until the speed stops changing.
     """
     slow, acceleration = np.full(pieces.angle.shape, 1.0 / speed), np.zeros(pieces.angle.shape)
     for _ in range(MAX_FRICTION_UPDATES):
         state = driven.at_acceleration(pieces.angle, driven.direction / slow, acceleration)
         inertia, before = driven.flywheel + state.inertia, slow
-        driven.torque_given = pieces.total(state.torque) / driven.period
-        gained = pieces.integrated(driven.torque_given - state.torque)
+        driven.constant_torque = pieces.total(state.torque) / driven.period
+        gained = pieces.integrated(driven.constant_torque - state.torque)
         gained = gained + pieces.largest(-gained)[0]
         energy, slow = _at_mean_speed(driven, pieces, inertia, gained, speed)
-        acceleration = (driven.torque_given - state.torque - 0.5 * state.slope / slow**2) / inertia
+        acceleration = (driven.constant_torque - state.torque - 0.5 * state.slope / slow**2) / inertia
         if not driven.by_speed or np.abs(slow - before).max() <= SPEED_TOLERANCE * slow.max():
             break
     return energy, slow, acceleration
 
 
 def _at_mean_speed(driven, pieces, inertia, gained, speed):
-    """Energy U, gained but for a constant, that gives a mean speed; and the inverse of the speed."""
+    """Energy U = gained + constant that gives a mean speed, and the inverse of the speed."""
     from scipy.optimize import brentq
 
     scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
@@ -486,17 +473,8 @@ def _at_mean_speed(driven, pieces, inertia, gained, speed):
 
 
 def _direction_without_motor(scene):
-    """Sign of the crank speed of a scene that is to be run without motor."""
+    """Sign of the scene's crank speed, for running without motor."""
     checks.require("steady", scene_problem(scene))
     speed, wrong = checks.single_number("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
     checks.require("steady", wrong)
     return math.copysign(1.0, speed)
-
-
-def _is_count(angles):
-    return isinstance(angles, int | np.integer) and not isinstance(angles, bool)
-
-
-def _angles_problem(angles):
-    """What is wrong with a number of crank angles, or None."""
-    return checks.count("angles", angles, size=checks.BYTES_PER_ANGLE) if _is_count(angles) else None

@@ -1,10 +1,8 @@
-"""Motion over time, stretch by stretch: in each the crank and all joints keep their sense of motion.
+"""Motion over time with friction, stretch by stretch: within each, crank and joints keep their senses of motion.
 
-A stretch ends where a joint with friction reverses, where a force that presses such a joint changes its sign, and where
-the crank stands still. There the machine goes on, turns back, or sticks: it stays at rest if the torque left over moves
-it neither way.
-
-Whether a machine that coasts comes to a standstill at all.
+A stretch ends where a joint with friction reverses, where a contact force of such a joint changes its sign, or where
+the crank stops. After a stop the machine continues, turns back, or sticks: it stays at rest if the net torque moves it
+in neither sense. `require_standstill` refuses machines that never stop.
 """
 
 import itertools
@@ -18,18 +16,18 @@ from ..errors import DriveError
 from .steady import steady
 
 RELATIVE_TOLERANCE = 3e-14
-"""Tolerance of a step relative to the value, the smallest that the method takes."""
+"""Relative tolerance of a step, the smallest that DOP853 accepts."""
 ABSOLUTE_TOLERANCE = 1e-15
 ANGLE_AHEAD = 1e-6
-"""Crank angle ahead at which the sign of a force is looked at that is nothing at the start, rad."""
+"""Crank angle, rad, after the start of a stretch that gives the sign of a force that is 0 at the start."""
 MAX_STRETCHES = 20_000
-"""Stretches after which a motion is given up."""
+"""Stretches of a motion before it is given up."""
 MAX_EVALUATIONS = 1_000_000
-"""Evaluations of the acceleration after which a motion is given up: some thousand turns."""
+"""Evaluations of the acceleration before a motion is refused: some thousand turns."""
 
 
 class Stretch(NamedTuple):
-    """A part of a motion: times, crank angle that its own are counted from, direction, dense output."""
+    """A part of a motion: start and end time, offset of its crank angles, direction, dense output."""
 
     start: float
     end: float
@@ -39,9 +37,9 @@ class Stretch(NamedTuple):
 
 
 class MotionPath:
-    """Motion over all stretches: rows of crank angle, speed, work of all torques, work lost by friction, and sense.
+    """Motion over all stretches: rows of crank angle, speed, work of all torques, friction work, and sense.
 
-    Where the crank stands still the sense is that of the motion before.
+    At standstill the sense is that of the motion before it.
     """
 
     def __init__(self, stretches):
@@ -65,9 +63,9 @@ class MotionPath:
 
 
 class Motion(NamedTuple):
-    """A motion: times, rows as of `Path`, the path, reversals as (time, angle), what ended it, starts of its stretches.
+    """A motion: times, rows of `MotionPath` at these, the path, reversals (time, angle), its end, stretch starts.
 
-    `end` is "end", "ready", "standstill" where that was asked for, "stuck", or "lost" where it cannot be followed.
+    `end` is "end", "ready" (target speed), "standstill", "stuck", or "lost" where the integration failed.
     """
 
     time: np.ndarray
@@ -79,8 +77,8 @@ class Motion(NamedTuple):
 
 
 def sense_from_rest(driven, angle):
-    """Sense in which a machine starts from rest, +1 or -1; 0 where it stays at rest."""
-    forward, backward = driven.at_rest(angle, 1.0)[0], driven.at_rest(angle, -1.0)[0]
+    """Sense in which a machine starts from rest, +1 or -1; 0 if it stays at rest."""
+    forward, backward = driven.torque_at_rest(angle, 1.0)[0], driven.torque_at_rest(angle, -1.0)[0]
     if forward > 0.0 > backward:
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
@@ -92,9 +90,9 @@ def sense_from_rest(driven, angle):
 
 
 def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Motion:
-    """Motion from a crank angle and speed until a time, a target speed, a standstill if asked for, or it sticks.
+    """Motion from a crank angle and speed until a time, a target speed, a standstill, or until it sticks.
 
-    `sense` is that of a start from rest, unless the torque left over decides it.
+    `sense` is the sense of a start from rest; without it the net torque decides.
     """
     state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
     direction = math.copysign(1.0, speed) if speed else sense or sense_from_rest(driven, angle)
@@ -138,7 +136,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
 
 
 def _integrate_stretch(driven, state, direction, time, target, crossed, count):
-    """Motion while nothing turns, what ended it, and the sign behind it of a force that crossed zero there, by row."""
+    """Motion of one stretch, what ended it, and the sign after its end of a force that crossed zero, by row."""
     from scipy.integrate import solve_ivp
 
     senses, edge = driven.senses_ahead(float(state[0]), direction)
@@ -146,15 +144,15 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
     def change(time, state):
         angle, speed = float(state[0]), float(state[1])
         count(time, angle)
-        inertia, slope, spare, friction = driven.moving(angle, speed, senses)
+        inertia, slope, spare, friction = driven.balance_along(angle, speed, senses)
         return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed, friction * speed
 
     @lru_cache(maxsize=1)
     def pressed(angle, speed):
-        driven.moving(angle, speed, senses)
-        return driven.forces_here
+        driven.balance_along(angle, speed, senses)
+        return driven.last_forces
 
-    def bend(row, side):  # at the start that sign which it has just behind, so that no zero is met twice
+    def bend(row, side):  # the sign after the start, so that no zero counts twice
         return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side
 
     events = [
@@ -175,7 +173,7 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
     if found.status == 0:
         return found, "end", None
     which = next(number for number, times in enumerate(found.t_events) if times.size)
-    if found.t.size > 1:  # the last step anew, not read from between steps
+    if found.t.size > 1:  # integrate the last step to the event; dense output is less accurate
         again = solve_ivp(change, (found.t[-2], found.t[-1]), found.y[:, -2], **options)
         found.y[:, -1] = again.y[:, -1]
     if names[which] == "edge":
@@ -187,25 +185,25 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
 
 
 def _event(function, direction):
-    """Event of scipy that ends an integration."""
+    """Terminal event of `solve_ivp`."""
     vars(function).update(terminal=True, direction=direction)
     return function
 
 
 SLOWING_TOLERANCE = 1e-8
-"""Relative difference of energies after a turn by which it is judged whether a machine slows down at all."""
+"""Relative loss of kinetic energy in a period below which a machine does not slow down."""
 ENERGY_TOLERANCE = 1e-9
-"""Share of the energy that goes to and fro in a turn that counts as nothing."""
+"""Energy relative to the energy exchanged in a turn that counts as 0."""
 
 
 def require_standstill(driven, angle, speed):
-    """Refuse to wait for the standstill of a machine whose motor, or loads, give back in a turn all that they take."""
+    """Refuse a machine that never stops: its motor or loads return in a turn all the energy that they take."""
     way = math.copysign(1.0, speed)
     if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
         _require_slowing(driven, angle, speed, way)
         return
     places = angle + way * np.linspace(0.0, driven.period, 721)
-    state = driven.unrubbed(np.mod(places, driven.period), sense=way)
+    state = driven.without_friction(np.mod(places, driven.period), sense=way)
     between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
     taken = np.cumsum(between)
     motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
@@ -218,10 +216,10 @@ def require_standstill(driven, angle, speed):
 
 
 def _require_slowing(driven, angle, speed, way):
-    """The same where all that acts is not known beforehand.
+    """Refuse a machine under motor, friction or dampers that never stops.
 
-    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and what is not
-    slower after a period never is.
+    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and a machine
+    that is not slower after a period never becomes slower.
     """
     why, forward = None, driven.motor is not None and way == driven.direction
     if forward and abs(speed) >= _steady_speed(driven, angle):
@@ -233,7 +231,7 @@ def _require_slowing(driven, angle, speed, way):
 
 
 def _steady_speed(driven, angle):
-    """Speed at a crank angle in periodic running under the motor, rad/s, without sign; infinite where there is none."""
+    """Size of the speed at a crank angle in periodic running under the motor, rad/s; infinite without running."""
     try:
         running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
     except DriveError:
@@ -242,15 +240,15 @@ def _steady_speed(driven, angle):
 
 
 def _energy_after_a_period(driven, angle, speed, way):
-    """Kinetic energy a period on, over that at the start; 0 where the machine does not come so far."""
+    """Kinetic energy after a period over that at the start; 0 if the machine stops before."""
     from scipy.integrate import solve_ivp
 
-    start = 0.5 * driven.inertia_here(angle) * speed * speed
+    start = 0.5 * driven.inertia_at(angle) * speed * speed
 
     def net(place, energy):
         place = float(place)
-        size = math.sqrt(2.0 * max(float(energy[0]), 0.0) * start / driven.inertia_here(place))
-        return driven.here(place, way * size, way)[2] / start
+        size = math.sqrt(2.0 * max(float(energy[0]), 0.0) * start / driven.inertia_at(place))
+        return driven.balance(place, way * size, way)[2] / start
 
     def still(place, energy):
         return energy[0] - SLOWING_TOLERANCE

@@ -18,7 +18,7 @@ from .one_dof import DrivenMachine
 
 TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
-"""Of the integral of power over a step of the integration."""
+"""Gauss points and weights of the work in a step of the integration."""
 
 
 class Event(NamedTuple):
@@ -98,7 +98,7 @@ class Trajectory:
         )
 
     def at(self, time):
-        """The same motion at other times within it, s: so many evenly spread, or an array of them."""
+        """The same motion at other times, s: a number of even ones, or an array."""
         if isinstance(time, int | np.integer) and not isinstance(time, bool):
             checks.require("at", checks.count("time", time, size=checks.BYTES_PER_ANGLE))
             time = np.linspace(self.time[0], self.time[-1], time)
@@ -128,15 +128,15 @@ class Trajectory:
 
     @property
     def _unchecked(self):
-        """The solution without a look at its digits, which takes longer than all its torques."""
+        """Solution without the check of its condition, which takes longer than all its torques."""
         found = self._moving.unsolved(self.crank_angle)
         return solve_friction(found, checks_of) if self.scene.friction.acting else found
 
     @cached_property
     def energy_drift(self):
-        """Largest difference of kinetic energy and work done since the start, J: what the integration lost or gained.
+        """Largest difference of kinetic energy and work done since the start, J: the error of the integration.
 
-        The work is that of the torques which `solve` gives along the motion, by Gauss' rule in each step.
+        The work is the integral of the torques of `solve` along the motion, by Gauss' rule in each step.
         """
         ends = self._ends
         if ends.size < 2:
@@ -151,7 +151,7 @@ class Trajectory:
 
     @property
     def friction_energy(self):
-        """Energy that friction has taken since the start, J."""
+        """Energy lost by friction since the start, J."""
         return read_only(self._dense(self.time)[3])
 
     @property

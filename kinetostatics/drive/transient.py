@@ -1,8 +1,7 @@
 """Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
 
-The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
-of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), stretch by
-stretch (`stick_slip`).
+The method DOP853 of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and
+II.10) integrates (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2, stretch by stretch (`stick_slip`).
 """
 
 import math
@@ -15,24 +14,24 @@ from ..machine import plausibility
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from .friction import driven_machine
 from .motor import Motor
+from .one_dof import driven_machine
 from .steady import require_within_motor_table, steady
 from .stick_slip import integrate_motion, require_standstill
 from .trajectory import Event, Trajectory
 
 STARTED_SPEED_RATIO = 0.99
-"""Share of the mean speed of steady running at which a machine has started."""
+"""Speed over the mean speed of steady running at which a start ends."""
 MAX_TURNS = 1e5
-"""Turns after which a start is given up."""
+"""Turns after which a motion without end is refused."""
 MAX_ANGLE = 1e6
-"""Crank angle, rad, beyond which too many digits are lost to begin there."""
+"""Largest initial crank angle, rad; a larger one costs too many digits."""
 MIN_TORQUE_RATIO = 1e-9
-"""Torque, relative to the largest, that moves nothing."""
+"""Smallest net torque of a start, relative to the largest torque."""
 
 
 def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor=None, *, engine=None) -> Trajectory:
-    """Motion of a machine left to itself, or to its motor, from a crank angle and speed.
+    """Motion of a machine, without motor or with one, from a crank angle and speed.
 
     Parameters
     ----------
@@ -128,8 +127,10 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     else:
         until, wrong = checks.single_number("until", until, "s", low=0.0, strict=True)
         checks.require("start", wrong)
-    pushing, _ = driven.at_rest(angle, driven.direction)
-    if not pushing * driven.direction > MIN_TORQUE_RATIO * _largest_torque(driven):
+    pushing, _ = driven.torque_at_rest(angle, driven.direction)
+    places = np.linspace(0.0, driven.period, 96, endpoint=False)
+    loads = float(np.abs(driven.at_constant_speed(places, 0.0 * places).torque).max())
+    if not pushing * driven.direction > MIN_TORQUE_RATIO * max(loads, abs(float(driven.motor_torque(0.0)))):
         raise _start_error(driven, angle, "it does not start")
     found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True)
     if found.events[-1].name == "reversal":
@@ -138,7 +139,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
 
 def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine):
-    """The machine and where it begins, looked at."""
+    """Driven machine, flywheel, crank angle and speed at the start, all checked."""
     angle, wrong_angle = checks.single_number("from_angle", from_angle, "rad")
     if not wrong_angle and abs(angle) > MAX_ANGLE:
         wrong_angle = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
@@ -158,18 +159,12 @@ def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine
     return driven, inertia, angle, speed
 
 
-def _largest_torque(driven):
-    rest = np.zeros(96)
-    angle = np.linspace(0.0, driven.period, 96, endpoint=False)
-    return max(float(np.abs(driven.at_constant_speed(angle, rest).torque).max()), abs(float(driven.motor_torque(0.0))))
-
-
 def _start_error(driven, angle, what):
-    """Why a machine does not start, and what would help."""
+    """Error of a machine that does not start, with remedies."""
     rest = float(driven.motor_torque(0.0)) * driven.direction
     places = np.linspace(0.0, driven.period, 720, endpoint=False)
     asked = driven.at_constant_speed(places, 0.0 * places).torque * driven.direction
-    spare, friction = driven.at_rest(angle, driven.direction)
+    spare, friction = driven.torque_at_rest(angle, driven.direction)
     here, friction = rest - spare * driven.direction, friction * driven.direction
     rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
@@ -189,9 +184,9 @@ def _start_error(driven, angle, what):
 
 
 def _easiest_start(places, missing, direction):
-    """Crank angle from which torque at rest carries a machine round, or None where it does no work over the turn.
+    """Crank angle from which the motor's torque at rest carries a machine through a turn, or None.
 
-    It lies behind the place up to which most energy is asked: from there on more is given than taken.
+    It follows the peak of the missing energy: from there on the motor always gives more than the loads take.
     """
     step = int(direction)
     missing = missing[::step]  # in the order of motion
@@ -203,16 +198,18 @@ def _easiest_start(places, missing, direction):
 
 
 def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
-    """The motion from an angle and speed until a time, a standstill, or a target speed."""
+    """`Trajectory` from an angle and speed until a time, a standstill, or a target speed."""
     driven.prepare(max(abs(speed), abs(target or 0.0)))
-    end = until if isinstance(until, float) else _time_limit(driven, speed if target is None else target)
+    fastest = max(abs(speed if target is None else target), 1e-3)
+    end = until if isinstance(until, float) else MAX_TURNS * TURN / fastest
     sense = driven.direction if one_way else None
     found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
     time, rows = found.time, found.rows
     if found.end == "lost":
         raise _integration_error(driven, time[-1], *rows[:2, -1])
     if found.end == "end" and not isinstance(until, float):
-        raise _time_limit_error(driven, target, end)
+        what = "standstill" if target is None else f"{target:.6g} rad/s"
+        raise DriveError(f"{scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until")
     if driven.motor is not None:
         require_within_motor_table(driven, rows[1])
     stopped = "reversal" if one_way else "standstill"
@@ -221,27 +218,15 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     events = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(rows[0, -1]))
     time, angles, speeds, senses = map(read_only, (time, *rows[[0, 1, 4]]))
     moving = time, angles, speeds, read_only(driven.acceleration_along(angles, speeds, senses))
-    ends = np.union1d(time, found.starts)  # between them the power is smooth
+    ends = np.union1d(time, found.starts)  # power is smooth between these times
     return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, ends)
 
 
 def _integration_error(driven, time, angle, speed):
-    """Why a motion cannot go on."""
+    """Error of a motion that cannot continue."""
     driven.scene.solve(np.array([angle + speed * 1e-6]))
     return DriveError(
         f"{driven.scene.mechanism.name}: the motion cannot be followed beyond {time:.6g} s, at crank angle "
         f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position there",
         crank_angle=float(angle),
     )
-
-
-def _time_limit_error(driven, target, end):
-    what = "standstill" if target is None else f"{target:.6g} rad/s"
-    return DriveError(
-        f"{driven.scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until"
-    )
-
-
-def _time_limit(driven, speed):
-    """Time after which a motion that does not end is given up, s."""
-    return MAX_TURNS * TURN / max(abs(speed), 1e-3)

@@ -1,4 +1,4 @@
-"""How fast and how sure: kernels recorded once a structure, run by NumPy, numba or JAX; derivatives, bounds on errors.
+"""How fast and how sure: kernels recorded by structure and compiled, derivatives, rounding-error bounds.
 
 May import errors, numbers, machine, mechanics.
 """

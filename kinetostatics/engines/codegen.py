@@ -159,7 +159,7 @@ def _helpers(nodes):
 
 
 def _sum_of(name, count):
-    """Source of `total` or `lost` of `count` terms, see `arithmetic.total`."""
+    """Source of `total` or `lost` of `count` terms, see `arithmetic.compensated_sum`."""
     terms = [f"t{k}" for k in range(count)]
     steps = [f"    {there}, {here} = two_sum({here}, {there})" for here, there in pairwise(terms)]
     found = (

@@ -54,8 +54,8 @@ def _adjoints(graph, output, parameters):
 def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
     """Derivatives of one output by each of the wanted nodes that it depends on: a dict of nodes or numbers.
 
-    They are times `seed`. `held` is the derivative of `arithmetic.held`, which is 1 for rounding errors; nodes among
-    `ends` count as independent.
+    They are times `seed`. `held` is the derivative of `arithmetic.stop_gradient`, which is 1 for rounding errors; nodes
+    among `ends` count as independent.
     """
     parts: dict[Node, list] = {output: [seed]}
     found = {}

@@ -510,7 +510,7 @@ def _is_of_angle(part):
 
 
 def _moved_apart(parts, unit):
-    """Distance, in units, by which `arithmetic.apart` moved a number off zero; None where it did not."""
+    """Distance, in units, by which `arithmetic.offset_from_zero` moved a number off zero; None where it did not."""
     for part in parts:
         if not isinstance(part, Node):
             if part == RELATIVE_OFFSET * NEGLIGIBLE_LENGTH:

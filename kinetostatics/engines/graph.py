@@ -82,7 +82,7 @@ class Node:
         return self.graph.node("held", self)
 
     def forgiving_root(self, unit):
-        """Called by `arithmetic.root`, as the next two by `divisor` and `apart`."""
+        """Called by `arithmetic.clamped_sqrt`, as the next two by `guarded_divisor` and `offset_from_zero`."""
         return self.graph.node("root", self, unit)
 
     def kept_off_zero(self, unit):
@@ -92,11 +92,11 @@ class Node:
         return self + RELATIVE_OFFSET * unit
 
     def total_with(self, terms):
-        """Called by `arithmetic.total`."""
+        """Called by `arithmetic.compensated_sum`."""
         return self.graph.node("total", *terms)
 
     def rest_with(self, length, x, y):
-        """Called by `arithmetic.rest`."""
+        """Called by `arithmetic.length_error`."""
         return self.graph.node("rest", length, x, y)
 
     def _unknown(self, other=None):

@@ -1,19 +1,120 @@
-"""How formulas are written: as text, LaTeX and MathML."""
+"""Symbols of numbers and quantities in hand calculations, and how formulas are written: text, LaTeX and MathML."""
 
+import re
 from collections.abc import Callable
 from html import escape
 from typing import NamedTuple
 
 from ..numbers.formatting import number, shortest_exact
 from .formulas import CALLS
-from .symbols import Symbol
+
+
+class Symbol(NamedTuple):
+    """Symbol of a number: ("F", "x", "slider") is the x component of force F of the slider.
+
+    Attributes
+    ----------
+    base, axis, owner : str
+    primes : int
+        Order of the derivative by the crank angle.
+    again : int
+        Number among several that are spelled alike.
+    """
+
+    base: str
+    axis: str = ""
+    owner: str = ""
+    primes: int = 0
+    again: int = 1
+
+    @property
+    def text(self):
+        count = str(self.again) if self.again > 1 else ""
+        stem = "_".join(part for part in (self.base + self.axis + count, self.owner) if part)
+        return re.sub(r"[^\w.]", "_", stem) + "'" * self.primes
+
+
+def load_keys(loads):
+    """Name of each load as in paths, with its number if there are several of a kind."""
+    found, counts = [], dict[str, int]()
+    for item in loads:
+        key = getattr(item, "PATH", "") or type(item).__name__
+        counts[key] = counts.get(key, 0) + 1
+        found.append(f"{key}{counts[key]}" if counts[key] > 1 else key)
+    return found
+
+
+LETTERS = {
+    "mass": "m",
+    "inertia": "J",
+    "along": "a",
+    "across": "b",
+    "stiffness": "k",
+    "coefficient": "c",
+    "radius": "r",
+    "pin_radius": "r",
+    "roller_radius": "R",
+    "half_length": "h",
+    "mu": "mu",
+    "free_position": "s0",
+    "free_length": "l0",
+    "free_angle": "theta0",
+}
+PATH_LETTERS = {
+    "crank_speed": "omega",
+    "crank_acceleration": "alpha",
+    "gravity.acceleration": "g",
+    "gravity.direction": "gamma",
+}
+
+
+def path_symbol(path):
+    """Symbol of a number of the scene, by its path."""
+    if path in PATH_LETTERS:
+        return Symbol(PATH_LETTERS[path])
+    *owner, last = [part for part in path.split(".") if part != "centre"]
+    if last in ("x", "y"):
+        return Symbol(last, "", "_".join(owner))
+    if last.isdecimal() and owner:
+        last = owner.pop() + last
+    for name, letter in (("_length", "l"), ("guide_angle", "beta"), ("guide_offset", "e")):
+        stem, found, label = last.partition(name)
+        if found:
+            return Symbol(letter, "", "_".join((*owner, stem + label)).strip("_"))
+    return Symbol(LETTERS.get(last, last), "", "_".join(owner))
+
+
+ENDING_LETTERS = {
+    "_force": "F",
+    "_moment": "M",
+    "_position": "s",
+    "_velocity": "v",
+    "_angular_acceleration": "alpha",
+    "_acceleration": "a",
+    "_rate": "omega",
+    "_energy": "E",
+    "_friction_loss": "P",
+}
+"""Letters of quantities by ending of their names."""
+
+
+def quantity_symbol(quantity):
+    """Symbol of a quantity by name."""
+    if quantity.startswith("balancing_torque"):
+        return Symbol("T")
+    for ending, letter in ENDING_LETTERS.items():
+        stem, found, label = quantity.partition(ending)
+        if found:
+            return Symbol(letter, "", stem + label)
+    return Symbol(quantity)
+
 
 SUM, NEGATIVE, PRODUCT, POWER, ATOM = range(5)
-"""How tightly parts of a formula hold together."""
+"""Precedence of a part of a formula: a part of lower precedence than its place asks for gets brackets."""
 
 
 class Style(NamedTuple):
-    """A way to write: templates of text, LaTeX or MathML."""
+    """Templates of one format: text, LaTeX or MathML."""
 
     number: Callable[..., str]
     symbol: Callable[[Symbol], str]
@@ -26,16 +127,16 @@ class Style(NamedTuple):
     calls: dict[str, str]
     sign: str
     stands_alone: bool
-    """Whether a quotient needs no brackets, being a fraction with a bar."""
+    """Whether a quotient is a fraction with a bar, which needs no brackets."""
 
 
 def write_formula(tree, style, name):
-    """A formula in a style; ``name(place)`` gives what stands for a named number, a `Symbol` or a float."""
+    """A formula in a style; ``name(index)`` gives the `Symbol` or the value that stands for a named number."""
     return _write(tree, style, name)[0]
 
 
 def _write(tree, style, name):
-    """Text of a formula, and how tightly it holds together."""
+    """Text of a formula, and its precedence."""
     kind, *parts = tree
 
     def inner(part, least):
@@ -73,7 +174,7 @@ def _binding(value):
 
 
 def format_number(value, exactly=False):
-    """A number to 6 digits, or as short as tells it exactly."""
+    """A number to 6 digits, or in the fewest digits that give it exactly."""
     return shortest_exact(value) if exactly else number(value) or "nan"
 
 
@@ -111,7 +212,7 @@ def _latex_symbol(symbol):
 
 
 def _below(symbol):
-    """What stands below the line."""
+    """Parts of the subscript."""
     return [part for part in (symbol.axis, symbol.owner, str(symbol.again) if symbol.again > 1 else "") if part]
 
 

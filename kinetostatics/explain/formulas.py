@@ -1,6 +1,7 @@
 """Formulas of recorded numbers: trees that end at named numbers.
 
-What is only there for rounding is left out, and signs and factors are gathered as by hand; nothing else is rearranged.
+Terms that only guard against rounding are left out; signs and equal factors are collected as by hand. Nothing else is
+rearranged.
 """
 
 from collections.abc import Callable
@@ -12,13 +13,13 @@ from ..engines.graph import Node
 from ..numbers.arithmetic import RELATIVE_OFFSET
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
-"""Functions by recorded operation; the second argument of a root only says what rounding is."""
+"""Functions by recorded operation; the second argument of a root, its scale of rounding, is left out."""
 MAX_OFFSET = 1e-120
-"""Constant that is added to keep a square or distance off zero."""
+"""Largest constant that only keeps a square or distance away from zero."""
 ONE, ZERO = ("number", 1.0), ("number", 0.0)
 
 
-def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
+def formula(node, ends, stands_for=MappingProxyType({}), guarded=()):
     """Tree of a recorded number: tuples of a kind and its parts.
 
     Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
@@ -28,11 +29,11 @@ def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
     ----------
     node : Node or float
     ends : container of Node
-        Where a formula ends; not at the node itself.
+        Nodes at which the formula ends; not the node itself.
     stands_for : dict of Node to Node
-        What stands in formulas for another of the same value.
-    raised : container of Node
-        Numbers to divide by that are kept off zero: there the limit is told too.
+        Node that replaces another of the same value.
+    guarded : container of Node
+        Divisors at their least value: they are shown as "max" with that value.
     """
     if not isinstance(node, Node):
         return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
@@ -42,10 +43,12 @@ def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
         if found is not node:
             part = found
         return (
-            ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for, raised)
+            ("name", part.index)
+            if isinstance(part, Node) and part in ends
+            else formula(part, ends, stands_for, guarded)
         )
 
-    if node in raised:
+    if node in guarded:
         return ("call", "max", *map(part_of, node.arguments))
     return _OPERATIONS[node.operation](
         *(part_of(part) for part in node.arguments if not _is_offset(part, node.operation))
@@ -53,7 +56,7 @@ def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
 
 
 def _is_offset(part, operation):
-    """Whether an argument only keeps a number off zero, as `arithmetic.apart` does, and changes no digit."""
+    """Whether an argument only keeps a number away from zero and changes no digit."""
     if isinstance(part, Node):
         return (
             operation == "+"
@@ -166,7 +169,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 def names_in(tree):
-    """Places of the nodes that a formula names, in order, each once."""
+    """Indices of the nodes that a formula names, in order, each once."""
     found: dict[int, None] = {}
 
     def look(part):

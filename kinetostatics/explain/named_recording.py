@@ -1,16 +1,12 @@
-"""The kernels run once on recorded numbers, each result named as the mechanism calls it: what a hand calculation tells.
+"""Recording of a scene in which each number of the mechanism has a name: the source of hand calculations.
 
-Nothing is computed here that `Dynamics` does not compute; what is found gets a name and goes on under it.
-
-Names of recorded numbers: what the protocol calls a number, else what the kernel's own line calls it.
-
-A formula ends at numbers that have a name. Joints, links, forces and what else the mechanism keeps have names of their
-own (`told`); the lines of a kernel in between are called as its local variables, read when it returns. A module may say
-in `TERMS` how an engineer writes such a variable, and what it is:
+`record_with_names` runs the kernels of `Dynamics` once on recorded numbers; nothing else is computed. Joints, links,
+forces and other results of the mechanism's protocol get names; formulas end at them. Numbers in between are named as
+the local variables of the kernel, read when it returns. A module may give a variable a symbol and words in `TERMS`:
 
     TERMS = {"across": ("d", "distance from the inner joint across to the guide"), "resolve.across": ...}
 
-What no one has named stays part of a formula.
+A number without a name stays part of a formula.
 """
 
 import sys
@@ -32,14 +28,14 @@ from ..mechanics.load_values import evaluate_load, slider_push, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero, plus, product
-from .symbols import Symbol, load_keys, path_symbol, quantity_symbol
+from .formats import Symbol, load_keys, path_symbol, quantity_symbol
 
 KERNELS = (
     "kinetostatics.machine",
     "kinetostatics.mechanics.energy_contact",
     "kinetostatics.mechanics.principal_points",
 )
-"""Modules whose local variables are names."""
+"""Modules whose local variables give names."""
 GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "kinematic_state"))
 AXES = ("x", "y")
 
@@ -51,20 +47,20 @@ class Named(NamedTuple):
     ----------
     symbol : Symbol
     title : str
-        Heading that it stands under.
+        Heading above it.
     words : str
-        What it is.
+        Its description.
     unit : str
-        SI; "" where the formula tells it.
+        SI; "" if it follows from the formula.
     kind : str
-        "given", "told" by the protocol, "term" of a kernel's `TERMS`, or only a "line" of a kernel.
+        "given", "protocol" (a result of the mechanism), "term" of a kernel's `TERMS`, or only a "line" of a kernel.
     """
 
     symbol: Symbol
     title: str
     words: str = ""
     unit: str = ""
-    kind: str = "told"
+    kind: str = "protocol"
 
 
 class Names:
@@ -73,12 +69,12 @@ class Names:
     Attributes
     ----------
     modules : collection of str
-        Modules besides `KERNELS` whose local variables are names: those of groups and loads of the user's own.
+        Modules besides `KERNELS` whose local variables give names: those of the user's groups and loads.
     of : dict of Node to Named
     laws : dict of Node to formula
-        Law that a number satisfies which was found by iteration: its own operations are not told.
+        Law that a number from an iteration satisfies; it is shown in place of the iteration.
     stands_for : dict of Node to Node
-        Named number of the same value that formulas end at instead.
+        Named number of the same value, used in formulas instead.
     """
 
     def __init__(self, graph, modules=()):
@@ -90,16 +86,16 @@ class Names:
 
     @contextmanager
     def under(self, title):
-        """What is computed within stands under a heading; local variables of kernels are names.
+        """Put all that is computed within under a heading, and name local variables of kernels.
 
-        Where a profiler runs already it is left alone, and kernels' lines have no names.
+        If a profiler runs already it keeps running, and lines of kernels have no names.
         """
         before, self.title = self.title, title
         if title not in self.titles:
             self.titles.append(title)
         known = sys.getprofile()
         if known is None:
-            sys.setprofile(self._returned)
+            sys.setprofile(self._read)
         try:
             yield
         finally:
@@ -107,12 +103,10 @@ class Names:
                 sys.setprofile(None)
             self.title = before
 
-    def _returned(self, frame, event, value):
-        if event == "return" and self.reading:
-            self._read(frame)
-
-    def _read(self, frame):
-        """Name what a kernel that returns has computed; names of the outermost win, arguments have none."""
+    def _read(self, frame, event, _):
+        """Name the local variables of a kernel that returns; outer kernels override, arguments get no name."""
+        if event != "return" or not self.reading:
+            return
         module = frame.f_globals.get("__name__", "")
         if module in GENERIC or not (module.startswith(KERNELS) or module in self.modules):
             return
@@ -137,26 +131,27 @@ class Names:
         known = self.of.get(node)
         if known is None:
             return False
-        if known.kind in ("told", "given") or known.title != self.title:
+        if known.kind in ("protocol", "given") or known.title != self.title:
             return True
         return kind == "line" and (known.kind == "term" or bool(path))
 
     def number(self, value, symbol, words="", unit="", again=False, turned="onward"):
-        """Name a number; what has a name of the mechanism's is repeated under the new one if it is told `again`.
+        """Name a number and return it, or a node that stands for it.
 
-        Arithmetic takes in the sign of a number that is another one `turned`; to keep its name, what is returned takes
-        its place "onward", or "everywhere"; else it is named "within" the arithmetic alone. What is zero whatever
-        happens has no name, but as a result, that is "always" told.
+        A number that already has a name of the mechanism gets a second one only with `again`. The recorder moves the
+        sign of a negated number into sums, where its name would be lost: the returned node keeps the name if `turned`
+        is "onward", formulas use it also for earlier uses if "everywhere"; "within" names the number itself. A number
+        that is always zero is named only if `turned` is "always", as results are.
         """
         node = node_of(value)
-        if node is None or (self.is_told(node) and (not again or self.of[node].symbol == symbol)):
+        if node is None or (self.has_own_name(node) and (not again or self.of[node].symbol == symbol)):
             return value
         if _vanishes(node) and turned != "always":
             return value
         is_turned = node.operation == "-" and len(node.arguments) == 1 and turned in ("onward", "everywhere")
-        if self.is_told(node) or is_turned:
+        if self.has_own_name(node) or is_turned:
             held = Node(self.graph, "held", (node,), node.varies)
-            if turned == "everywhere" and not self.is_told(node):
+            if turned == "everywhere" and not self.has_own_name(node):
                 self.stands_for[node] = held
             node, value = held, np.array([held], dtype=object)
         self.of.pop(node, None)
@@ -172,19 +167,19 @@ class Names:
             for part, axis in zip(parts, AXES, strict=True)
         )
 
-    def is_told(self, node):
-        """Whether a node has a name of the mechanism's, at which every formula ends."""
-        return node in self.of and self.of[node].kind in ("told", "given")
+    def has_own_name(self, node):
+        """Whether a node is given or named by the mechanism's protocol; every formula ends there."""
+        return node in self.of and self.of[node].kind in ("protocol", "given")
 
-    def satisfies(self, node, law):
-        """Tell a number by the law that it satisfies, in which numbers after it may stand."""
+    def set_law(self, node, law):
+        """Show a number by the law that it satisfies, which may contain later numbers."""
         if node is not None and law is not None and law is not node:
             self.laws[node] = law
             named = self.of[node]
             self.of[node] = named._replace(words=f"{named.words}, found together with the reactions")
 
     def symbols(self, nodes):
-        """Symbols of nodes, told apart where several are spelled alike."""
+        """Symbols of nodes, numbered where several are spelled alike."""
         counts: dict[Symbol, int] = {}
         found = {}
         for node in nodes:
@@ -195,7 +190,7 @@ class Names:
 
 
 def _vanishes(node, depth=4):
-    """Whether a recorded number is plainly zero, whatever it is computed from."""
+    """Whether a recorded number is zero for all inputs, as far as a few operations show."""
     if not isinstance(node, Node):
         return node == 0.0
     if node.operation in INPUTS or not depth:
@@ -213,7 +208,7 @@ def node_of(value):
 
 
 def _flat(value, path=()):
-    """Recorded numbers in a value of a local variable, with names of fields, and the axis of a component."""
+    """Recorded numbers in a local variable: names of fields, axis of a component, node."""
     node = node_of(value)
     if node is not None:
         yield path, "", node
@@ -234,13 +229,13 @@ ORDERS = ("", "first", "second")
 
 
 def record_with_names(state, paths, units):
-    """The scene of a `Dynamics`, recorded with names, and what recorded it.
+    """The scene of a `Dynamics` recorded with names, a `NamedDynamics`, and its recorder.
 
     Parameters
     ----------
     state : Dynamics
     paths : dict of int to str
-        What each number among its leaves is called, as in case files.
+        Path of each number among its leaves, as in case files.
     units : dict of str to str
         SI unit by path.
     """
@@ -271,7 +266,7 @@ def record_with_names(state, paths, units):
 
 
 def name_result(made, quantity, found, sized=False):
-    """Recorded numbers of a quantity, named, of a vector that is `sized` its magnitude; what nothing makes is plain."""
+    """Named numbers of a quantity: one, or two of a vector, or its magnitude if `sized`; constants are plain."""
     parts = found.read(made)
     with made.names.under("Result"):
         symbol = Symbol("R", "", quantity) if found.kind == "reaction" else quantity_symbol(quantity)
@@ -285,7 +280,7 @@ def name_result(made, quantity, found, sized=False):
 
 
 class NamedDynamics(Dynamics):
-    """A recorded scene that names what it finds; made by `told`."""
+    """A recorded scene that names its results; made by `record_with_names`."""
 
     names: Any
     heads: Any
@@ -311,7 +306,7 @@ class NamedDynamics(Dynamics):
         return placement
 
     def _placed(self, placement, part):
-        """Name joints, links and coordinates along guides of a part; what is kept of it goes on under these names."""
+        """Name joints, links and coordinates along guides of a part, in its placement too."""
         names = self.names
         for name in part.links:
             link = placement.links[name]
@@ -415,7 +410,7 @@ class NamedDynamics(Dynamics):
     @property
     def acting(self):
         """Loads by link and forces along guides by slider as groups resolve them."""
-        self.placement, self.link_loads, self.pushes  # noqa: B018  told before
+        self.placement, self.link_loads, self.pushes  # noqa: B018  named first
         with self.names.under("Inertia and springs along guides"):
             return super().acting
 
@@ -449,13 +444,13 @@ class NamedDynamics(Dynamics):
 
     @cached_property
     def friction_solver(self):
-        """What resolves each part, with friction or without."""
+        """Solver that resolves each part, with friction or without, and names the results."""
         way = sense_of(self.crank_speed, None) if self.runs and self.sense is None else self.crank_sense
         return _NamedFrictionSolver(self.mechanism, self.friction, way, self.names)
 
 
 class _NamedFrictionSolver(FrictionSolver):
-    """Resolves parts, and names what acts on their links and what is found."""
+    """Resolves parts, and names the loads on their links and the results."""
 
     def __init__(self, mechanism, friction, direction, names):
         super().__init__(mechanism, friction, direction)
@@ -463,11 +458,15 @@ class _NamedFrictionSolver(FrictionSolver):
 
     def __call__(self, part, placement, loads, along):
         names = self.names
-        with names.under(_forces_title(part)):
+        with names.under(f"Forces on {_joined(list(part.links))}" if part.links else "Forces"):
             loads, along = dict(loads), dict(along)
             for name in part.links:
                 how = "but for what is told apart" if name in along else "with its inertia and what hangs on it"
-                loads[name] = self._total(loads[name], name, f"acts on the {name}, {how}")
+                words = f"that acts on the {name}, {how}"
+                loads[name] = Wrench(
+                    names.vector(loads[name].force, Symbol("F", "", name), f"force {words}", "N"),
+                    names.number(loads[name].moment, Symbol("M", "", name), f"moment {words}", "N m"),
+                )
                 if name in along:
                     words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
@@ -476,14 +475,8 @@ class _NamedFrictionSolver(FrictionSolver):
             names.reading = True
             for law, amount in self.laws:
                 size = number_or_zero(product(law.factor, size_of(law.kind, law.reaction(resolved))))
-                names.satisfies(node_of(amount), node_of(size))
+                names.set_law(node_of(amount), node_of(size))
         return resolved
-
-    def _total(self, wrench, name, words):
-        return Wrench(
-            self.names.vector(wrench.force, Symbol("F", "", name), f"force that {words}", "N"),
-            self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),
-        )
 
     def _amounts(self, equations, laws, placement):
         found = []
@@ -510,7 +503,7 @@ class _NamedFrictionSolver(FrictionSolver):
 
 
 def _modules(state):
-    """Modules that groups, cams, loads and functions of the user's come from."""
+    """Modules that define the groups, cams, loads and functions of loads."""
     parts = [*state.mechanism.groups, *(getattr(group, "cam", None) for group in state.mechanism.groups), *state.loads]
     values = [value for value in map(value_of, state.loads) if callable(value)]
     return {type(part).__module__ for part in parts} | {getattr(value, "__module__", "") for value in values}
@@ -530,7 +523,3 @@ def _motion_title(group):
     return (
         f"Motion of {_joined(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
     )
-
-
-def _forces_title(part):
-    return f"Forces on {_joined(list(part.links))}" if part.links else "Forces"

@@ -1,8 +1,7 @@
-"""The lines of a calculation: which recorded numbers are told by a formula of their own, their values, and their units.
+"""Lines of a calculation: which recorded numbers have a formula of their own, their values and units.
 
-A formula ends at what the mechanism names and at what a kernel's `TERMS` explain; at another line of a kernel where it
-is used more than once, or where the formula would grow too long. So every value that stands in a formula is a number
-given or a line before it.
+A formula ends at numbers named by the mechanism or by a kernel's `TERMS`; at another line of a kernel if it is used
+more than once or the formula would be too long. So every number in a formula is given or stands in a line before it.
 """
 
 import math
@@ -18,19 +17,19 @@ from .formulas import formula, names_in
 from .named_recording import Named, Symbol
 
 MAX_FORMULA_SIZE = 12
-"""Named numbers and constants in one formula; with more it is parted."""
+"""Most named numbers and constants in one formula; a longer one is split."""
 NOISE_RATIO = 2.0**-51
-"""Size of a value, relative to what it is made of (`_size`), up to which it is rounding."""
+"""Largest value, relative to the sum of its terms (`_size`), that is shown as 0: it is rounding."""
 
 
 class Line(NamedTuple):
-    """A number, how it is found, and its value.
+    """A number, its formula and its value.
 
     Attributes
     ----------
     named : Named
     tree : tuple or None
-        Its formula, see `formulas`; None of what is given.
+        Its formula, see `formulas`; None of a given number.
     value : float
     unit : str
     is_noise : bool
@@ -47,7 +46,7 @@ class Line(NamedTuple):
 
 
 def lines(names, outputs, recorder, state):
-    """Lines that lead to some recorded numbers, those given first.
+    """Lines that lead to some recorded numbers, given numbers first.
 
     Parameters
     ----------
@@ -58,14 +57,18 @@ def lines(names, outputs, recorder, state):
         The scene at one crank angle.
     """
     values, sizes = _values(names, outputs, recorder, state)
-    raised = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
-    ends = _ends(names, outputs, raised)
+    guarded = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
+    ends = _ends(names, outputs, guarded)
     trees: dict[Node, Any] = {}
     waiting = list(outputs)
     while waiting:
         node = waiting.pop()
         if node not in trees:
-            trees[node] = _tree(names, node, ends, raised)
+            law = names.laws.get(node, node)
+            if law is not node and law in ends:
+                trees[node] = "name", law.index
+            else:
+                trees[node] = None if law.operation in INPUTS else formula(law, ends, names.stands_for, guarded)
             waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
     units, noise = _Units(names), _noise(values, sizes)
     return [
@@ -75,13 +78,13 @@ def lines(names, outputs, recorder, state):
 
 
 def _ordered(names, trees):
-    """Nodes of lines as they were named, components of a vector together, each after those that it is computed from."""
+    """Nodes of lines in the order of their names, each after its operands, components of a vector together."""
     places = {node: place for place, node in enumerate(names.of)}
     ranks = {title: rank for rank, title in enumerate(names.titles)}
     wholes: dict[Any, list[Node]] = {}
     for node in sorted(trees, key=places.__getitem__):
         named = names.of[node]
-        whole = (named.title, named.symbol._replace(axis="")) if named.kind == "told" else node
+        whole = (named.title, named.symbol._replace(axis="")) if named.kind == "protocol" else node
         wholes.setdefault(whole, []).append(node)
     whole_of = {node: nodes for nodes in wholes.values() for node in nodes}
     found: dict[Node, None] = {}
@@ -113,21 +116,14 @@ def _ordered(names, trees):
     return list(found)
 
 
-def _tree(names, node, ends, raised):
-    law = names.laws.get(node, node)
-    if law is not node and law in ends:
-        return ("name", law.index)
-    return None if law.operation in INPUTS else formula(law, ends, names.stands_for, raised)
-
-
-def _ends(names, outputs, raised):
+def _ends(names, outputs, guarded):
     """Nodes at which formulas end."""
     found = _reached(names, outputs)
     users = dict.fromkeys(found, 0)
     for node in found:
         for part in set(_parts(names, node)):
             users[part] += 1
-    ends = {node for node in found if node.operation in INPUTS or names.is_told(node)}
+    ends = {node for node in found if node.operation in INPUTS or names.has_own_name(node)}
     sizes: dict[Any, int] = {}
     found = [node for node in found if node not in names.laws]
     for place, node in enumerate(found):
@@ -135,7 +131,7 @@ def _ends(names, outputs, raised):
         while sum(1 if part in ends else sizes[part] for part in parts) > MAX_FORMULA_SIZE:
             whole = _largest(parts, ends, sizes, names)
             if whole not in names.of:
-                titles = (names.of[one].title for one in found[place:] if names.is_told(one))
+                titles = (names.of[one].title for one in found[place:] if names.has_own_name(one))
                 names.of[whole] = Named(Symbol("k"), next(titles, names.titles[-1]), kind="line")
             ends.add(whole)
         sizes[node] = max(1, sum(1 if part in ends else sizes[part] for part in parts))
@@ -145,14 +141,14 @@ def _ends(names, outputs, raised):
 
 
 def _stands_alone(kind, node, size, users):
-    """Whether a named line of a kernel is told, and not part of the formulas that need it."""
+    """Whether a named line of a kernel gets its own line in place of standing in other formulas."""
     if node.operation in ("divisor", "held"):
         return False
     return size > 1 or node.operation in ("sqrt", "root") if kind == "term" else users > 1 and size > 2
 
 
 def _largest(parts, ends, sizes, names):
-    """The largest part that is no end yet; of one that has no name, the largest with one inside of it, if large."""
+    """The largest part that is no end yet; if it has no name, the largest named part inside it that is large."""
     whole = max((part for part in parts if part not in ends), key=sizes.__getitem__)
     inner = whole
     while inner not in names.of:
@@ -164,7 +160,7 @@ def _largest(parts, ends, sizes, names):
 
 
 def _parts(names, node):
-    """Nodes that a formula of a node may name."""
+    """Operands of a node, or its law, as formulas use them."""
     if node in names.laws:
         law = names.laws[node]
         return [names.stands_for.get(law, law)] if isinstance(law, Node) else []
@@ -174,7 +170,7 @@ def _parts(names, node):
 
 
 def _reached(names, outputs):
-    """Nodes that outputs are computed from, in order; not what friction is found by."""
+    """Nodes that outputs are computed from, operands first, without iterations of friction."""
     found: set[Node] = set()
     waiting = list(outputs)
     while waiting:
@@ -186,7 +182,7 @@ def _reached(names, outputs):
 
 
 def _sorted_by_use(names, nodes):
-    """Nodes, each after its parts."""
+    """Nodes, each after its operands."""
     found: dict[Node, None] = {}
     for last in sorted(nodes, key=lambda node: (node in names.laws, node.index)):
         waiting = [last]
@@ -201,7 +197,7 @@ def _sorted_by_use(names, nodes):
 
 
 def _values(names, outputs, recorder, state):
-    """Values by node, and the sizes that their rounding is relative to."""
+    """Values by node, and sizes by node, see `_size`."""
     every = needed([*outputs, *names.laws.values(), *names.stands_for.values()])
     recording = Recording((), tuple(every), (), (), tuple(recorder.parameters), tuple(recorder.tables), recorder.graph)
     _, leaves = state.apart
@@ -215,14 +211,14 @@ def _values(names, outputs, recorder, state):
 
 
 def _noise(values, sizes):
-    """Nodes whose values are zero but for rounding; none where a value is divided by one, so that rounding decides."""
+    """Nodes whose values are only rounding; none if one of them is a divisor."""
     found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE_RATIO * sizes[node]}
     divided = any(node.operation == "/" and values[node] and node.arguments[1] in found for node in values)
     return set() if divided else found
 
 
 def _size(node, values, sizes):
-    """How much the value is, and to first order what the sizes of its arguments make of it."""
+    """Magnitude of the value plus, to first order, the effect of the sizes of its operands."""
     value, kind = values[node], node.operation
     if kind in INPUTS:
         return abs(value)
@@ -249,7 +245,7 @@ def _size(node, values, sizes):
 
 
 class _Units:
-    """Units of recorded numbers, from those of what is given."""
+    """Units of recorded numbers, derived from those of given numbers."""
 
     def __init__(self, names):
         self.names, self.known = names, {}
@@ -270,19 +266,19 @@ class _Units:
             while waiting:
                 top = waiting[-1]
                 missing = [part for part in _operands(top) if isinstance(part, Node) and part not in self.known]
-                if missing and not self._is_told(top):
+                if missing and not self._has_unit(top):
                     waiting += missing
                 else:
                     self.known[top] = self._powers(top)
                     waiting.pop()
         return self.known[node]
 
-    def _is_told(self, node):
+    def _has_unit(self, node):
         named = self.names.of.get(node)
         return named is not None and bool(named.unit)
 
     def _powers(self, node):
-        if self._is_told(node):
+        if self._has_unit(node):
             return dimension(self.names.of[node].unit)
         if node.operation in INPUTS:
             return DIMENSIONLESS

@@ -1,4 +1,4 @@
-"""What it is: links, guide, cams, crank, groups, loads, the mechanism made of them, and its builders.
+"""What the machine is: links, guides, crank, groups, cams, loads, friction pairs, and mechanisms of them.
 
 May import errors, numbers.
 """

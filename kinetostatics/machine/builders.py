@@ -1,4 +1,4 @@
-"""Builders: the mechanisms of everyday, made of crank and groups."""
+"""Builders of common mechanisms: crank-slider, four-bar, slotted lever and Scotch yoke, with or without a cam."""
 
 import warnings
 
@@ -289,9 +289,8 @@ def _warn_off_law(cam, group):
 
 def _guide(guide, angle, offset):
     if guide is None:
-        return (
-            LEVEL_GUIDE if type(angle) is type(offset) is float and angle == offset == 0.0 else Guide.at(angle, offset)
-        )
+        is_level = type(angle) is type(offset) is float and angle == offset == 0.0
+        return LEVEL_GUIDE if is_level else Guide.at(angle, offset)
     free = present(angle) is None and present(offset) is None
     checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
     return guide

@@ -1,6 +1,6 @@
-"""The driver: a crank that turns about O and carries pin A, or a slotted crank that guides a block.
+"""The crank, which turns about O and carries pin A or guides a block in its slot, and pins on any link.
 
-Pin: a further joint fixed to a link, where more may hang: ternary links, second throws, articulated rods.
+A `Pin` is a further joint fixed to a link, for more groups to hang on: ternary links, second throws, articulated rods.
 """
 
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ def pin(ray, length):
 def resolve(load):
     """Force of the ground on the crank at O, and the torque that keeps the motion (kernel).
 
-    `load` is what acts on the crank, its own and what hangs on it, a wrench about O.
+    `load` is the wrench on the crank about O, with the demands of the groups.
     """
     return vector_or_zero(subtract_vectors(None, load.force)), number_or_zero(minus(None, load.moment))
 
@@ -91,7 +91,7 @@ class Crank(checks.Checked):
     led = ()
     hangs_on = ()
     trusted = True
-    """Whether the library's own: a class derived from it may do otherwise."""
+    """True for this class; a class derived from it may do otherwise."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
@@ -99,17 +99,17 @@ class Crank(checks.Checked):
 
     @property
     def names(self):
-        """What its names come from."""
+        """Facts that its names depend on."""
         return (self.length is None,)
 
     @property
     def reaches(self):
-        """Length of the crank, if it has one, for a first look at the condition."""
+        """Length of the crank, if any, to estimate the condition; m."""
         return () if self.length is None else (self.length,)
 
     @property
     def lengths(self):
-        """All lengths it has, the place of its mass centre among them, for a first look at the condition."""
+        """All lengths, the place of the mass centre among them, to estimate the condition; m."""
         return (*self.link.centre, 0.0 if self.length is None else self.length)
 
     @property
@@ -119,7 +119,7 @@ class Crank(checks.Checked):
 
     @property
     def throws(self):
-        """Its pin, if that does not slide."""
+        """Pin A, if the crank has a length."""
         return {} if self.length is None else {"A": Throw((self.length, 0.0), True)}
 
     @property
@@ -147,14 +147,14 @@ class Crank(checks.Checked):
 
 
 def place(link: LinkMotion, along, across):
-    """Joint of a link at so far along its direction and across it, to the left (kernel); None is zero."""
+    """Point of a link at distances along its direction and across it, to the left, as joint (kernel); None is zero."""
     lever = arm(link.direction, along, across)
     return Joint(add_vectors(link.joint.position, lever), first_at(link, lever), second_at(link, lever))
 
 
 @dataclass(frozen=True, eq=False)
 class Pin(checks.Checked, Group):
-    """Joint `name` fixed to the link `on`: what hangs on it asks its force of that link, and its couple.
+    """Joint `name` fixed to the link `on`, which supplies the force of the groups that hang on it.
 
     It adds no link, no reaction and no condition of closure. Several groups may hang on one pin, each with a label of
     its own; each has its reaction there, and what they demand of the link adds up.
@@ -190,6 +190,7 @@ class Pin(checks.Checked, Group):
     at: Any
     name: str = "C"
 
+    LINKS: ClassVar[dict[str, str]] = {}
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_"}
     RULES = checks.Rules(
@@ -201,20 +202,12 @@ class Pin(checks.Checked, Group):
 
     @property
     def label(self):
-        """Its name, so that paths of its numbers are its own: "pin_C.along"."""
+        """Its name, for the paths of its numbers: "pin_C.along"."""
         return self.name
 
     @property
     def hangs_on(self):
         return ()
-
-    @property
-    def links(self) -> dict[str, Link]:
-        return {}
-
-    @property
-    def references(self) -> dict[str, str]:
-        return {}
 
     @property
     def outputs(self):
@@ -226,7 +219,7 @@ class Pin(checks.Checked, Group):
 
     @property
     def throws(self):
-        """Itself, if it is on the crank and not at O."""
+        """The pin itself, if it is on the crank and not at O."""
         away = self.on == "crank" and any(present(part) is not None for part in self.at)
         return {self.name: Throw(self.at)} if away else {}
 
@@ -241,7 +234,7 @@ class Pin(checks.Checked, Group):
         placement.courses.update({name: Course(throw=throw) for name, throw in self.throws.items()})
 
     def follow(self, placement, joints):
-        """Keep a joint that moves as it was found in another way."""
+        """Keep a joint that moves where it is known."""
         if self.on == FRAME:
             self.place(placement)
         else:

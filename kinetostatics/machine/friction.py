@@ -1,4 +1,4 @@
-"""Friction by joint: coefficients and sizes of the surfaces that rub, kept by the name of their pair (`pairs`)."""
+"""Friction by joint: coefficients and sizes of its surfaces, by the name of the pair (`links.Turning` ...)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ COEFFICIENT = checks.Number(
 SIZE = checks.Number("m", low=0.0, strict=True)
 PIN_RADIUS = replace(SIZE, usual=checks.PlausibleRange(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES_BY_SOLVER = (3, 6, 12)
-"""Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
+"""Numbers of passes over the directions of all reactions, to try in turn; each pass doubles the digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class GuideFriction(checks.Checked, Batched):
     mu : float or array
     half_length : float or array, optional
         Half the length of the shoe, m: it carries the couple too by forces at its edges, which rub once the load
-        leaves the middle half. Without, the force alone rubs.
+        leaves the middle half. Without it only the force causes friction.
 
     Raises
     ------
@@ -149,7 +149,7 @@ class RollerFriction(checks.Checked, Batched):
     roller_radius: Any
 
     def _rolls(self):
-        """Say where the roller would slide."""
+        """Yield the problem of a roller that would slide."""
         values = self.mu, self.pin_radius, self.roller_radius
         if all(map(checks.has_known_values, values)) and np.any(
             stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius
@@ -168,7 +168,7 @@ KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
 
 
 def friction_kind(pair):
-    """Kind of friction that a pair of a mechanism may have."""
+    """Class of friction that a pair takes."""
     if isinstance(pair, Sliding):
         return GuideFriction if pair.against == "frame" else SlotFriction
     return PinFriction if isinstance(pair, Turning) else RollerFriction
@@ -178,8 +178,8 @@ def friction_kind(pair):
 class JointFriction(Batched):
     """Friction at one joint.
 
-    `sense` is the sign of the motion there where it is known beforehand; of a roller that of the crank. It stays so
-    beyond the dead centre at which the motion turns, which makes one-sided values smooth.
+    `sense` is the sign of the motion there, if it is known beforehand; of a roller that of the crank. It stays the
+    same at a dead centre, so values on one side of it are smooth.
     """
 
     joint: str
@@ -192,7 +192,7 @@ class JointFriction(Batched):
     )
 
     def __post_init__(self):
-        """Checked where it is given, with the mechanism."""
+        """Skip checks: `friction_problems` makes them with the mechanism."""
 
     @property
     def PATH(self):  # noqa: N802 - as loads call it
@@ -203,7 +203,7 @@ class JointFriction(Batched):
 class Frictions(Mapping, Batched):
     """Friction of a mechanism, by joint: a mapping of names to friction.
 
-    `passes` is how many times directions of reactions are found anew.
+    `passes` is the number of passes that update the directions of reactions.
     """
 
     rubs: tuple[JointFriction, ...] = ()
@@ -214,7 +214,7 @@ class Frictions(Mapping, Batched):
     RULES = checks.Rules("friction", rubs=checks.HasMembers((), "friction by joint"))
 
     def __post_init__(self):
-        """Checked where it is given, with the mechanism."""
+        """Skip checks: `friction_problems` makes them with the mechanism."""
 
     def __getitem__(self, name):
         return next((rub.friction for rub in self.rubs if rub.joint == name), None) or _missing(name)
@@ -230,12 +230,12 @@ class Frictions(Mapping, Batched):
 
     @property
     def acting(self):
-        """Friction by joint, without what is zero."""
+        """Friction by joint, without zero coefficients."""
         return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
 
     @property
     def senses(self):
-        """Sign of the motion by joint, where it is known beforehand."""
+        """Sign of the motion by joint, if it is known beforehand."""
         return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
 
 
@@ -247,14 +247,14 @@ def _missing(name):
 
 
 def frictions_by_joint(given):
-    """Friction as it is kept, from a dict by joint."""
+    """`Frictions` from a dict by joint."""
     if isinstance(given, Frictions):
         return given
     return Frictions(tuple(JointFriction(name, friction) for name, friction in given.items())) if given else NO_FRICTION
 
 
 def friction_problems(mechanism, given):
-    """What is wrong with friction given for a mechanism, as sentences."""
+    """Yield the problems of friction given for a mechanism, as sentences."""
     if not isinstance(given, Mapping):
         text = 'must be a dict of joint to friction, as {"O": ks.PinFriction(mu, radius)}'
         yield f"friction {text}, got {checks.shown(given)}"
@@ -275,7 +275,7 @@ def friction_problems(mechanism, given):
 
 
 def _too_large(mechanism, name, friction):
-    """Say where a roller is larger than its path is curved."""
+    """Yield the problem of a roller that is larger than the least radius of curvature of its path."""
     tightest = next((getattr(group, "tightest", None) for group in mechanism.groups if name in group.pairs), None)
     if tightest is None or not (checks.has_known_values(tightest) and checks.has_known_values(friction.roller_radius)):
         return
@@ -288,7 +288,7 @@ def _too_large(mechanism, name, friction):
 
 
 def _another(mechanism, name, friction):
-    """Say where a roller has another radius in its friction than on its cam."""
+    """Yield the problem of a roller whose radius in its friction is not that on its cam."""
     roller = next((getattr(group, "roller", None) for group in mechanism.groups if name in group.pairs), None)
     given = friction.roller_radius
     if roller is None or not (checks.has_known_values(roller.radius) and checks.has_known_values(given)):

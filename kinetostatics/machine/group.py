@@ -1,97 +1,85 @@
-"""What a structural group is: the protocol by which everything else asks it.
+"""Structural group: the protocol through which the library sees the parts of a mechanism.
 
 Motion flows outward from the crank, group by group; forces flow inward from the last group to the crank. A group is a
-frozen dataclass derived from `Group`. It declares, by name,
+frozen dataclass (``eq=False``) derived from `Group`. Only this protocol tells the library of its links and their names.
 
-    links       the links it adds, each a `Link`
-    references  the joint by which each link is placed
-    joints      the joints it adds, each a `Point` of a link, its own or one placed before it, or of the frame
-    hangs_on    the joints it hangs on
-    bars        the links that keep two joints at a distance
-    guides      the guide of each link that slides along one, without turning
-    slots       the links in which a joint slides, each a `Slot`
-    led         the joints that a cam leads, each a `Led`
-    knots       where the law of a cam bends or jumps, each a `law.Knot`
-    curves      the joints that run on a curve, with what drawings call it
-    rollers     radii of rollers, by the joints that are their centres
-    outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
-    outputs     the reactions and other forces it finds, each an `Output` with its unit
-    motions     quantities of its motion besides those of joints and links, each an `Output`
-    contacts    line contacts by the name of their pressure, each a `roller.Touch`
-    pairs       which of its links rub against what, by reaction, each a pair of `pairs`
+Declarations
+------------
+`LINKS` gives for each field with a `Link` the field that names its reference joint. `declaration` returns the other
+parts in a `Declaration`, called without the label; `Group` adds the label and makes the tables
 
-(those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
+    links, references, joints, bars, guides, slots, led, pairs, outputs, motions, contacts, lengths
 
-    place(placement)                  its joints and links, from the joints it hangs on
-    closure(placement)                margin, a number for each crank angle: negative where it cannot be assembled (and
-                                      `place` finds no position), small near a limit position
-    requirement(placement)            what must hold for it to be assembled, with its numbers, for the error message
-    resolve(placement, loads, along)  the forces on its links, and what they demand of other links: a `Resolved`
-    follow(placement, joints)         its links where the joints it adds are known: for methods under study
-    motion(name, placement)           a quantity of `motions`
-    elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
-    departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
-    outward(placement, position)      the elongation, or its opposite, as a length of the design and some more, or None
-    sliding(name, placement)          direction and rate of a sliding pair: a `pairs.Slide`
-    relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
+A table that follows another rule is a property of its own, with labelled names. Lists of other kinds are `hangs_on`,
+the joints it hangs on; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, and what drawings
+call it; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes. Reactions and forces with
+their units, `outputs`, follow from `pairs`.
 
-The last seven may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
-not be arithmetic: engines then tabulate it.
+Kernels, without branches on values
+-----------------------------------
+    place(placement)                  adds joints and links, from the joints it hangs on
+    closure(placement)                margin at each crank angle: negative where it is open, small near a limit position
+    requirement(placement)            condition for its assembly, with its numbers, for the error message
+    resolve(placement, loads, along)  forces on its links, and what they demand of other links: a `Resolved`
 
-How to write one
-----------------
-*Fields.* A frozen dataclass (``eq=False``) of lengths, a `Guide` or a pivot, an assembly of +1 or -1, a `Link` for
-each link, called as the link but for the label; ``on`` and ``pin``, names of joints; ``label``, put behind the names of
-links and forces so that a mechanism may have two of the kind. ``PATHS`` renames fields in paths such as
-"coupler_length2"; "" leaves a name out. Lengths may be arrays (designs, 1): write kernels with ``+ - * /`` and
-`numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
-derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds such numbers).
+and, where it has them,
 
-*place.* Read ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
-(x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
-reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
-``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again; into ``placement.courses`` a `Course` for a joint whose motion is known without
+    follow(placement, joints)         places its links at known joints: for methods under study
+    motion(name, placement)           value of a quantity of `motions`
+    elongation(placement, position)   coordinate of a slider less a position, without cancellation
+    departure(placement, position)    second derivative of that coordinate plus the elongation, or None
+    outward(placement, position)      elongation, or its opposite, as a length of the design and the rest, or None
+    sliding(name, placement)          direction and rate of a sliding pair: a `Slide`
+    relative_radius(name, placement, side)  radius of the relative curvature of a contact, by the sign of its force
+
+*Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links; ``on`` and ``pin``, names of joints;
+``label``, the ending of names of links and forces where a mechanism has two of the kind. ``PATHS`` renames fields in
+paths such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
+r''``, which need not be arithmetic: engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
+``+ - * /`` and `numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers and
+on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds it).
+
+*place* reads ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
+(x, y). `enter` adds each joint of `joints`, a `LinkMotion` for each link (reference joint, unit vector, d theta / d phi
+and its slope, None: it never turns), for each slider its coordinate along its guide with both derivatives, and the
+motion that `resolve` needs again. ``placement.courses`` takes a `Course` for a joint whose motion is known without
 the rounding of its position.
 
-*resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
-``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
-moment about the link's reference joint, None where there is none. ``along`` holds by slider the applied force along its
-guide, apart since it may nearly cancel with inertia. Write down the equilibrium of the links for the unknown forces
-*on* them; what the group needs from others, joints of `hangs_on` and the crank, goes into ``demands`` with the sign
-that it has on the group: the mechanism sees to the reaction on the link that carries the joint.
+*resolve* is a pure function. ``loads`` holds by link the wrench on it about its reference joint: inertia, weight and
+what groups further out demand. ``along`` holds by slider the applied force along its guide, apart since it may nearly
+cancel with inertia. The equilibrium of the links gives the unknown forces *on* them, linear in the loads, for friction
+asks several times. What the group needs of other links goes into ``demands``, with the sign that it has on the group.
 
-*Change points.* Most groups have none to pass. One that does says in `on_crank(throws)` how, by a text `passage` that
-belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a side there. What
-its structure owes to lengths of groups beside it, `beside(groups, throws)` says.
+*Change points.* Most groups pass none. `groups.branches` holds what those do that pass them: ``on_crank(throws)`` sets
+the text `passage`, part of the structure; `turns`, `change_points` and `kink` follow. ``beside(groups, throws)``
+returns the group specialised for its neighbours (toggles only).
 
-*Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
-*outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
-tables, figures and sweeps. `ks.check(group)` tests them; tests/machine/test_group.py has a whole example.
-*Hand calculations.* `Solution.explain` tells what the kernels compute, under the names of local variables. The module
-may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
-one kernel alone as ``"resolve.across"``, which may be an argument too; primes count derivatives, ``"r'"``.
+*Hand calculations.* `Solution.explain` shows what the kernels compute, under the names of their local variables. The
+module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for one kernel alone as
+``"resolve.across"``, which may be an argument; primes count derivatives, ``"r'"``.
 
-Nothing else in the library knows what a group looks like, nor the names of its links. Methods under study make their
-equations of `joints`, `bars`, `guides`, `slots`, `led` and `pairs` alone.
+`ks.check(group)` tests a group; tests/machine/test_group.py has a whole example.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
 from .kinematic_state import Throw
-from .links import Wrench
+from .links import CamDriven, Sliding, Slot, Turning, Wrench, present
 
-FRAME = "frame"
-"""Link that does not move."""
+FRAME, CRANK = "frame", "crank"
+"""Link that does not move, and the link of every crank."""
 MEMBERS = ("links", "references", "joints", "outputs", "bars", "place", "closure", "requirement", "resolve")
 RATES = ("_rate", "_angular_acceleration")
-"""Endings that make quantities of a link's name."""
+"""Endings of the quantities of a link."""
 TRAVELS = ("_position", "_velocity", "_acceleration")
-"""Endings that make quantities of a slider's name."""
+"""Endings of the quantities of a slider."""
 RESERVED = (
     "balancing_torque_by_power",
     "shaking_force",
@@ -102,11 +90,11 @@ RESERVED = (
     "potential_energy",
     "load_torque",
 )
-"""Quantities that every mechanism has besides those that its parts declare."""
+"""Quantities of every mechanism besides those that its parts declare."""
 
 
 class Point(NamedTuple):
-    """A point of a link: so far along its direction from its reference joint and across it, to the left, m."""
+    """Point of a link: along its direction and across it, to the left, from its reference joint; m."""
 
     link: str
     along: Any = 0.0
@@ -123,9 +111,9 @@ class Bar(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What a quantity is: its SI unit, whether it is a vector, and what it acts on and from what, in words.
+    """Declaration of a quantity: SI unit, whether it is a vector, and in words what acts on what.
 
-    `at` is the joint that a reaction acts at, where it is not called like it.
+    `at` is the joint at which a reaction acts, where the reaction has another name.
     """
 
     unit: str
@@ -135,10 +123,9 @@ class Output(NamedTuple):
 
 
 class Resolved(NamedTuple):
-    """What a group finds, and what it passes on.
+    """Reactions (vectors) and scalars by name, and the wrenches that other links must supply.
 
-    `demands` holds wrenches that other links must supply: under a joint's name the force and couple through that joint,
-    under a link's name a wrench about that link's reference joint.
+    `demands` holds by joint the force and couple through it, by link a wrench about its reference joint.
     """
 
     reactions: dict[str, Any]
@@ -146,75 +133,130 @@ class Resolved(NamedTuple):
     demands: dict[str, Wrench]
 
 
-class Group:
-    """What follows from what a group declares; see the module for what that is."""
+EMPTY: Mapping[str, Any] = MappingProxyType({})
 
+
+class Declaration(NamedTuple):
+    """Parts of a group, called without the label.
+
+    `inner` holds the pairs at the joints it hangs on, `pairs` all others; `Group` names and describes their reactions.
+    `lengths` holds the numbers in m, but for mass centres.
+    """
+
+    joints: Mapping[str, Point] = EMPTY
+    bars: tuple[Bar, ...] = ()
+    guides: Mapping[str, Any] = EMPTY
+    slots: tuple[Slot, ...] = ()
+    led: tuple[CamDriven, ...] = ()
+    inner: tuple[Turning, ...] = ()
+    pairs: tuple[Turning | Sliding, ...] = ()
+    motions: Mapping[str, Output] = EMPTY
+    contacts: Mapping[str, Any] = EMPTY
+    lengths: tuple[Any, ...] = ()
+
+
+NAMES = ("link", "against", "rod", "force", "couple")
+"""Fields of declared parts that hold names of links and forces."""
+
+
+class Group:
+    """Structural group: tables of its parts and results, with the label; see the module."""
+
+    LINKS: ClassVar[dict[str, str]]
+    """Fields that hold links, which give them their names, and for each the field that names its reference joint."""
+    LAW = ("r", "m")
+    """Letter and unit of what a curve in the field `cam` gives."""
     TRUSTED = False
-    """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
+    """Whether tests show that its forces balance and that its names come from its texts: the library's own."""
     trusted = False
-    """Whether its class itself says so: one derived from it may do otherwise."""
+    """`TRUSTED` of its own class: a class derived from it may do otherwise."""
+    declaration: Any = Declaration()
+    passage, is_close = "", False
+    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
         cls.trusted = vars(cls).get("TRUSTED", False)
 
+    # Names
+
     @property
     def label(self):
-        """What tells its names, and paths of its numbers, from those of another of its kind."""
+        """Ending of its names, and of paths of its numbers, that tells them from those of another of its kind."""
         return ""
 
     @property
-    def follows(self):
-        """Whether `follow` belongs to the class that places it, and so knows its joints."""
-        return come_from_one_class(type(self), "follow", "place")
-
-    @property
     def names(self):
-        """What its names come from."""
+        """Texts that its names are made of."""
         return [value for value in self.__dict__.values() if value.__class__ is str]
+
+    def called(self, name):
+        """Name of one of its links, forces or quantities, with the label."""
+        return name + self.label
+
+    def _renamed(self, part):
+        """A declared part with the label on the names of links and forces in it."""
+        names = {field: getattr(part, field, "") for field in NAMES} if self.label else {}
+        own = {field: self.called(name) for field, name in names.items() if name not in ("", FRAME, CRANK)}
+        return part._replace(**own) if own else part
+
+    def _named(self, table):
+        return {self.called(name): self._renamed(part) for name, part in getattr(self.declaration, table).items()}
+
+    def _row(self, table):
+        return tuple(map(self._renamed, getattr(self.declaration, table)))
+
+    # Tables
 
     @property
     def hangs_on(self: Any):
-        """Joints it hangs on; unless told, the one named `on`."""
+        """Joints it hangs on: by default the one named `on`."""
         return (self.on,)
 
     @property
-    def pairs(self):
-        """Which links turn or slide against what, by the name of the reaction or force."""
-        return {}
-
-    def rigid_on(self, owners):
-        """Link that each of its links never turns against, by name, of `owners`, which carry the joints it hangs on."""
-        return {}
+    def links(self) -> dict[str, Any]:
+        return {self.called(name): getattr(self, name) for name in self.LINKS}
 
     @property
-    def lengths(self):
-        """All lengths it has, places of mass centres among them, for a first look at the condition."""
-        return [bar.length for bar in self.bars]
+    def references(self) -> dict[str, str]:
+        return {self.called(name): getattr(self, joint) for name, joint in self.LINKS.items()}
 
     @property
-    def reaches(self):
-        """Lengths of its bars and cam radii, the shortest of which counts for a first look at the condition."""
-        return [bar.length for bar in self.bars]
+    def own_names(self: Any):
+        """Name without the label of each of its links."""
+        return {name: name.removesuffix(self.label) or name for name in self.links}
+
+    def with_link(self: Any, name, link):
+        """The group with other mass properties of one link, whose field is called as the link but for the label."""
+        return replace(self, **{self.own_names[name]: link})
 
     @property
-    def bars(self):
-        """Links that keep two joints at a distance, each a `Bar`."""
-        return ()
+    def joints(self) -> dict[str, Point]:
+        return {name: self._renamed(point) for name, point in self.declaration.joints.items()}
 
     @property
-    def slots(self):
-        """Links in which a joint slides, each a `Slot`."""
-        return ()
+    def bars(self) -> tuple[Bar, ...]:
+        """Links that keep two joints at a distance."""
+        return self._row("bars")
 
     @property
-    def led(self):
-        """Joints that a cam leads, each a `Led`."""
-        return ()
+    def guides(self) -> dict[str, Any]:
+        """Guide by name of each link that slides along one."""
+        return self._named("guides")
+
+    @property
+    def slots(self) -> tuple[Slot, ...]:
+        """Links in which a joint slides."""
+        return self._row("slots")
+
+    @property
+    def led(self) -> tuple[CamDriven, ...]:
+        """Joints that a cam leads."""
+        return self._row("led")
 
     @property
     def knots(self):
-        """Where the law of a cam that leads it bends or jumps, each a `Knot`."""
+        """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
         return ()
 
     @property
@@ -233,23 +275,102 @@ class Group:
         return {}
 
     @property
-    def own_names(self: Any):
-        """What each of its links is called without the label: what it is, whatever else the mechanism has."""
-        return {name: name.removesuffix(self.label) or name for name in self.links}
-
-    def with_link(self: Any, name, link):
-        """The group with other mass properties of one link, whose field is called as the link but for the label."""
-        return replace(self, **{self.own_names[name]: link})
+    def lengths(self):
+        """All lengths, places of mass centres among them, to estimate the condition; m."""
+        own = self.declaration.lengths or [bar.length for bar in self.bars]
+        return (*own, *(part for name in getattr(self, "LINKS", ()) for part in getattr(self, name).centre))
 
     @property
-    def guides(self):
-        """Guide by name of each link that slides along one."""
-        return {}
+    def reaches(self):
+        """Lengths of bars and cam radii, the shortest of which counts for the condition; m."""
+        return [bar.length for bar in self.bars]
 
     @property
     def throws(self) -> dict[str, Throw]:
         """Pins of the crank that it adds."""
         return {}
+
+    def rigid_on(self, owners):
+        """Link that each of its links never turns against, by name, of `owners`, which carry the joints it hangs on."""
+        return {}
+
+    # Forces and quantities
+
+    @property
+    def pairs(self) -> dict[str, Any]:
+        """Which links turn or slide against what, by the name of the reaction or force.
+
+        A reaction is called as its joint, with the label where the group hangs on that, with the link where it hangs on
+        several; that of a slider as its force, but for the ending.
+        """
+        found: dict[str, Any] = {}
+        inner = self.declaration.inner
+        for pair in inner:
+            name = self.called(pair.joint) if len(inner) == 1 else f"{self.called(pair.link)}_{pair.joint}"
+            found[name] = self._renamed(pair)
+        for pair in self.declaration.pairs:
+            is_pin = isinstance(pair, Turning)
+            found[pair.joint if is_pin else self.called(pair.force.removesuffix("_force"))] = self._renamed(pair)
+        return found
+
+    @cached_property
+    def outputs(self):
+        """Reactions and other forces by name, those of guides last."""
+        found: dict[str, Output] = {}
+        for name, pair in sorted(self.pairs.items(), key=lambda item: item[1].against == FRAME):
+            if isinstance(pair, Sliding):
+                found |= _forces_of_sliding(name, pair, self.slots)
+            elif pair.joint in self.hangs_on:
+                found[name] = Output("N", True, f"on the {pair.link}, from what carries {pair.joint}", pair.joint)
+            else:
+                found[name] = Output("N", True, f"{pair.against or 'ground'} on {pair.link}")
+        return found
+
+    @property
+    def motions(self) -> dict[str, Output]:
+        """Quantities of its motion besides those of joints and links; ``motion(name, placement)`` gives them."""
+        return self._named("motions")
+
+    @property
+    def contacts(self) -> dict[str, Any]:
+        """Line contacts by the name of their pressure, each a `Touch`; ``relative_radius(name, placement, side)``."""
+        return self._named("contacts")
+
+    # Placing and resolving
+
+    @property
+    def follows(self):
+        """Whether `follow` belongs to the class that places it, and so knows its joints."""
+        return come_from_one_class(type(self), "follow", "place")
+
+    def of_links(self, table) -> Any:
+        """Entries of a table for its links, in the order of `LINKS`; None without one."""
+        return [table.get(self.called(name)) for name in self.LINKS]
+
+    def enter(self, placement, motion, joints, links, travels=None):
+        """Add to a placement joints by name, links and travels by name without the label, and `motion` as details."""
+        placement.joints.update(joints)
+        placement.links.update({self.called(name): link for name, link in links.items()})
+        placement.travels.update({self.called(name): travel for name, travel in (travels or {}).items()})
+        placement.details[self._key] = motion
+
+    def placed(self, placement):
+        """Motion that `enter` keeps."""
+        return placement.details[self._key]
+
+    @property
+    def _key(self):
+        return self.called(next(iter(self.LINKS)))
+
+    def resolved(self, reactions, scalars, demands) -> Resolved:
+        """Result of `resolve`, from vectors and scalars in the order of `outputs`."""
+        names: dict[bool, list[str]] = {True: [], False: []}
+        for name, output in self.outputs.items():
+            names[output.vector].append(name)
+        vectors = dict(zip(names[True], reactions, strict=True))
+        return Resolved(vectors, dict(zip(names[False], scalars, strict=True)), demands)
+
+    # Change points
 
     def on_crank(self, throws):
         """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
@@ -258,11 +379,6 @@ class Group:
     def beside(self, groups, throws):
         """The group as it is beside others of a chain, on the pins of a crank: what its structure owes to theirs."""
         return self
-
-    LAW = ("r", "m")
-    """What a curve in its field `cam` gives: its letter, and unit."""
-    passage, is_close = "", False
-    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
 
     @property
     def passes(self):
@@ -275,7 +391,7 @@ class Group:
         return type(getattr(self, "assembly", 1)) is str
 
     def kink(self, throws):
-        """What becomes of its motion at change points that it does not pass, in words; "" without any."""
+        """Sentence on its motion at change points that it does not pass; "" without any."""
         return ""
 
     @property
@@ -287,24 +403,23 @@ class Group:
         """Crank angles in [0, 2 pi) of the change points that it passes on the pins of a crank, rad."""
         return ()
 
-    @property
-    def motions(self):
-        """Quantities of its motion besides those of joints and links, each an `Output`; ``motion(name, placement)``."""
-        return {}
 
-    @property
-    def contacts(self):
-        """Line contacts by the name of their pressure, each a `Touch`; ``relative_radius(name, placement, side)``."""
-        return {}
-
-
-def joint_reaction(link, joint):
-    """Output of the reaction on a link at a joint that it hangs on."""
-    return Output("N", True, f"on the {link}, from what carries {joint}", joint)
+def _forces_of_sliding(name, pair, slots):
+    """Outputs of a straight pair by name; the reaction of a guide is a vector as well."""
+    guided = pair.against == FRAME
+    on = f"{'ground' if guided else pair.against} on {pair.link}"
+    inclined = any(slot.link == pair.against and present(slot.angle) is not None for slot in slots)
+    normal = "the slot's left normal" if inclined else f"the left normal of the {pair.against}"
+    normal = "the guide's left normal" if guided else normal
+    return {
+        **({name: Output("N", True, on, pair.joint)} if guided else {}),
+        pair.force: Output("N", False, f"{on} along {normal}"),
+        pair.couple: Output("N m", False, f"{on} about {pair.about or pair.joint}", pair.about),
+    }
 
 
 def separation(placement, first, second):
-    """What messages on closure begin with: how far two joints are from each other at the crank angles."""
+    """Begin a requirement with the distances of two joints at the crank angles."""
     start, end = (placement.joints[name].position for name in (first, second))
     apart = np.hypot(end[0] - start[0], end[1] - start[1])
     return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"

@@ -1,4 +1,4 @@
-"""The straight guide of a slider: a line of any inclination and offset, and what a slider on it has from it."""
+"""The straight guide of a slider: a line of any inclination and offset from O, and the motion of a slider on it."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -10,14 +10,13 @@ from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis
 from ..numbers.planar import add_vectors, number_or_zero, rotate
-from .group import Output
 from .links import Joint, LinkMotion, present
 
 POINT = checks.Pair("m")
 
 
 class Line(NamedTuple):
-    """The guide as kernels take it: None for a direction along +x and for no offset."""
+    """Guide for kernels: None for a direction along +x and for a zero offset."""
 
     direction: Any
     offset: Any
@@ -52,7 +51,7 @@ class Guide(checks.Checked):
     PATHS: ClassVar = {"angle": "guide_angle"}
 
     def _unit_vector(self):
-        """Say where the exact direction is none."""
+        """Yield problems of the exact direction."""
         if self.exact is None and self.angle is not None:
             return
         if self.angle is None and self.exact is None:
@@ -106,7 +105,7 @@ class Guide(checks.Checked):
         (array([0.  , 0.25]), 0.25)
         """
         if guide_angle is None:
-            checks.require("guide", cls.RULES.rules["angle"].rule.taken(guide_angle)[1])
+            checks.require("guide", cls.RULES.rules["angle"].rule.check(guide_angle)[1])
         return cls(guide_angle, guide_offset)
 
     @classmethod
@@ -150,25 +149,25 @@ class Guide(checks.Checked):
 
     @property
     def rounded(self):
-        """What was rounded once when it was made: direction and offset of a guide through two points off the axes."""
+        """Numbers rounded once: direction and offset of a guide through two points off the axes."""
         return () if self.exact is None or type(self.exact) is Axis else (*self.exact, self.guide_offset)
 
     @property
     def instead(self):
-        """What is said to somebody who wants to change the angle of a guide through two points."""
+        """Advice to a user who varies the angle of a guide through two points."""
         angle, offset = (np.asarray(part).tolist() for part in (self.guide_angle, self.guide_offset))
         return f", as the guide runs through two points: make it by Guide.at({angle}, {offset}) to change its angle"
 
     @property
     def is_level(self):
-        """Whether it points along +x, by plain numbers."""
+        """Whether it points along +x."""
         if self.exact is None:
             return present(self.angle) is None
         return present(self.exact[0] - 1.0) is None and present(self.exact[1]) is None
 
     @property
     def is_along_an_axis(self):
-        """Whether its structure tells that it points along an axis, this way or the other."""
+        """Whether it points along an axis or its opposite, by its structure."""
         return self.is_level or type(self.exact) is Axis
 
     @cached_property
@@ -185,14 +184,14 @@ class Guide(checks.Checked):
 
     @cached_property
     def line(self):
-        """The guide as kernels take it."""
+        """Guide for kernels."""
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 
 def slider_motion(position, reach, travel, line):
-    """Slider at its coordinate along a guide, in reach of a joint at `position` (kernel).
+    """Motion of a slider from its coordinate along a guide, or its reach from a joint at `position` (kernel).
 
-    Its pin is found by the shorter sum: along a level guide from O, else from that joint.
+    The pin takes the shorter sum: along a level guide from O, else from that joint.
     """
     level = line.direction is None
     pin = (
@@ -202,15 +201,6 @@ def slider_motion(position, reach, travel, line):
     )
     first, second = (rotate((part, 0.0), line.direction) for part in (travel.first, travel.second))
     return LinkMotion(Joint(pin, first, second), rotate((1.0, 0.0), line.direction), None, None)
-
-
-def guide_outputs(slider, pin, label):
-    """Forces of the ground on a slider, through its guide."""
-    return {
-        "guide" + label: Output("N", True, f"ground on {slider}", pin),
-        "guide_force" + label: Output("N", False, f"ground on {slider} along the guide's left normal"),
-        "guide_moment" + label: Output("N m", False, f"ground on {slider} about {pin}"),
-    }
 
 
 def _direction(angle):

@@ -1,9 +1,10 @@
-"""Where a mechanism is at its crank angles, and what is known of how its joints move besides.
+"""Kinematic state of a mechanism: joints and links at its crank angles, and the sense of rotation.
 
-The sense of rotation: which way a crank turns, or at rest is about to turn, +1 counter-clockwise and -1 clockwise.
+Each group adds its joints and links to a `Placement`, from the crank outwards; groups of a user's own are checked as
+they do. A `Course` holds what is known of a joint's motion without the rounding of its position.
 
-Friction, tables with values for the stroke back and functions of the motion depend on it. A scene at rest gives it as
-`sense`, or by the sign of its crank acceleration.
+The sense of rotation is +1 counter-clockwise, -1 clockwise: the sign of the crank speed, at rest that of the crank
+acceleration. Friction and loads with values for the return stroke depend on it.
 """
 
 from dataclasses import dataclass, field
@@ -19,14 +20,14 @@ from .links import Joint, LinkMotion, present
 
 
 class Throw(NamedTuple):
-    """A pin of the crank by its place on it, along and across; `ahead`: on the crank ray itself, like A."""
+    """Pin of the crank by its place on it, along and across, m; `ahead`: on the crank ray, like A."""
 
     at: Any
     ahead: bool = False
 
     @property
     def polar(self):
-        """Distance from O, and direction at the crank angle 0 as a unit vector; None: that of the crank ray."""
+        """Distance from O, m, and unit vector at crank angle 0; None: along the crank ray."""
         if self.ahead:
             return self.at[0], None
         radius = length(self.at)
@@ -34,12 +35,12 @@ class Throw(NamedTuple):
 
     @property
     def radius_and_rest(self):
-        """Distance from O, and what rounding took off it."""
+        """Distance from O, and the rest that rounding took off it."""
         return (self.at[0], None) if self.ahead else length_with_error(self.at)
 
 
 class Swing(NamedTuple):
-    """What swings a joint about a fixed place: the place, its distance, and the unit vector from there to the joint."""
+    """Motion of a joint on a circle about a fixed place: centre, radius, unit vector from centre to joint."""
 
     centre: Any
     radius: Any
@@ -47,25 +48,25 @@ class Swing(NamedTuple):
 
 
 class Orbit(NamedTuple):
-    """A joint on the crank ray: a length that no crank angle changes, and how much farther from O it is."""
+    """Distance from O of a joint on the crank ray: a constant length, and the rest by which it is farther."""
 
     length: Any
     farther: Any
 
 
 class Course(NamedTuple):
-    """How a joint moves, where that is known without the rounding of its position; None: it is not.
+    """Motion of a joint that is known without the rounding of its position; None: unknown.
 
     Attributes
     ----------
     throw : Throw
-        Of a pin of the crank.
+        For a pin of the crank.
     swing : Swing
-        Of a joint that a link swings about a fixed place.
+        For a joint that a link swings about a fixed place.
     orbit : Orbit
-        Of a joint on the crank ray.
+        For a joint on the crank ray.
     departure : vector
-        Position and second derivative together; that of a throw is zero, and is not told.
+        Sum of position and second derivative; zero for a throw, and left out.
     """
 
     throw: Throw | None = None
@@ -79,7 +80,7 @@ UNKNOWN_COURSE = Course()
 
 @dataclass
 class Placement:
-    """The mechanism at its crank angles: motion flows outward from the crank into these tables.
+    """Mechanism at its crank angles, in tables that the groups fill from the crank outwards.
 
     Attributes
     ----------
@@ -88,11 +89,11 @@ class Placement:
     joints, links : dict
         A `Joint` or `LinkMotion` by name.
     travels : dict
-        By slider its coordinate along its guide, with kinematic coefficients.
+        Coordinate along its guide by slider, with kinematic coefficients.
     courses : dict
-        By joint a `Course`, of those of which there is one.
+        `Course` by joint, if known.
     details : dict
-        What a group wants to find again.
+        Motion that a group needs again, by its first link.
     """
 
     angle: Any
@@ -104,12 +105,12 @@ class Placement:
     details: dict[str, Any] = field(default_factory=dict)
 
     def course(self, joint) -> Course:
-        """What is known of how a joint moves."""
+        """`Course` of a joint."""
         return self.courses.get(joint, UNKNOWN_COURSE)
 
 
 def place(group, placement):
-    """Place a group; one of the user's own must add all that it declares."""
+    """Place a group; a user's own group must add all parts that it declares."""
     if group.trusted:
         group.place(placement)
         return
@@ -144,7 +145,7 @@ def _shown(table, name):
 
 
 def margin(group, placement, shape):
-    """Closure margin of a group; of one of the user's own it must be of the shape of the crank angles, or fit it."""
+    """Closure margin of a group; that of a user's own group must broadcast to the shape of the crank angles."""
     found = group.closure(placement)
     if group.trusted:
         return found
@@ -169,7 +170,7 @@ def _fits(shape, wanted):
 
 
 def require_positions(group, placement, margins):
-    """Refuse a group of the user's own whose margins say that it closes where it has no position."""
+    """Refuse a user's own group with margins that are not negative where it has no position."""
     joints = (part for name in group.joints for part in placement.joints[name].position)
     directions = (part for name in group.links for part in placement.links[name].direction)
     known = np.isfinite(sum(np.asarray(part, dtype=float) for part in (*joints, *directions)))
@@ -184,16 +185,16 @@ def require_positions(group, placement, margins):
 
 
 SPEED_WEIGHT = 2.0**600
-"""Factor by which a crank speed counts before the crank acceleration."""
+"""Factor of the crank speed in its sum with the crank acceleration, so that its sign decides."""
 SENSE_REMEDY = (
     "but crank_speed and crank_acceleration are both 0: give sense=+1 or sense=-1, the way the crank is about to turn, "
     "or a crank_acceleration"
 )
-"""How to mend a scene at rest."""
+"""Remedy in the message on a scene at rest."""
 
 
 def sense_of(speed, acceleration):
-    """Which way a crank turns: the sign of its speed, at rest of its acceleration; +1 where both are 0."""
+    """Sense of rotation: sign of the crank speed, at rest of the acceleration; +1 where both are 0."""
     speed, acceleration = present(speed), present(acceleration)
     if speed is None or acceleration is None:
         return sign(number_or_zero(acceleration if speed is None else speed) + 0.0)
@@ -201,14 +202,14 @@ def sense_of(speed, acceleration):
 
 
 def has_no_sense(scene):
-    """Where a crank stands and is about to turn neither way, as far as is known: an array of bool."""
+    """Where a crank stands and its sense of rotation is unknown: an array of bool."""
     if scene.sense is not None:
         return np.False_
     return np.logical_and(where_zero(scene.crank_speed), where_zero(scene.crank_acceleration))
 
 
 def require_sense(reason, motion):
-    """Raise `ParameterError` where a crank stands and is about to turn neither way; the reason says what needs it."""
+    """Raise `ParameterError` where a crank stands and its sense is unknown; the reason begins the message."""
     still = has_no_sense(motion)
     if still.any():
         raise ParameterError(f"{reason}, {SENSE_REMEDY}", still.any(axis=-1) if still.ndim > 1 else None)

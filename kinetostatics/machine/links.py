@@ -1,18 +1,15 @@
-"""A rigid link: its mass, its motion, and the load it carries.
+"""Links: mass properties, motion, and the load of inertia and weight; pairs of links.
 
-Motion is kept as kinematic coefficients, the derivatives with respect to the crank angle phi (Uicker, Pennock and
-Shigley, *Theory of Machines and Mechanisms*, on first- and second-order kinematic coefficients). With crank speed
-omega and crank acceleration alpha
+Motion is kept as kinematic coefficients, the derivatives by the crank angle phi (Uicker, Pennock and Shigley, *Theory
+of Machines and Mechanisms*). With crank speed omega and crank acceleration alpha
 
     velocity = omega * first                acceleration = omega**2 * second + alpha * first
 
-so geometry is computed once whatever the crank does, and a force at rest is no special case.
+so geometry is computed once for all speeds, and rest is no special case. Lengths are in m, angles in rad; directions
+are unit vectors, moments counter-clockwise. None is a zero that costs nothing.
 
-Pairs of links that rub: what a group declares in `pairs`, by the name of the reaction.
-
-A pin is fixed to the link that owns its joint; each rod on it rubs against it alone.
-
-What groups declare of slots, and of links that a cam leads.
+`Turning`, `Sliding` and `Rolling` are the pairs of a group, by the name of their reaction; a pin is fixed to the link
+that owns its joint. `Slot` and `CamDriven` tell how a joint or link is guided.
 """
 
 from dataclasses import dataclass
@@ -39,11 +36,11 @@ TERMS = {
     "load.scale": ("W", "mass times the square of the crank speed"),
     "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class Joint(NamedTuple):
-    """A moving point: position and its first and second derivatives by crank angle (None: it does not move)."""
+    """Moving point: position, m, and first and second derivatives by crank angle (None: it does not move)."""
 
     position: Any
     first: Any
@@ -51,7 +48,7 @@ class Joint(NamedTuple):
 
 
 class LinkMotion(NamedTuple):
-    """A link: its reference joint, direction (unit vector), angular velocity ratio to the crank and that ratio's slope.
+    """Motion of a link: reference joint, direction (unit vector), angular velocity ratio to the crank, slope of that.
 
     The ratio is d theta / d phi, its slope d2 theta / d phi2; both None for a link that does not turn.
     """
@@ -63,7 +60,7 @@ class LinkMotion(NamedTuple):
 
 
 class Body(NamedTuple):
-    """What a link weighs, as kernels take it; zero is None."""
+    """Mass properties of a link for kernels; zero is None."""
 
     mass: Any
     along: Any
@@ -129,7 +126,7 @@ class Link(checks.Checked):
 
     @cached_property
     def body(self):
-        """The numbers as kernels take them: None is a zero that costs nothing."""
+        """Mass properties for kernels."""
         return Body(*map(present, (self.mass, *self.centre, self.inertia)))
 
 
@@ -146,7 +143,7 @@ def arm(direction, along, across):
 
 
 def link_between(start, end, length):
-    """Motion of a link from joint to joint: its direction and rate by the difference of positions and velocities."""
+    """Motion of a link between two joints, from the differences of positions and of both derivatives."""
     direction, first, second = (
         tuple(part / length for part in vector_or_zero(subtract_vectors(b, a))) for a, b in zip(start, end, strict=True)
     )
@@ -182,7 +179,7 @@ def _turned(arm, rate):
 
 
 class PointMotion(NamedTuple):
-    """A point in motion: a joint, or the point of a link at `arm` from its reference joint."""
+    """Motion of a joint, or of the point of a link at `arm` from its reference joint."""
 
     joint: Joint
     arm: Any = None
@@ -214,8 +211,8 @@ def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
 def load(link, body, speed_squared, crank_acceleration, gravity):
     """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link.
 
-    The pull of its mass centre along the arm has no moment, and is left out of it: where a link turns fast it does not
-    have to cancel.
+    The moment leaves out the centripetal force, which passes through the reference joint: in a fast link it would have
+    to cancel.
     """
     to_centre, mass, inertia = arm(link.direction, body.along, body.across), body.mass, body.inertia
     across, pull = None, None
@@ -237,9 +234,9 @@ def virtual_work(link, wrench):
 
 
 class Turning(NamedTuple):
-    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`.
+    """Pin: `link` turns against another, by default the one that carries `joint`; the reaction acts on `link`.
 
-    What turns against itself never turns: both are parts of one rigid triangle.
+    A link against itself is part of a rigid triangle and never turns.
     """
 
     link: str
@@ -248,10 +245,10 @@ class Turning(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """A straight pair: `link` slides along another, at `joint`.
+    """Straight pair: `link` slides along another, at `joint`.
 
-    `force` is the name of the force across the pair, `couple` that of the moment it carries. The group answers
-    ``sliding(name, placement)`` with a `Slide`.
+    `force` is the name of the force across the pair, `couple` that of the moment it carries, about the joint `about`,
+    by default `joint`. The group answers ``sliding(name, placement)`` with a `Slide`.
     """
 
     link: str
@@ -259,10 +256,11 @@ class Sliding(NamedTuple):
     against: str
     force: str
     couple: str
+    about: str = ""
 
 
 class Rolling(NamedTuple):
-    """A roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
+    """Roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
 
     link: str
     joint: str
@@ -280,9 +278,9 @@ class Slide(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
+    """Link with a straight slot along which `joint` slides; `rod` is the link that slides in it as a piston.
 
-    Without a rod what slides is a block at the joint. The line runs at `angle` from the link's direction, at `offset`
+    Without a rod a block at the joint slides. The line runs at `angle` from the link's direction, at `offset`
     to the left of its reference joint.
     """
 
@@ -294,11 +292,10 @@ class Slot(NamedTuple):
 
 
 class CamDriven(NamedTuple):
-    """A link whose one freedom the curve in `cam` gives: where it slides the coordinate of its joint, else its angle.
+    """Link with one freedom, given by the curve in `cam`: the coordinate of its joint if it slides, else its angle.
 
     The angle counts from the direction to O, clockwise for an assembly of +1. The curve is fixed to the link `body` and
-    gives `force` on the joint, a roller's centre, across its way along the curve, to the left; or on a `flat` face
-    across the link.
+    gives `force` on the joint, a roller's centre, to the left normal of the curve; on a `flat` face across the link.
     """
 
     link: str

@@ -1,8 +1,7 @@
 """A mechanism: a crank and the chain of structural groups that hang on it.
 
-What a field takes that holds a chain of groups.
-
-Names in a chain of parts: each is told before it is asked for, and no two things have one.
+Motion flows along the chain, forces flow back. Names are checked when it is made: a part hangs only on joints of parts
+before it, and no two parts give the same name.
 """
 
 import math
@@ -40,11 +39,11 @@ class GroupsRule:
             return value
         return checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
-        found = [self.rule.taken(group, "a group") for group in value]
-        found += [NAME.taken(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
+        found = [self.rule.check(group, "a group") for group in value]
+        found += [NAME.check(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
         strange = [group for group in value if not isinstance(group, Group)]
         found += [(group, f"{type(group).__name__} is not derived from {GROUP_CLASS}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)
@@ -52,7 +51,7 @@ class GroupsRule:
 
 
 def _on(group):
-    """Names that a group gives of what it hangs on."""
+    """Names that a group gives in its field `on`."""
     found = getattr(group, "on", "O")
     return found if type(found) is tuple else (found,)
 
@@ -61,7 +60,7 @@ NAME_REMEDY = "give the second group another pin, pivot_name or label"
 
 
 def _spelled(part, table):
-    """Names in a table of a part; of the library's own parts also those that coincide, which a table has once."""
+    """Names in a table of a part; for the library's own parts with repetitions, which a dict drops."""
     if not part.trusted:
         return list(getattr(part, table))
     texts = {field.name: getattr(part, field.name) for field in fields(part)}
@@ -75,7 +74,7 @@ def _spelled(part, table):
 
 
 def name_problems(parts):
-    """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
+    """Problems of the names in a chain of parts: unknown names, and names given twice."""
     points: dict[str, str] = {}
     joints: set[str] = set()
     links = [FRAME]
@@ -118,7 +117,7 @@ def name_problems(parts):
 
 
 _VALID_NAMES: set = set()
-"""What names come from in chains of the library's own groups that were looked at and found well."""
+"""Texts of names in chains of the library's own groups that passed `name_problems`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +190,7 @@ class Mechanism(Batched):
 
     @property
     def passages(self):
-        """How each group passes its change points: a text, "" where it has none, None where it keeps to its side."""
+        """Passage of each group through its change points: "" without any, None if it keeps to its side."""
         return tuple(group.passage if group.through else None for group in self.groups)
 
     @cached_property
@@ -200,8 +199,8 @@ class Mechanism(Batched):
         return any(group.passes for group in self.groups)
 
     @cached_property
-    def outgrown(self):
-        """Whether forces may grow far beyond the balancing torque, which is found by powers then."""
+    def has_unbounded_reactions(self):
+        """Whether forces may far exceed the balancing torque, which then follows from powers."""
         return any(group.passes or group.is_close for group in self.groups)
 
     @property
@@ -210,7 +209,7 @@ class Mechanism(Batched):
         return tuple(group for group in self.groups if any(led.body == FRAME for led in group.led))
 
     def grows(self, name):
-        """Whether a force grows without bound at change points that it passes: one of a group that does, or at O."""
+        """Whether a force grows without bound at change points: one of a group that passes them, or at O."""
         parts = [group for group in self.groups if group.passes]
         return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
 
@@ -236,12 +235,12 @@ class Mechanism(Batched):
 
     @cached_property
     def outputs(self):
-        """Reactions and other forces by name, each as an `Output`, as `resolve` finds them."""
+        """Reactions and other forces by name, each as an `Output`, in the order of `resolve`."""
         return {name: output for part in (*reversed(self.groups), self.crank) for name, output in part.outputs.items()}
 
     @cached_property
     def pairs(self):
-        """Which links turn or slide against what, by reaction; of a pin the link that carries it, unless told."""
+        """Pairs of links by reaction; a pin turns by default against the link that carries it."""
         found, whole = self._collected("pairs"), self._wholes
         for name, pair in found.items():
             if isinstance(pair, Turning):
@@ -257,7 +256,7 @@ class Mechanism(Batched):
 
     @property
     def _wholes(self):
-        """Link that each link of a rigid triangle is one with, by name."""
+        """Link to which each link of a rigid triangle belongs, by name."""
         found: dict[str, str] = {}
         for group in self.groups:
             owners = [self.joints[name].link for name in group.hangs_on]
@@ -272,19 +271,19 @@ class Mechanism(Batched):
 
     @cached_property
     def slider(self):
-        """The slider that is meant where none is named: the only one, or that without a label; None: there is none."""
+        """Default slider: the only one, or the only one without a label; None without such."""
         bare = [name for name in self.guides if name == self.own_names[name]]
         found = bare if len(bare) == 1 else list(self.guides)
         return found[0] if len(found) == 1 else None
 
     @cached_property
     def own_names(self):
-        """What each link is called without the label of its group."""
+        """Name of each link without the label of its group."""
         return self._collected("own_names")
 
     @cached_property
     def curves(self):
-        """What drawings call the curve that a joint runs on, by joint."""
+        """Title in drawings of the curve that a joint runs on, by joint."""
         return self._collected("curves")
 
     @property
@@ -299,7 +298,7 @@ class Mechanism(Batched):
 
     @cached_property
     def hints(self):
-        """What looks like a slip of units, as sentences."""
+        """Sentences on values that look like another unit's."""
         return plausibility.mechanism_hints(self)
 
     @cached_property
@@ -343,7 +342,7 @@ class Mechanism(Batched):
         return placement
 
     def margins(self, placement, shape):
-        """Closure margin of each group at the crank angles, of a shape with that of designs."""
+        """Closure margin of each group at the crank angles, for results of a shape."""
         return [margin(group, placement, shape) for group in self.groups]
 
     def resolve(self, placement, loads, along, of_part=None):
@@ -375,22 +374,18 @@ class Mechanism(Batched):
 
 
 def output_problems(part, resolved):
-    """What a group found and does not declare, which could overwrite what another finds, and what it lacks."""
+    """Yield results of a group that it does not declare, and declared ones that it lacks."""
     kind = type(part).__name__
     if not isinstance(resolved, Resolved):
         yield f"{kind}: its resolve must return a Resolved(reactions, scalars, demands), got {checks.shown(resolved)}"
         return
+    couples = {pair.couple for pair in part.pairs.values() if isinstance(pair, Sliding)}  # friction reads them
     for vector, found in ((True, resolved.reactions), (False, resolved.scalars)):
         declared = {name for name, output in part.outputs.items() if output.vector == vector}
         what = "reaction" if vector else "quantity"
-        undeclared = found.keys() - declared - _couples(part)
+        undeclared = found.keys() - declared - couples
         yield from (f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in undeclared)
         yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
-
-
-def _couples(part):
-    """Names of the couples of a part's sliding pairs: friction reads them, outputs or not."""
-    return {pair.couple for pair in part.pairs.values() if isinstance(pair, Sliding)}
 
 
 def _smallest(*lengths):

@@ -1,4 +1,7 @@
-"""What looks like a slip, though a machine could have it: a warning, and computed all the same."""
+"""Hints at probable slips: values in other units, sliders that stand still, loads that act beside a rod.
+
+Each function returns or yields sentences; the values are used as given.
+"""
 
 from typing import Any
 
@@ -11,34 +14,34 @@ from .links import present
 from .loads.points import point_on_link
 
 SMALL_INERTIA_FACTOR = 1000.0
-"""How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
+"""Inertia of a uniform rod, m l^2 / 12, over the least plausible inertia of a link."""
 LARGE_INERTIA_FACTOR = 3.0
-"""How many times mass times length squared it may be: a uniform rod's is 1/12, in kg cm2 833, in kg mm2 83 333."""
+"""Largest plausible inertia over m l^2: a uniform rod has 1/12, in kg cm2 833, in kg mm2 83 333."""
 OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
-"""Units that make a uniform rod's inertia more like itself from that many times mass times length squared on."""
+"""Probable unit of an inertia and its factor to kg m2, by the least inertia over m l^2."""
 MAX_LENGTH = 100.0
-"""Length, m, that no link has."""
+"""Largest plausible length of a link, m."""
 MAX_LENGTH_RATIO = 2000.0
-"""How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
+"""Largest plausible length of the longest link over the shortest: millimetres beside metres give more."""
 MAX_PIN_SPEED = 60.0
-"""Speed of a crank's pin, m/s, that no machine has: stresses by inertia go by its square, racing engines end at 50."""
+"""Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
 TWO_TURNS = 4.0 * np.pi
-"""Size, rad, from which on crank angles may look like degrees."""
+"""Least size of crank angles that may be degrees, rad."""
 TURN_CONVERTED_TWICE = 2.0 * np.pi * np.pi / 180.0
-"""A turn in radians that was taken for degrees."""
+"""A turn in radians, converted from degrees to radians again."""
 CONVERTED_TURN_LIMITS = 0.9 * TURN_CONVERTED_TWICE, 1.01 * TURN_CONVERTED_TWICE
-"""Sizes, rad, between which crank angles reach that are such a turn, with or without its end."""
+"""Range of crank angles that may be such a turn, with or without its end, rad."""
 
 
 def mechanism_hints(mechanism):
-    """Sentences on sliders that stand still, and on lengths and inertias of links that look like another unit's."""
+    """Sentences on sliders that stand still, and on improbable lengths and inertias of links."""
     bars = [bar for bar in mechanism.bars if checks.has_known_values(bar.length)]
     inertias = (text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link), mechanism.crank)))
     return (*_still(mechanism), *_lengths(bars), *inertias)
 
 
 def scene_hints(mechanism, crank_speed, numbers):
-    """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and that."""
+    """Hints of the mechanism and of its drive, and on `numbers`: path, value and usual range."""
     longest = _longest(mechanism)
     odd = [text for path, value, usual in numbers if (text := checks.implausibility(path, value, usual, longest))]
     return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
@@ -50,7 +53,7 @@ def _longest(mechanism):
 
 
 def _lengths(bars):
-    """What is odd about the lengths of links."""
+    """Yield a hint on improbable lengths of links."""
     lengths = [(_most(bar.length), bar.link) for bar in bars]
     if not lengths:
         return
@@ -65,7 +68,7 @@ def _lengths(bars):
 
 
 def _fast(length, crank_speed, longest):
-    """What is odd about the speed of the crank's pin."""
+    """Yield a hint on an improbable speed of the crank's pin."""
     if (
         length is None
         or not (checks.has_known_values(length) and checks.has_known_values(crank_speed))
@@ -81,7 +84,7 @@ def _fast(length, crank_speed, longest):
 
 
 def load_hints(mechanism, loads):
-    """Say which loads between two points act along a cylinder, but not on both its rod and itself."""
+    """Yield a hint for each load between two points that acts on a cylinder, but not on its rod."""
     for load, slot, other in loads_beside_rods(mechanism, loads):
         place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
         yield (
@@ -103,7 +106,7 @@ def loads_beside_rods(mechanism, loads):
 
 
 def compared_sizes(mechanism):
-    """What a first look compares, of any numbers.
+    """Numbers that the compiled plausibility test compares.
 
     In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, triples of
     them and the length of a bar, and pairs of a bar's length and how far that is from the arm of its inner joint. There
@@ -127,12 +130,12 @@ def compared_sizes(mechanism):
 
 
 def _is_moved(bar, crank):
-    """Whether a bar is no part of the crank, whose inertia may be that of all the drive."""
+    """Whether a bar is not the crank, whose inertia may include the drive."""
     return bar.link not in crank.links
 
 
 def _still(mechanism):
-    """Say which sliders stand still all over the turn.
+    """Yield a hint for each slider that stands still all over the turn.
 
     That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
@@ -151,12 +154,8 @@ def _on_arms(mechanism):
     """Bars from a joint on a link that turns about a fixed pivot to a slider, each with that slider."""
     for bar in mechanism.bars:
         arm, slider = (mechanism.joints[end].link for end in (bar.start, bar.end))
-        if slider in mechanism.guides and arm != FRAME and _is_on_the_frame(mechanism, arm):
+        if slider in mechanism.guides and arm != FRAME and mechanism.joints[mechanism.references[arm]].link == FRAME:
             yield bar, slider
-
-
-def _is_on_the_frame(mechanism, link):
-    return mechanism.joints[mechanism.references[link]].link == FRAME
 
 
 def _as_long_as_its_arm(mechanism, bar):
@@ -168,7 +167,7 @@ def _as_long_as_its_arm(mechanism, bar):
 
 
 def _inertia(bar, link, crank):
-    """What is odd about a link's inertia beside its mass and length; none at all makes a point mass."""
+    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass."""
     if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
@@ -186,7 +185,7 @@ def _inertia(bar, link, crank):
 
 
 def _unit_of_inertia(inertia, times):
-    """What to ask about an inertia that is so many times mass times length squared."""
+    """Question on the unit of an inertia that is `times` m l^2."""
     for least, (unit, factor) in OTHER_UNITS.items():
         if times > least:
             return f"is it in {unit}? That makes {factor * inertia:.4g} kg m2"
@@ -194,12 +193,12 @@ def _unit_of_inertia(inertia, times):
 
 
 def given_angle_hints(given, angle):
-    """Say if crank angles look like degrees or a count of them, by what was given and as they are taken."""
+    """Hint if crank angles look like degrees or a number of them; as given, and as an array."""
     return angle_count_hints(given) or angle_hints(angle)
 
 
 def single_angle_hints(angle):
-    """Say if a single crank angle looks like degrees: whole, from two turns in radians to three in degrees."""
+    """Hint if a single crank angle looks like degrees: whole, from two turns in radians to three in degrees."""
     if not TWO_TURNS <= abs(angle) <= 1080.0 or not _whole(angle):
         return ()
     return (
@@ -209,7 +208,7 @@ def single_angle_hints(angle):
 
 
 def angle_count_hints(given):
-    """Say if a crank angle looks like a count of them: a whole number of more than two turns."""
+    """Hint if a crank angle looks like a number of crank angles: an int above two turns."""
     if not isinstance(given, int | np.integer) or given < TWO_TURNS:
         return ()
     return (
@@ -219,7 +218,7 @@ def angle_count_hints(given):
 
 
 def angle_hints(angle):
-    """Say if crank angles look like degrees, or like radians taken for degrees."""
+    """Hint if crank angles look like degrees, or like radians converted twice."""
     if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
         return ()
     first, last = angle.item(0), angle.item(-1)
@@ -240,7 +239,7 @@ def angle_hints(angle):
 
 
 def _few(row):
-    """Say if one crank angle or two look like degrees: twelfths of a turn counted in them."""
+    """Hint if one or two crank angles look like degrees: multiples of 30."""
     if not all(_whole(angle / 30.0) for angle in row.tolist()):
         return ()
     text = " and ".join(f"{angle:g}" for angle in row.tolist())
@@ -250,7 +249,7 @@ def _few(row):
 
 
 def _converted_twice(angle):
-    """Say if crank angles are an even turn of radians that were taken for degrees."""
+    """Hint if crank angles are an even turn in radians, converted twice."""
     row = np.ravel(angle)
     step, reach = row[1] - row[0], row[-1] - row[0]
     even = np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))

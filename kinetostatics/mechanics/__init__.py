@@ -1,4 +1,4 @@
-"""What it does: motion, forces, where it can be assembled, principal points, quantities and their units.
+"""What the machine does: motion, forces, friction, assembly, principal points, quantities and units.
 
 May import errors, numbers, machine.
 """

@@ -1,4 +1,8 @@
-"""Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
+"""Assembly of a mechanism: crank angles at which its groups close, and the errors where they do not.
+
+The closure margin of a group is negative where its links cannot be assembled, and 0 at a limit position. Gaps are
+crank-angle intervals in rad, within one turn or the turns after which the motion repeats.
+"""
 
 import numpy as np
 
@@ -10,11 +14,11 @@ from ..numbers.brackets import find_minima, find_roots
 from . import quantities
 
 MARGIN_SAMPLES = 720
-"""Crank angles a turn at which margins are looked at first."""
+"""Crank angles a turn at which margins are sampled."""
 HALF_DIGITS_CONDITION = 1e8
-"""Condition from which half of the digits are lost."""
+"""Condition number that costs half of the digits."""
 NO_DIGITS_CONDITION = 1e16
-"""Condition from which rates and forces have no correct digit."""
+"""Condition number that leaves rates and forces without a correct digit."""
 
 
 def check(solution):
@@ -23,7 +27,7 @@ def check(solution):
     Returns
     -------
     list of array (..., N)
-        Margins of the groups; nothing in another precision than double, and of groups whose values are not known yet.
+        Margins of the groups, without those that have no values yet; empty if numbers are not in double precision.
     """
     placement, margins = solution.placement, []
     found = solution.mechanism.margins(placement, solution.shape)
@@ -44,12 +48,12 @@ def check(solution):
 
 
 def _in_double_precision(solution):
-    """Whether it is: numbers of any precision lose what they lose."""
+    """Whether crank angles are in double precision, not objects of another one."""
     return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
 
 
 def _margin_values(margin):
-    """The margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
+    """Margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
     if isinstance(margin, np.ndarray) and margin.dtype == float:
         return margin
     try:
@@ -59,7 +63,7 @@ def _margin_values(margin):
 
 
 def unbounded_force_problem(solution, name, values):
-    """What must be said of forces near change points that are passed, as a sentence, or None."""
+    """Sentence on forces that grow without bound near change points that the mechanism passes, or None."""
     sizes = np.abs(values) if values.shape == solution.shape else np.abs(values).max(axis=0)
     terms = np.maximum(solution.largest_force_term, solution.largest_torque_term)
     with np.errstate(invalid="ignore"):
@@ -103,10 +107,10 @@ def _assembly_error(mechanism, group, placement, where, gaps, *remedy):
 
 
 def group_gaps(mechanism, group, design=(), angles=()):
-    """Crank-angle intervals where a group does not close, to rounding accuracy, within the turns that its motion takes.
+    """Crank-angle intervals where a group does not close, rad, to rounding.
 
-    Found on a grid of half a degree, at the given angles and where the closure margin is smallest between them, each
-    end by root finding on the margin.
+    Candidates are a grid of half a degree, the given angles and the minima of the margin between them. Each end is a
+    root of the margin.
     """
     margin, whole = _margin(mechanism, group, design), TURN * mechanism.turns
     grid = np.concatenate([_grid(mechanism), np.mod(angles, whole)])
@@ -125,23 +129,20 @@ def group_gaps(mechanism, group, design=(), angles=()):
         stops = np.roll(stops, -1)
         stops[-1] += whole
     with np.errstate(invalid="ignore"):
-        # the others are change points, where it closes but for rounding
+        # the others are change points, open by rounding only
         real = margin((starts + stops) / 2) < -SQUARE_TOLERANCE
     kept = real if real.any() else ~real
     return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
 
 def limit_angles(mechanism, below):
-    """Crank angles, rad, where the closure margin of a group is smallest, and less than `below`.
-
-    Within one turn, or the turns after which the motion repeats.
-    """
+    """Crank angles, rad, at which the closure margin of a group has a minimum less than `below`."""
     found = [_margin_minima(_margin(mechanism, group), mechanism, below) for group in mechanism.groups]
     return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 
 
 def gap_intervals(mechanism):
-    """Crank-angle intervals where some group does not close, in order, as `near_limits`; they do not overlap."""
+    """Crank-angle intervals where some group does not close, rad, in order and without overlap."""
     found = []
     for group in mechanism.groups:
         if _is_open(mechanism, group, _test_angles(mechanism, group)):
@@ -150,7 +151,7 @@ def gap_intervals(mechanism):
 
 
 def require_turn(mechanism):
-    """Raise `AssemblyError` if the mechanism does not close somewhere in the turn, be it between any samples."""
+    """Raise `AssemblyError` if the mechanism does not close all round the turn, between samples too."""
     for group in mechanism.groups:
         angle = _test_angles(mechanism, group)
         if _is_open(mechanism, group, angle):
@@ -161,7 +162,7 @@ def require_turn(mechanism):
 
 
 def _test_angles(mechanism, group):
-    """Crank angles half a degree apart, and those between them where the margin is smallest."""
+    """Crank angles half a degree apart, and minima of the margin between them, rad."""
     with np.errstate(invalid="ignore"):
         return np.concatenate([_grid(mechanism), _margin_minima(_margin(mechanism, group), mechanism, 0.0)])
 
@@ -172,7 +173,7 @@ def _is_open(mechanism, group, angle):
 
 
 def _margin(mechanism, group, design=()):
-    """Closure margin of a group, of one design of a batch, as a function of the crank angle."""
+    """Closure margin of a group in one design of a batch, as a function of the crank angle."""
 
     def margin(angle):
         found = group.closure(mechanism.place(angle))
@@ -182,12 +183,12 @@ def _margin(mechanism, group, design=()):
 
 
 def _grid(mechanism):
-    """Crank angles half a degree apart, as far as the motion takes to repeat."""
+    """Crank angles half a degree apart over the period of the motion, rad."""
     return np.linspace(0.0, TURN * mechanism.turns, MARGIN_SAMPLES * mechanism.turns, endpoint=False)
 
 
 def _margin_minima(margin, mechanism, below):
-    """Crank angles of the local minima of a margin that may be less than `below`, found between half degrees."""
+    """Crank angles of the local minima of a margin that are less than `below`, rad."""
     grid = _grid(mechanism)
     samples = margin(grid)
     before, after = np.roll(samples, 1), np.roll(samples, -1)
@@ -203,7 +204,7 @@ def _margin_minima(margin, mechanism, below):
 
 
 def _merge_intervals(intervals, whole):
-    """The same intervals in order, those that overlap as one."""
+    """Intervals in order, with overlapping ones merged."""
     united: list[tuple[float, float]] = []
     for start, stop in sorted(intervals):
         if united and start <= united[-1][1]:

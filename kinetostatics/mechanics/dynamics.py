@@ -1,6 +1,8 @@
-"""Forces of a scene by the kernels, from whatever numbers it has: floats, arrays, recorded numbers, enclosures.
+"""Forces of a scene: loads on links, reactions, balancing torque, shaking force and moment, energies, friction losses.
 
-Everything here is the kernels' own arithmetic; engines and solutions ask it, it knows neither.
+`Dynamics` computes them by the kernels of the groups with any kind of numbers: floats, arrays, recorded numbers,
+enclosures. It imports neither engines nor solutions. The balancing torque follows from the crank's equilibrium, and
+again from the balance of powers: T = -sum of powers of all loads and inertia per unit of crank angle.
 """
 
 import warnings
@@ -23,7 +25,7 @@ from .motion import Motion, coordinates
 from .principal_points import principal_points
 
 MAX_POWER_ERROR = 1e-6
-"""Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
+"""Largest difference of both balancing torques with a user's own groups, relative to the largest torque term."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +35,7 @@ class Dynamics(Motion):
     Attributes
     ----------
     way : function, optional
-        ``way(mechanism, crank_angle)``: another way to the placement than the groups' closed forms, as harmonic series.
+        ``way(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, as harmonic series do.
     """
 
     way: Callable[[Any, Any], Any] | None = None
@@ -45,28 +47,28 @@ class Dynamics(Motion):
 
     @cached_property
     def resolved(self):
-        """All reactions and other forces, as the groups find them."""
+        """All reactions and other forces, a `Resolved`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             loads, along = self.acting
             found = self.mechanism.resolve(self.placement, loads, along, self.friction_solver)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
-        if self.mechanism.outgrown:  # the crank's equilibrium has reactions that grow without bound
+        if self.mechanism.has_unbounded_reactions:  # reactions in the crank's equilibrium grow without bound
             friction = {} if self.friction_solver is None else self.friction_solver.found
             found.scalars["balancing_torque"] = self._torque_with(friction)
         return found
 
     @property
     def acting(self):
-        """Loads by link and forces along guides by slider as groups resolve them."""
+        """Loads by link, and forces along guides by slider, that the groups resolve."""
         return springs.loads_on_groups(self)
 
     def departure(self, item):
-        """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        """Departure s'' + e of a slider from simple harmonic motion, e the elongation of a spring on it, m; or None."""
         return self._of_group("departure", item)
 
     def outward(self, item):
-        """Magnitude of that elongation as a length that no crank angle changes and some more, m; None if not known."""
+        """Size of that elongation as a constant length and a rest, m; None if the group does not know them."""
         return self._of_group("outward", item)
 
     def _of_group(self, what, item):
@@ -75,25 +77,25 @@ class Dynamics(Motion):
 
     @cached_property
     def friction_solver(self):
-        """Solver that resolves parts with friction; None without friction."""
+        """Solver of the groups with friction; None without friction."""
         return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.rubs else None
 
     @cached_property
     def friction_by_joint(self):
-        """Friction by joint, each a `friction.PairFriction`; nothing of joints without friction."""
+        """Friction by joint, each a `friction.PairFriction`, of the joints that have friction."""
         return self.friction_solver.found if self.friction_solver is not None and self.resolved else {}
 
-    def _of_friction(self, name):
-        """A list of the solver, filled as the forces are resolved; empty without friction."""
+    def _friction_list(self, name):
+        """List of the solver by name, after the forces are resolved; empty without friction."""
         return getattr(self.friction_solver, name) if self.friction_by_joint else []
 
     @property
     def friction_signs(self):
-        """Rates and forces at whose zeros friction jumps or has a kink, each (..., N)."""
-        return [self._scalar(part) for part in (*self._of_friction("rates"), *self._of_friction("kinks"))]
+        """Rates and forces at whose zeros friction jumps or has a kink, a list of (..., N)."""
+        return [self._scalar(part) for part in (*self._friction_list("rates"), *self._friction_list("kinks"))]
 
     def friction_at(self, joint):
-        """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
+        """Friction on the moving link of a joint, (..., N): moment of a pin, N m, else force along the pair, N."""
         found = self.friction_by_joint.get(joint)
         return self._scalar(found and minus(None, found.amount))
 
@@ -114,19 +116,19 @@ class Dynamics(Motion):
 
     @property
     def friction_margin(self):
-        """How far friction is from jamming, 1 without friction; where it is not positive all friction is NaN.
+        """Margin from jamming, (..., N): 1 without friction; where it is not positive, friction is NaN.
 
         Exact for a guide or pin alone, a bound for several joints: see `Solution.friction_margin`.
         """
-        return self._scalar(reduce(smaller, self._of_friction("margins"), 1.0))
+        return self._scalar(reduce(smaller, self._friction_list("margins"), 1.0))
 
     @property
     def friction_residual(self):
-        """How much forces would change by one more pass over friction, relative to the largest of a group."""
-        return self._scalar(reduce(larger, self._of_friction("residuals"), 0.0))
+        """Change of the forces by one more pass over friction, relative to the largest of a group, (..., N)."""
+        return self._scalar(reduce(larger, self._friction_list("residuals"), 0.0))
 
     def _warn_of_lost_power(self, torque):
-        """Warn if a group of the user's own finds forces that do not do the work of the loads."""
+        """Warn if the forces of a user's own group violate the balance of powers."""
         torque = self._scalar(torque)
         if not isinstance(torque, np.ndarray) or torque.dtype != float:
             return
@@ -148,7 +150,7 @@ class Dynamics(Motion):
         """A force or moment by name, (..., N)."""
         scalars = self.resolved.scalars
         found = self._look_up("quantity", name, scalars)
-        if self.friction.rubs and not hasattr(found, "shape"):  # where friction jams a constant has no value either
+        if self.friction.rubs and not hasattr(found, "shape"):  # a constant is NaN too where friction jams
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
 
@@ -160,13 +162,13 @@ class Dynamics(Motion):
     def balancing_torque(self):
         """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m.
 
-        From the balance of powers where change points are passed, and where a pin of the crank comes close to a pivot.
+        From the balance of powers if the mechanism passes change points, or a crank pin comes close to a pivot.
         """
         return self.scalar("balancing_torque")
 
     @property
     def balancing_torque_by_power(self):
-        """The same torque from the balance of powers, without any reaction, N m."""
+        """Balancing torque from the balance of powers, independent of reactions, N m."""
         return self._scalar(self._torque_by_power)
 
     @property
@@ -193,7 +195,7 @@ class Dynamics(Motion):
 
     @property
     def reduced_inertia(self):
-        """Inertia of all links as the crank feels it, (..., N), kg m2."""
+        """Equivalent inertia of all links at the crank, (..., N), kg m2."""
         return self._scalar(energy_contact.reduced_inertia(self))
 
     @property
@@ -208,12 +210,12 @@ class Dynamics(Motion):
 
     @property
     def potential_energy(self):
-        """Potential energy of weight, springs and other loads that have one, (..., N), J."""
+        """Potential energy of weight and springs, (..., N), J."""
         return self._scalar(energy_contact.potential_energy(self))
 
     @property
     def load_torque(self):
-        """Torque on the crank that holds weight and loads, without any inertia, (..., N), N m."""
+        """Torque on the crank that holds weight and loads, without inertia, (..., N), N m."""
         return self._scalar(energy_contact.load_torque(self))
 
     def inertia_force(self, link):
@@ -222,19 +224,19 @@ class Dynamics(Motion):
 
     @cached_property
     def largest_torque_term(self):
-        """Largest torque that one load alone would take, N m: what the balancing torque is a sum of."""
+        """Largest torque of a single load or inertia, the terms of the balancing torque, N m."""
         return reduce(np.maximum, (self.largest(part) for part in self.powers), 0.0)
 
     @cached_property
     def largest_force_term(self):
-        """Largest load on one link, weight, inertia or applied, N: what a reaction is a sum of."""
+        """Largest force of a single load, weight or inertia, the terms of a reaction, N."""
         wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in self.wrenches)]
         forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
 
     @cached_property
     def gravity(self):
-        """Acceleration by weight, m/s2; None without."""
+        """Acceleration (x, y) of gravity, m/s2; None without weight."""
         return reduce(add_vectors, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
 
     @cached_property
@@ -267,9 +269,9 @@ class Dynamics(Motion):
 
     @cached_property
     def wrenches(self):
-        """Pairs of a link and a wrench on it, of all loads that act so."""
-        settling = (evaluate_load(item, self) for item in self.loads if hasattr(item, "wrenches"))
-        return [pair for item in settling for pair in item.wrenches(self) if pair[0] != FRAME]
+        """Pairs of a link and an applied wrench on it, without those on the frame."""
+        evaluated = (evaluate_load(item, self) for item in self.loads if hasattr(item, "wrenches"))
+        return [pair for item in evaluated for pair in item.wrenches(self) if pair[0] != FRAME]
 
     @cached_property
     def pushes(self):
@@ -282,7 +284,7 @@ class Dynamics(Motion):
 
     @cached_property
     def powers(self):
-        """Power of each load divided by the crank speed."""
+        """Power of each load and inertia over the crank speed, N m."""
         links = self.placement.links
         wrenches = [*self.mass_loads.items(), *self.wrenches]
         works = [virtual_work(links[name], wrench) for name, wrench in wrenches]
@@ -290,7 +292,7 @@ class Dynamics(Motion):
 
     @property
     def load_work(self):
-        """Work of all loads but weight per unit of crank angle; None without loads."""
+        """Work of all loads except weight per unit of crank angle, N m; None without loads."""
         works = [virtual_work(self.placement.links[name], wrench) for name, wrench in self.wrenches]
         return reduce(plus, works + self._push_works, None)
 
@@ -305,7 +307,7 @@ class Dynamics(Motion):
         return np.isfinite(reduce(plus, parts))
 
     def largest(self, part):
-        """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""
+        """Largest magnitude over the angles at which the mechanism closes, (...,); NaN if it closes at none."""
         size, closed = np.broadcast_arrays(np.abs(np.asarray(number_or_zero(part), dtype=float)), self.closed)
         if not size.ndim:
             return size if closed else size * np.nan
@@ -313,5 +315,5 @@ class Dynamics(Motion):
 
 
 def _work_of(friction):
-    """Loss of friction at all joints per unit of crank angle, N m; None without any."""
+    """Friction loss at all joints per unit of crank angle, N m; None without friction."""
     return reduce(plus, (found.work for found in friction.values()), None)

@@ -1,14 +1,13 @@
-"""Energies of a scene, and the inertia that the crank feels: sums over links of squares of kinematic coefficients.
+"""Energies of a scene, the reduced inertia at the crank, and the Hertz pressure of line contacts.
 
 With s the mass centre of a link and theta its angle, derivatives by the crank angle phi, the kinetic energy of all
-links is J omega^2 / 2 with the reduced inertia
+links is J omega^2 / 2 with the reduced (equivalent) inertia
 
     J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
 
-(Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*, on equivalent inertia; Eksergian's equation of motion
-T = J alpha + J' omega^2 / 2 + load torque).
-
-Contacts along a line: their pressure from the forces found, and where a roller undercuts what carries it.
+(Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*; Eksergian's equation of motion
+T = J alpha + J' omega^2 / 2 + load torque). Contact pressures follow from the resolved forces; `refusals` names
+rollers that undercut the side of the cam that carries them.
 """
 
 from functools import reduce
@@ -25,12 +24,12 @@ from .load_values import evaluate_load, slider_push
 
 
 def reduced_inertia(motion):
-    """Reduced inertia of all links, kg m2; None without any mass."""
+    """Reduced inertia of all links, kg m2; None without mass."""
     return _sum(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
 
 
 def reduced_inertia_slope(motion):
-    """Its derivative by the crank angle, kg m2; None where it does not change."""
+    """Derivative of the reduced inertia by the crank angle, kg m2; None if it is constant."""
     slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
     return product(2.0, _sum(slopes))
 
@@ -47,7 +46,7 @@ def potential_energy(motion):
 
 
 def load_torque(motion):
-    """Torque on the crank that holds weight and loads, without any inertia, N m."""
+    """Torque on the crank that holds weight and loads, without inertia, N m."""
     links = motion.placement.links
     weights = (
         product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))
@@ -57,7 +56,7 @@ def load_torque(motion):
 
 
 def work_of(item, motion):
-    """Work of a load but weight per unit of crank angle, N m; None where it does none."""
+    """Work of a load other than weight per unit of crank angle, N m; None if it does no work."""
     if hasattr(item, "push"):
         return product(slider_push(item, motion), motion.placement.travels[item.on].first)
     wrenches = evaluate_load(item, motion).wrenches(motion)
@@ -85,7 +84,7 @@ def _slope(motion, body):
 
 
 def pressure(dynamics, name):
-    """Largest Hertz pressure of a contact of a `Dynamics`, by name; NaN where there is no such contact."""
+    """Largest Hertz pressure of a contact by name, Pa; NaN where the relative radius is negative."""
     group = next((group for group in dynamics.mechanism.groups if name in group.contacts), None)
     if group is None:
         known = [own for group in dynamics.mechanism.groups for own in group.contacts]
@@ -106,7 +105,7 @@ def _unknown_contact(mechanism, name, known):
 
 
 def refusals(solution):
-    """Where rollers undercut the side of a cam that carries them, as sentences."""
+    """Sentences on rollers that undercut the side of a cam that carries them."""
     if not solution.kind.answer(_has_contacts):
         return []
     state = solution.dynamics

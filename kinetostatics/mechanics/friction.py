@@ -1,14 +1,13 @@
-"""Forces of a part with friction in its joints: reactions and friction found together, to rounding.
+"""Friction in the joints of a group: reactions and friction together, by Newton's method.
 
-Friction in a joint is a constant times the magnitude of a reaction. All reactions of a part are linear in the moments
-and forces that friction puts on its links. A magnitude is the reaction times its own direction, so with known
-directions the equations are linear. Each pass solves them with the directions of the reactions of the pass before: that
-is Newton's method, so each pass doubles the digits. The first pass takes friction from the reactions without friction.
-For a guide alone the direction is a sign, and the second pass is exact: N = N0 / (1 + kappa sgn N0).
+Friction is a constant times the magnitude of a reaction. All reactions of a group are linear in the moments and forces
+that friction puts on its links. A magnitude is the reaction times its own direction, so with known directions the
+equations are linear. Each pass solves them with the directions of the pass before, which is Newton's method and doubles
+the digits; the first pass takes friction from the reactions without friction. For a guide alone the direction is a
+sign, and the second pass is exact: N = N0 / (1 + kappa sgn N0).
 
-A magnitude does not change with its direction to first order, so derivatives take directions as given, and need the
-last pass alone. The number of passes is fixed (`jamming.solve_friction` chooses it), so friction is arithmetic like
-all else of a group.
+To first order a magnitude does not change with its direction, so derivatives keep the directions and need the last pass
+only. The number of passes is fixed (`jamming.solve_friction` chooses it), so friction is plain arithmetic.
 """
 
 from dataclasses import dataclass, field
@@ -33,16 +32,16 @@ from ..numbers.planar import (
 )
 
 MIN_SQUARE = 1e-290
-"""Square of a force that is added so that a force of zero can be divided by, N2."""
+"""Square of a force, N2, that guards divisors: added to the square of a magnitude."""
 MIN_FORCE = 1e-100
-"""Force, or moment, that is added to a scale so that zero can be divided by it."""
+"""Force, N, or moment, N m, that guards divisors: added to a scale."""
 
 
 # Friction of one pair
 
 
 class Channel(NamedTuple):
-    """Loads on links, and pushes on sliders, of a unit of friction: of all moments on a link, or of a force."""
+    """Unit friction load: wrenches on links and pushes on sliders of a moment or force 1."""
 
     name: str
     wrenches: tuple = ()
@@ -57,14 +56,14 @@ class FrictionLaw(NamedTuple):
     name : str
         Of the pair.
     factor : number
-        With the sign of the motion.
+        Coefficient, or moment arm, with the sign of the motion.
     reaction : function
         Components of the reaction, a tuple, from a `Resolved`.
     kind : str
         Size of the reaction: "length" of a vector, "size" of a number, "larger" of the sizes of two, or the number
         "itself".
     effects : tuple of (Channel, int)
-        Channels by which it acts on links, each with the sign.
+        Channels by which it acts on links, each with a sign.
     """
 
     name: str
@@ -75,9 +74,9 @@ class FrictionLaw(NamedTuple):
 
 
 class PairFriction(NamedTuple):
-    """Friction of a pair: its moment or force, positive where the pair moves positively, and the rate of that motion.
+    """Friction of a pair: moment, N m, or force, N, positive with the motion of the pair, and the rate of that motion.
 
-    It acts on the link with the opposite sign. `couple` is that of a roller's pin on the link, with its own rate.
+    It acts on the link with the opposite sign. `couple` is the moment of a roller's pin on the link, with its own rate.
     """
 
     amount: Any
@@ -102,7 +101,7 @@ def pair_rate(part, name, pair, placement):
 
 
 def size_of(kind, parts):
-    """Size of a reaction from its components, None if it is absent."""
+    """Size of a reaction from its components, N; None if it is absent."""
     if kind == "itself":
         return parts[0]
     given = [part for part in parts if part is not None]
@@ -125,7 +124,7 @@ def direction_of(law, parts):
     if first is None and second is None:
         return (None, None)
     if law.kind == "length":
-        over = 1.0 / size_of("length", parts)  # friction does not change with the direction to first order
+        over = 1.0 / size_of("length", parts)  # derivatives keep the direction
         return tuple(product(law.factor, None if part is None else stop_gradient(over * part)) for part in parts)
     if first is None or second is None:
         return tuple(None if part is None else law.factor * sign(part) for part in parts)
@@ -134,7 +133,7 @@ def direction_of(law, parts):
 
 
 def kink_functions(kind, parts):
-    """Functions that are zero where the size of a reaction has a kink; that of a vector has none unless it vanishes."""
+    """Functions whose zeros are kinks of the size of a reaction; the length of a vector counts as smooth."""
     given = [part for part in parts if part is not None]
     if kind == "larger" and len(given) == 2:
         return [given[0], given[1], abs(given[0]) - abs(given[1])]
@@ -154,13 +153,13 @@ def smaller(a, b):
 
 @dataclass(eq=False)
 class FrictionSolver:
-    """Resolves parts with friction, and keeps the friction of each pair.
+    """Resolves groups with friction, and keeps the friction of each pair.
 
     Attributes
     ----------
     found : dict of str to PairFriction
     margins, residuals : list
-        Of each part: how far it is from jamming (`FrictionEquations`), and the relative change by the last pass.
+        Of each group: margin from jamming and relative change by one more pass (`FrictionEquations`).
     rates, kinks : list
         Rates at whose zeros friction jumps, and forces at whose zeros it has a kink.
     """
@@ -178,7 +177,7 @@ class FrictionSolver:
         self.acting, self.senses = self.friction.acting, self.friction.senses
 
     def __call__(self, part, placement, loads, along):
-        """Reactions and other forces of a part, a `Resolved`, as `part.resolve` gives them without friction."""
+        """Reactions and other forces of a part with friction, a `Resolved` as from `part.resolve`."""
         rates: dict[str, Any] = {}
         laws: list[FrictionLaw] = []
         for name in part.pairs:
@@ -189,12 +188,16 @@ class FrictionSolver:
             return free
         own = part.links
         channels = {channel.name: channel for law in laws for channel, _ in law.effects}
-        inner = [channel for channel in channels.values() if _acts_on(channel, own)]
+        inner = [
+            channel
+            for channel in channels.values()
+            if any(link in own for link, _ in (*channel.wrenches, *channel.pushes))
+        ]
         unloaded = dict.fromkeys(own, Wrench((SYMBOLIC_ZERO, SYMBOLIC_ZERO), SYMBOLIC_ZERO))
         columns = [part.resolve(placement, *_with_friction(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
         equations = FrictionEquations(laws, [channel.name for channel in inner], free, columns)
         amounts = self._amounts(equations, laws, placement)
-        self._keep(equations, laws, amounts, rates)
+        self._store(equations, laws, amounts, rates)
         acting = [
             (channel, amount if way > 0 else -amount)
             for law, amount in zip(laws, amounts, strict=True)
@@ -204,17 +207,17 @@ class FrictionSolver:
         self.rates += rates.values()
         for law in laws:
             self.kinks += kink_functions(law.kind, law.reaction(resolved))
-        return self._completed(resolved, part, placement, acting, own)
+        return self._with_friction_forces(resolved, part, placement, acting, own)
 
     def _amounts(self, equations, laws, placement):
         """Friction of each law."""
         return equations.solve(self.friction.passes, placement.angle)
 
     def _laws(self, part, name, placement, rates):
-        """Laws of a pair; its rate is written into `rates`."""
+        """Friction laws of a pair; its rate goes into `rates`."""
         pair, friction = self.mechanism.pairs[name], self.acting[name]
         if isinstance(pair, Rolling):
-            yield from self._laws_of_roller(name, pair, friction, placement, rates)
+            yield from self._roller_laws(name, pair, friction, placement, rates)
             return
         rate = pair_rate(part, name, pair, placement)
         if rate is None:
@@ -245,9 +248,10 @@ class FrictionSolver:
             return self.senses[name]
         return self.direction if rate is None else self.direction * sign(rate)
 
-    def _laws_of_roller(self, name, pair, friction, placement, rates):
-        """Friction of a roller's pin under its whole load: the cam force, and the force along the profile by which the
-        cam turns the roller. The couple acts on the link that carries the pin.
+    def _roller_laws(self, name, pair, friction, placement, rates):
+        """Friction laws of a roller's pin, whose load is the cam force and the tangential force that turns the roller.
+
+        The couple acts on the link that carries the pin.
         """
         first = vector_or_zero(placement.joints[pair.joint].first)
         speed = length(first)
@@ -263,9 +267,9 @@ class FrictionSolver:
         yield FrictionLaw(name, slope, reaction, "size", ((force, -1),))
         yield FrictionLaw(name, slope * friction.roller_radius, reaction, "itself", ((_moment(pair.link), -1),))
 
-    def _keep(self, equations, laws, amounts, rates):
+    def _store(self, equations, laws, amounts, rates):
         for law, amount in zip(laws, amounts, strict=True):
-            if law.kind == "itself":  # the roller turns the other way round on the other side of the cam
+            if law.kind == "itself":  # the roller turns in the opposite sense on the other side of the cam
                 self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
             else:
                 self.found[law.name] = PairFriction(amount, rates[law.name])
@@ -273,8 +277,8 @@ class FrictionSolver:
             self.margins.append(equations.margin)
             self.residuals.append(equations.residual)
 
-    def _completed(self, resolved, part, placement, acting, own):
-        """The forces of a part with friction along guides, and with its demands on other links."""
+    def _with_friction_forces(self, resolved, part, placement, acting, own):
+        """The forces of a part, with friction added to reactions of guides and to demands on other links."""
         reactions, demands = dict(resolved.reactions), dict(resolved.demands)
         for channel, amount in acting:
             name = channel.name
@@ -296,19 +300,15 @@ def _moment(link):
 
 
 def _force(name, pair, slide):
-    """Force along a straight pair; along a guide it stays in the guide's axes."""
+    """Channel of a force along a sliding pair; along a guide it stays in the guide's axes."""
     if pair.against == FRAME:
         return Channel(name, (), ((pair.link, 1.0),))
     back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
     return Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
 
 
-def _acts_on(channel, own):
-    return any(link in own for link, _ in (*channel.wrenches, *channel.pushes))
-
-
 def _with_friction(loads, along, acting, own):
-    """Loads and pushes of a part with those of friction added."""
+    """Loads and pushes of a part, with friction added."""
     loads, along = dict(loads), dict(along)
     for channel, amount in acting:
         for link, wrench in channel.wrenches:
@@ -325,18 +325,18 @@ def _with_friction(loads, along, acting, own):
 
 
 class FrictionEquations:
-    """Friction laws of a part together, and how their reactions depend on the channels by which friction acts.
+    """Friction laws of a part, with the slopes of their reactions by the channels through which friction acts.
 
     Attributes
     ----------
     margin : number or None
-        How far friction is from jamming: 1 without friction, 0 where it may jam or have several solutions; None where
-        no reaction of a law depends on friction. It is the smallest pivot of one less the largest feedback from
-        friction to friction. All pivots are positive if and only if its spectral radius is less than 1. Then friction
-        is a contraction, for all loads and senses of motion, so there is one state. That is necessary as well for a
-        guide or pin alone, 1 - |kappa|, but not for several joints, whose feedbacks may be of opposite signs.
+        Margin from jamming: 1 without friction, 0 where friction may jam or have several solutions; None if no
+        reaction of a law depends on friction. It is the smallest pivot of I - K, with K the largest feedback from
+        friction to friction. All pivots are positive if and only if the spectral radius of K is less than 1. Then
+        friction is a contraction for all loads and senses of motion, so there is exactly one solution. For a guide or
+        pin alone, 1 - |kappa|, this is also necessary; for several joints it is not, as feedbacks may differ in sign.
     residual : number or None
-        Change of the reactions by one more pass, over the largest of them; known after `solve`.
+        Change of the reactions by one more pass over the largest of them; set by `solve`.
     """
 
     def __init__(self, laws, names, free, columns):
@@ -355,12 +355,12 @@ class FrictionEquations:
         self.margin = self._margin() if used else None
 
     def solve(self, passes, angle):
-        """Friction of each law after some passes, NaN where it jams or has several solutions."""
+        """Friction of each law after a number of passes, N or N m; NaN where the margin is not positive."""
         reactions: list[Any] = self._free
         amounts, unknowns = self._amounts(reactions), []
         if self.margin is None:
             return amounts
-        all_signs = all(law.kind != "length" for law in self._laws)  # one pass less, unless friction turns a sign
+        all_signs = all(law.kind != "length" for law in self._laws)  # signs need one pass less
         for step in range(passes - all_signs):
             unknowns = self._by_directions(reactions) if step else self._totals(amounts)
             reactions = [self._reaction(place, unknowns) for place in range(len(self._laws))]
@@ -370,12 +370,12 @@ class FrictionEquations:
         return [amount + closed for amount in amounts]
 
     def _amounts(self, reactions):
-        """Friction of each law, from its reaction."""
+        """Friction of each law from its reaction."""
         sizes = (size_of(law.kind, parts) for law, parts in zip(self._laws, reactions, strict=True))
         return [number_or_zero(product(law.factor, size)) for law, size in zip(self._laws, sizes, strict=True)]
 
     def _totals(self, amounts):
-        """Friction by channel, from that of each law."""
+        """Friction by channel from the friction of each law."""
         found: list[Any] = [None] * self._count
         for amount, effects in zip(amounts, self._effects, strict=True):
             for place, way in effects:
@@ -383,14 +383,14 @@ class FrictionEquations:
         return found
 
     def _reaction(self, law, unknowns):
-        """Components of the reaction of a law, for friction by channel."""
+        """Components of the reaction of a law from friction by channel."""
         found = list(self._free[law])
         for slope, unknown in zip(self._slopes[law], unknowns, strict=True):
             found = [plus(part, product(unknown, one)) for part, one in zip(found, slope, strict=True)]
         return tuple(found)
 
     def _by_directions(self, reactions):
-        """Friction by channel with the directions of these reactions."""
+        """Friction by channel, from the linear equations with the directions of these reactions."""
         directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
         matrix: list[list] = [[None] * self._count for _ in range(self._count)]
         right: list[Any] = [None] * self._count
@@ -410,10 +410,11 @@ class FrictionEquations:
             sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in slopes]
             for place, _ in effects:
                 matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
-        return reduce(smaller, _pivots(matrix))
+        above, _, _ = _triangle(matrix, [None] * len(matrix))
+        return reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
 
     def _change(self, unknowns, amounts, reactions):
-        """Change of the reactions by one more pass, over the largest of them."""
+        """Change of the reactions by one more pass over the largest of them."""
         changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
         moved, sizes = [], []
         for law, slopes, parts in zip(self._laws, self._slopes, reactions, strict=True):
@@ -431,7 +432,7 @@ def _weighted(weights, parts):
 
 
 def _solution_of(matrix, right):
-    """Solution x of x - matrix x = right, by elimination: near one no pivot is small."""
+    """Solution x of (I - matrix) x = right by elimination; without pivoting, as the pivots are near 1."""
     above, right, inverse = _triangle(matrix, right)
     count, found = len(right), [None] * len(right)
     for i in reversed(range(count)):
@@ -440,14 +441,8 @@ def _solution_of(matrix, right):
     return [number_or_zero(one) for one in found]
 
 
-def _pivots(matrix):
-    """Pivots of one less a matrix."""
-    above, _, _ = _triangle(matrix, [None] * len(matrix))
-    return [row[i] for i, row in enumerate(above)]
-
-
 def _triangle(matrix, right):
-    """One less a matrix, and a right-hand side, with zeros below the pivots; and the inverses of the pivots."""
+    """I - matrix and a right-hand side after elimination below the pivots, and the inverses of the pivots."""
     count = len(right)
     rows = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
     right, inverse = list(right), []

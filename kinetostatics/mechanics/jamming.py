@@ -1,4 +1,7 @@
-"""Friction of a scene solved, or refused: how many passes it takes, where it jams, or has several states of forces."""
+"""Passes over the friction of a scene, and the errors and warnings where it jams or does not converge.
+
+Friction jams where its margin is not positive: there are no forces in equilibrium, or several states of them.
+"""
 
 import warnings
 
@@ -14,18 +17,18 @@ MAX_CHANGE = 1e-13
 
 
 def solve_friction(item, evaluate=None):
-    """The item with as many passes over its friction as it takes, or the most there are.
+    """The item with enough passes over its friction to converge, or with the most there are.
 
-    This alone chooses passes. One pass solves the friction of each part (`friction.FrictionEquations`); each doubles
-    the digits. Most scenes take the fewest; near jamming several joints take more.
+    No other function chooses passes. Each pass of `friction.FrictionEquations` doubles the digits. Most scenes need the
+    fewest passes; several joints near jamming need more.
 
     Parameters
     ----------
     item : Scene or Solution
         With friction.
     evaluate : function, optional
-        ``evaluate(item) -> (margin, residual)``, each (..., N), at the crank angles that count. Without it nobody looks
-        at the friction afterwards, so the item gets more passes than most need.
+        ``evaluate(item) -> (margin, residual)``, each (..., N). Without it convergence is not tested, and the item gets
+        more passes than most scenes need.
     """
     if evaluate is None:
         return _with_passes(item, max(item.friction.passes, PASSES_BY_SOLVER[1]))
@@ -38,7 +41,7 @@ def solve_friction(item, evaluate=None):
 
 
 def with_one_more_pass(item):
-    """The item with twice as many digits of its friction as now."""
+    """The item with one more pass over its friction, which doubles the digits."""
     return _with_passes(item, item.friction.passes + 1) if item.friction else item
 
 
@@ -54,7 +57,7 @@ def checks_of(solution):
 
 
 def converged(margin, residual):
-    """Whether friction is found to rounding, (..., N) of bool."""
+    """Whether friction has converged to rounding, (..., N) of bool."""
     with np.errstate(invalid="ignore", over="ignore"):
         return np.asarray((margin > 0) & (residual * margin <= MAX_CHANGE))
 
@@ -64,12 +67,12 @@ def _is_plain(values):
 
 
 def problem_at_rest(solution):
-    """Problem of friction on a crank that neither moves nor begins to, as a sentence, or None."""
+    """Problem of friction on a crank at rest without acceleration, as a sentence, or None."""
     return f"friction acts against motion, {SENSE_REMEDY}" if np.any(has_no_sense(solution)) else None
 
 
 def check(solution, on_gap):
-    """Raise `JammingError` where friction has no state, or several; warn where it was not found to rounding."""
+    """Raise `JammingError` where friction jams; warn where it has not converged."""
     margin, residual = checks_of(solution)
     if not _is_plain(margin):
         return
@@ -81,14 +84,14 @@ def check(solution, on_gap):
 
 
 def require_free(solution, owner):
-    """Raise `JammingError` for a result over the turn if friction jams at the solution's crank angles."""
+    """Raise `JammingError` on behalf of `owner` if friction jams at a crank angle of the solution."""
     if jammed_angles(solution).size:
         margin, _ = checks_of(solution)
         raise _error(solution, margin, margin <= 0, f"{owner}: ", "")
 
 
 def jammed_angles(solution):
-    """Crank angles of a solution of one design at which friction jams, rad."""
+    """Crank angles at which friction of a single design jams, (K,), rad."""
     if not solution.friction.acting:
         return np.empty(0)
     with np.errstate(invalid="ignore"):
@@ -96,7 +99,7 @@ def jammed_angles(solution):
 
 
 def warn_if_not_converged(item, margin, residual, stacklevel):
-    """Warn where friction of a solution, or of a program's state, was not found to rounding."""
+    """Warn where friction of a solution, or of a program's state, has not converged."""
     with np.errstate(invalid="ignore"):
         lost = (margin > 0) & ~converged(margin, residual)
     if lost.any():
@@ -111,7 +114,7 @@ def warn_if_not_converged(item, margin, residual, stacklevel):
 
 
 def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to get NaN there and the rest exact'):
-    """Error of a solution that jams, for the owner of a call."""
+    """`JammingError` of a solution with its crank angles."""
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
         f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "

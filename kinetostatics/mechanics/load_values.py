@@ -1,9 +1,8 @@
-"""What loads give at the crank angles of a motion; what a function of the user's returns is checked.
+"""Values of loads at the crank angles of a motion, and checks of functions of the user's.
 
-Functions of loads must be pure: the same force whenever they are asked at the same crank angles.
-
-Engines call them as often as they need: once for all crank angles, once while a program is recorded, or again between
-the angles. What a counter, a random number or a clock adds would differ from engine to engine, in silence.
+A function of a load must be pure, the same at the same crank angles: engines call it as often as they need, for all
+crank angles, while a program is recorded, or between the angles. It sees a motion without forces, because forces follow
+from its values.
 """
 
 from contextlib import suppress
@@ -16,15 +15,16 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.kinematic_state import require_sense
 from ..machine.links import present
-from ..machine.loads import Load, Table, is_given
+from ..machine.loads import Load, Table, has_no_user_code
 from ..numbers import checks
 from ..numbers.arithmetic import is_foreign_array
 from ..numbers.parameter_tree import replace_unchecked
 from .motion import Motion
 
 SPEED_AT_REST = 1e-150
-"""Crank speed, rad/s, that a function of the motion sees at rest, times the sense of rotation or, without one, the
-crank acceleration: velocities have the sense of the motion about to begin. It is nothing beside any other speed."""
+"""Crank speed, rad/s, that functions see at rest, times the sense of rotation or the crank acceleration.
+
+It gives velocities the sense of the motion about to begin, and is negligible beside any other speed."""
 MOTION_MEMBERS = (
     "crank_angle",
     "crank_speed",
@@ -36,15 +36,15 @@ MOTION_MEMBERS = (
     "measure(name)",
     "mechanism",
 )
-"""What a function of the motion may ask for."""
+"""Members of a motion that its functions may read."""
 
 
 class ForceFreeMotion(Motion):
-    """A motion as functions of it see it, without forces: these come of what the functions give."""
+    """Motion as a load's function sees it: without forces, which follow from the function's values."""
 
     @property
     def crank_sense(self):
-        """Which way the crank turns or is about to turn; refused where it is about to turn neither way."""
+        """Sense of rotation; raises an error where the crank rests without acceleration."""
         require_sense("a function of the motion asks for crank_sense", self)
         return super().crank_sense
 
@@ -58,11 +58,11 @@ class ForceFreeMotion(Motion):
 
 
 class UnknownForceError(ParameterError, AttributeError):
-    """A load asks for what is computed from it."""
+    """A load's function reads a quantity that is computed from the load."""
 
 
 class WatchedMotion(ForceFreeMotion):
-    """A motion that notes in `asked` what of its crank's drive is read, by a velocity as well."""
+    """Motion that notes in `asked` which of crank speed, acceleration and sense are read, directly or by velocities."""
 
     def __getattribute__(self, name):
         if name in ("crank_speed", "crank_acceleration", "sense"):
@@ -71,9 +71,9 @@ class WatchedMotion(ForceFreeMotion):
 
 
 def drive_dependence(item, motion):
-    """Names among crank_speed, crank_acceleration and sense that a user's code for a load reads at the crank angles.
+    """Set of those among crank_speed, crank_acceleration and sense that a load's function reads.
 
-    Code cannot depend on what it does not read; whether it depends on what it reads, values could not tell for sure.
+    Code cannot depend on values that it does not read; that it depends on those it reads is assumed.
     """
     watched = without_forces(motion, WatchedMotion)
     vars(watched)["asked"] = set()
@@ -82,7 +82,7 @@ def drive_dependence(item, motion):
 
 
 def without_forces(motion, kind=ForceFreeMotion):
-    """The motion without its forces."""
+    """The motion without forces, as functions of loads see it."""
     begins = present(motion.crank_acceleration if motion.sense is None else motion.sense)
     speed = motion.crank_speed if begins is None else motion.crank_speed + SPEED_AT_REST * begins
     made = kind(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
@@ -91,27 +91,27 @@ def without_forces(motion, kind=ForceFreeMotion):
 
 
 def evaluate_load(item, motion):
-    """The load with what its table or function gives at the crank angles of a motion; others as they are."""
+    """The load with values at the crank angles of a motion in place of its table or function."""
     return item if item.is_given else replace_unchecked(item, **{item.VALUE: load_value(item, motion)})
 
 
 def load_value(item, motion):
-    """What the table or function of a load gives, checked."""
+    """Checked values of a load's table or function, (..., N) or a number."""
     return _checked(item, item.value_now(without_forces(motion)), motion)
 
 
 def user_value(item, motion):
-    """What code of the user's gives for a load: its value, or its push."""
+    """Values that code of the user's returns for a load: its force or moment, or its push."""
     return load_value(item, motion) if getattr(item, "VALUE", "") else slider_push(item, motion)
 
 
 def slider_push(item, motion):
-    """Force of a load on its slider, N; what code of the user's returns is checked.
+    """Force of a load on its slider, N; the result of a user's code is checked.
 
     Raises
     ------
     ParameterError
-        It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
+        The result is not one number for each crank angle, or not finite where the mechanism closes.
     """
     if isinstance(item, Load):
         return evaluate_load(item, motion).push(motion)
@@ -119,7 +119,7 @@ def slider_push(item, motion):
 
 
 def title_of(item):
-    """What messages call a load."""
+    """Name of a load in messages."""
     return item.title if isinstance(item, Load) else f"{type(item).__name__} on {item.on!r}"
 
 
@@ -155,7 +155,7 @@ def _fits(shape, wanted):
 
 
 def _require_finite(owner, push, motion):
-    """Raise an error for a push that is not finite where the mechanism closes."""
+    """Raise `ParameterError` if a force is not finite where the mechanism closes."""
     wrong = np.broadcast_to(~np.isfinite(push) & motion.closed, motion.shape)
     if wrong.any():
         angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
@@ -168,15 +168,15 @@ def _require_finite(owner, push, motion):
 
 
 PURITY_ANGLES = 2
-"""Crank angles at which a function is called twice."""
+"""Number of crank angles at which a function is called twice."""
 _pure_functions: Any = WeakSet()
 
 
 def require_pure(motion):
-    """Raise `ParameterError` if a function of the user's gives two forces at the same crank angles.
+    """Raise `ParameterError` if a user's function returns two different forces at the same crank angles.
 
-    Each function is called twice at a few angles, the first time that a motion with it is looked at; one that cannot
-    be called there is left to whoever needs its values, who says why.
+    Each function is called twice at a few angles, at its first use. If it fails there, the error is left to the caller
+    that needs its values.
     """
     for item in motion.loads:
         function = _function_of(item)
@@ -188,7 +188,7 @@ def require_pure(motion):
 
 
 def _is_known_pure(function):
-    """Whether a function, or the one behind a method, was called twice before."""
+    """Whether a function, or the function of a method, was tested before."""
     try:
         return getattr(function, "__func__", function) in _pure_functions
     except TypeError:
@@ -196,8 +196,8 @@ def _is_known_pure(function):
 
 
 def _function_of(item):
-    """Code of the user's that gives the force of a load, or None."""
-    if is_given(item):
+    """User's code that returns the force of a load, or None."""
+    if has_no_user_code(item):
         return None
     if not isinstance(item, Load):
         return item.push
@@ -213,7 +213,9 @@ def _require_same_twice(item, function, motion):
             np.ndim(part) and np.shape(part)[-1] > 1 for part in (motion.crank_speed, motion.crank_acceleration)
         )
         few = motion if angle.ndim == 0 or varies else replace(motion, crank_angle=angle[..., :PURITY_ANGLES])
-        first, second = (np.asarray(getattr(found, "magnitude", found), dtype=float) for found in _twice(function, few))
+        with np.errstate(all="ignore"):
+            twice = [function(without_forces(few)) for _ in range(2)]
+        first, second = (np.asarray(getattr(found, "magnitude", found), dtype=float) for found in twice)
         differ = np.ravel(first != second) & ~np.ravel(np.isnan(first) & np.isnan(second))
     except Exception:
         return
@@ -225,8 +227,3 @@ def _require_same_twice(item, function, motion):
             "angle; it must be pure, a function of the motion alone, since engines call it as often as they need: keep "
             "no counter, random number or clock in it"
         )
-
-
-def _twice(function, motion):
-    with np.errstate(all="ignore"):
-        return [function(without_forces(motion)) for _ in range(2)]

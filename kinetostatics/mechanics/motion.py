@@ -1,10 +1,9 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link.
 
-Where quantities have no value since parts of the mechanism cannot be assembled.
-
-Motion of a group has none where the group, or one that it hangs on, cannot be assembled; its forces have none either
-where a group cannot that hangs on it, for they carry that group's. What is of the crank, or of the mechanism as a
-whole, has none where any group cannot. All else does not hang on the gap, and stays.
+Velocity and acceleration follow from the kinematic coefficients x' and x'' by the crank angle: v = omega x',
+a = omega^2 x'' + alpha x'. Where parts of the mechanism cannot be assembled, quantities are NaN: motion where the group
+or an inner one is open; forces also where an outer one is; quantities of the crank or of the whole mechanism where any
+is.
 """
 
 import math
@@ -20,7 +19,7 @@ from ..machine.friction import NO_FRICTION, Frictions
 from ..machine.group import FRAME, RATES, TRAVELS
 from ..machine.kinematic_state import sense_of
 from ..machine.links import Joint, PointMotion, acceleration_of, angular_acceleration, arm, present
-from ..machine.loads import is_given
+from ..machine.loads import has_no_user_code
 from ..machine.loads.points import PLACE_RULE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, parameter_tree
@@ -32,24 +31,24 @@ from .quantities import of_mechanism
 
 
 def required_groups(mechanism):
-    """Groups that must be assembled for a quantity to have a value, by its name: all, unless it is of a group."""
+    """Groups that a quantity needs assembled, by its name; all groups unless it belongs to one."""
     groups, inner = mechanism.groups, _inner_groups(mechanism.groups)
     found: defaultdict[str, tuple] = defaultdict(lambda: groups)
     for place, group in enumerate(groups):
         outer = set().union(*(own for own in inner if place in own))
-        rubbing = [f"{name}{ending}" for name in group.pairs for ending in ("_friction", "_friction_loss")]
+        friction = [f"{name}{ending}" for name in group.pairs for ending in ("_friction", "_friction_loss")]
         rates = [f"{link}{ending}" for link in group.links for ending in RATES]
         travels = [f"{slider}{ending}" for slider in group.guides for ending in TRAVELS]
-        for behind, names in (
-            (outer, (*group.outputs, *group.contacts, *rubbing)),
+        for needed, names in (
+            (outer, (*group.outputs, *group.contacts, *friction)),
             (inner[place], (*group.motions, *rates, *travels)),
         ):
-            found.update(dict.fromkeys(names, tuple(groups[one] for one in behind)))
+            found.update(dict.fromkeys(names, tuple(groups[one] for one in needed)))
     return found
 
 
 def _inner_groups(groups):
-    """Places of each group and of all that it hangs on."""
+    """Places of each group and of the inner groups that carry it, a list of sets."""
     found: list[set[int]] = []
     joints: dict[str, set[int]] = {}
     links: dict[str, set[int]] = {}
@@ -64,14 +63,14 @@ def _inner_groups(groups):
 
 
 def coordinates(placement, groups):
-    """Coordinates of the joints and directions of the links of groups, all NaN where one cannot be assembled."""
+    """Coordinates of the joints and directions of the links of groups, a list; NaN where a group is open."""
     joints = [placement.joints[name].position for group in groups for name in group.joints]
     directions = [placement.links[name].direction for group in groups for name in group.links]
     return [part for pair in (*joints, *directions) for part in pair]
 
 
 def gap_mask(placement, groups):
-    """Zero where all of some groups are assembled, NaN elsewhere; None if none of them moves."""
+    """0 where all groups are assembled, NaN elsewhere, (..., N); None if none of them moves."""
     total = reduce(plus, (part for part in coordinates(placement, groups) if hasattr(part, "shape")), None)
     if total is None or total.dtype == object:
         return None if total is None else 0.0 * stop_gradient(total)
@@ -80,7 +79,7 @@ def gap_mask(placement, groups):
 
 
 class SceneParts(NamedTuple):
-    """What a scene is made of, in the order of its structure, which leaves out those at the end that are absent."""
+    """Parts of a scene, in the order of its structure; absent parts at the end are left out there."""
 
     mechanism: Any
     crank_speed: Any
@@ -91,14 +90,15 @@ class SceneParts(NamedTuple):
 
 
 def _has_no_user_code(kind):
-    return all(map(is_given, kind.numbered.loads))
+    return all(map(has_no_user_code, kind.numbered.loads))
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What the mechanism does; made by `solve`.
+    """Motion of a mechanism; made by `solve`.
 
-    Arrays end with the crank angle, batch axes of designs come before it; a vector has (x, y) as its first axis.
+    The last axis of arrays is the crank angle, batch axes of designs come before it, and the first axis of a vector is
+    (x, y).
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Motion:
     loads : tuple
     friction : mapping of joint to friction
     sense : None, float or array
-        Which way the crank turns or is about to turn, +1 or -1; None: as its speed, at rest as its acceleration.
+        Sense of rotation of the crank, +1 or -1; None takes the sign of its speed, at rest of its acceleration.
     """
 
     mechanism: Mechanism
@@ -123,7 +123,7 @@ class Motion:
 
     @cached_property
     def apart(self):
-        """Structure of the scene, what is apart from its numbers, and its leaves."""
+        """Structure of the scene, and its numbers as `Leaves`."""
         leaves = Leaves()
         scene: tuple[Any, ...] = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
         if self.sense is not None:
@@ -134,19 +134,19 @@ class Motion:
 
     @cached_property
     def kind(self):
-        """What all scenes of its structure have in common."""
+        """`Kind` of the scene: properties that all scenes of its structure share."""
         structure, leaves = self.apart
         return parameter_tree.structure_cache(structure) if leaves.lasting else parameter_tree.StructureCache(structure)
 
     @cached_property
     def loads_are_given(self):
-        """Whether all loads are numbers, checked when they were made, and none code of the user's."""
+        """Whether all loads consist of checked numbers, without code of the user's."""
         _, leaves = self.apart
-        return self.kind.answer(_has_no_user_code) if leaves.lasting else all(map(is_given, self.loads))
+        return self.kind.answer(_has_no_user_code) if leaves.lasting else all(map(has_no_user_code, self.loads))
 
     @property
     def proportion(self):
-        """Sum of all lengths over the shortest, the largest of a batch."""
+        """Sum of all lengths over the shortest length, the largest of a batch."""
         return self.mechanism.proportion
 
     @cached_property
@@ -167,12 +167,12 @@ class Motion:
 
     @cached_property
     def farthest(self):
-        """A bound of the crank angles, rad; infinite or NaN where they are not finite, or cannot be looked at."""
+        """Upper bound of the sizes of the crank angles, rad; inf or NaN if they are unknown or not finite."""
         angle = self.crank_angle
         if not isinstance(angle, np.ndarray) or angle.dtype == object:
             return math.inf
         row = angle.ravel()
-        return math.sqrt(row.dot(row))  # costs a quarter of asking for the largest
+        return math.sqrt(row.dot(row))  # a quarter of the time of the largest size
 
     @cached_property
     def placement(self):
@@ -185,15 +185,15 @@ class Motion:
         A joint ("O", "A", "B" ...), a link's mass centre (its name), a place on a link, ("coupler", along, across) in m
         from its reference joint, or a fixed point (x, y).
         """
-        return self.as_vector(self._asked(point).position)
+        return self.as_vector(self._point(point).position)
 
     def velocity(self, point):
         """Velocity of a point, given as for `position`, (2, ..., N), m/s."""
-        return self.as_vector(scale_vector(self.crank_speed, self._asked(point).first))
+        return self.as_vector(scale_vector(self.crank_speed, self._point(point).first))
 
     def acceleration(self, point):
         """Acceleration of a point, given as for `position`, (2, ..., N), m/s2."""
-        found = self._asked(point)
+        found = self._point(point)
         return self.as_vector(acceleration_of(found.first, found.second, *self.accelerating))
 
     def rate(self, link):
@@ -208,7 +208,7 @@ class Motion:
         return self._scalar(self._with_gaps(rate, link))
 
     def _with_gaps(self, rate, link):
-        """The rate of a link; of one that turns evenly NaN too where it cannot be there."""
+        """The rate of a link, with NaN at gaps also for a link of constant rate."""
         if hasattr(self.placement.links[link].ratio, "shape"):
             return rate
         return plus(rate, gap_mask(self.placement, required_groups(self.mechanism)[link + RATES[0]]))
@@ -216,7 +216,7 @@ class Motion:
     def travel(self, slider=None):
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m.
 
-        The only slider unless told, or that without a label.
+        By default the only slider, or the one without a label.
         """
         return self._scalar(self._travel(slider).position)
 
@@ -231,7 +231,7 @@ class Motion:
         return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
 
     def elongation(self, free_position, slider=None):
-        """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
+        """Coordinate of a slider's pin along its guide less `free_position` (m), without cancellation, (..., N), m."""
         checks.require("elongation", self._number_problem("free_position", free_position))
         slider = self._slider(slider)
         travel = self._travel(slider)
@@ -241,7 +241,7 @@ class Motion:
         return self._scalar(group.elongation(self.placement, free_position))
 
     def _number_problem(self, name, value):
-        """What is wrong with what must be a number, m, or one for each crank angle; or None."""
+        """Problem of a value that must be a number, m, or one for each crank angle; or None."""
         words = checks.not_a_number(value)
         if words is None and isinstance(value, list | tuple):
             words = "several; give an array"
@@ -252,7 +252,7 @@ class Motion:
 
     @property
     def slider_position(self):
-        """Coordinate of the slider's pin along its guide, m; of the only slider, or that without a label."""
+        """Coordinate along its guide of the pin of the only slider, or of the one without a label, (..., N), m."""
         return self.travel()
 
     @property
@@ -266,7 +266,7 @@ class Motion:
         return self.travel_acceleration()
 
     def measure(self, name):
-        """A quantity of motion that a group declares, such as "pressure_angle", (..., N)."""
+        """A motion quantity that a group declares, such as "pressure_angle", (..., N)."""
         for group in self.mechanism.groups:
             if isinstance(name, str) and name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
@@ -283,12 +283,12 @@ class Motion:
 
     @property
     def crank_sense(self):
-        """Which way the crank turns or is about to turn: +1 counter-clockwise, -1 clockwise; +1 if nothing tells."""
+        """Sense of rotation of the crank: +1 counter-clockwise, -1 clockwise; +1 at rest without acceleration."""
         return sense_of(self.crank_speed, self.crank_acceleration) if self.sense is None else self.sense
 
     @cached_property
     def accelerating(self) -> tuple[Any, Any]:
-        """Crank speed squared, and the crank acceleration or None: what kinematic coefficients are multiplied by."""
+        """Crank speed squared and crank acceleration (or None), the factors of the kinematic coefficients."""
         return self.crank_speed * self.crank_speed, present(self.crank_acceleration)
 
     def _link(self, name):
@@ -298,7 +298,7 @@ class Motion:
         return self._look_up("slider", self._slider(slider), self.placement.travels)
 
     def _slider(self, name):
-        """The slider of that name; None stands for the one that needs none."""
+        """Name of a slider; None stands for the only one, or the one without a label."""
         found = self.mechanism.slider if name is None else name
         if found is None:
             names = tuple(self.mechanism.guides)
@@ -307,16 +307,16 @@ class Motion:
             raise QuantityError(f"{self.mechanism.name} has {has}{remedy}")
         return found
 
-    def _asked(self, point):
-        """A point as the user names it, looked at closely if it is no name."""
+    def _point(self, point):
+        """Motion of a point given by the user, checked unless it is a name."""
         if isinstance(point, str):
             return self.spot(point)
-        point, problem = PLACE_RULE.taken(point, "point")
+        point, problem = PLACE_RULE.check(point, "point")
         checks.require(self.mechanism.name, problem)
         return self.spot(point)
 
     def spot(self, place) -> PointMotion:
-        """A point in motion: of a joint or a mass centre by name, at a place on a link, or fixed."""
+        """Motion of a point, a `Spot`: a joint or mass centre by name, a place on a link, or a fixed point."""
         joints, links = self.placement.joints, self.placement.links
         if isinstance(place, str):
             found = self._look_up("joint or link", place, {**joints, **links})
@@ -336,7 +336,7 @@ class Motion:
         return table[name]
 
     def as_vector(self, parts):
-        """Components as one array (2, ..., N); None is the zero vector."""
+        """Components (x, y) as one array (2, ..., N); None is the zero vector."""
         x, y = vector_or_zero(parts)
         if not hasattr(x, "shape"):
             x = x + 0.0 * y  # a constant component is NaN where the other one is
@@ -348,7 +348,7 @@ class Motion:
         return read_only(self._full(number_or_zero(part))[0])
 
     def _full(self, *parts):
-        """The parts with the shape of crank angles and designs together."""
+        """Parts broadcast to `shape`."""
         shape = self.shape
         return [part if getattr(part, "shape", None) == shape else self._spread(part) for part in parts]
 

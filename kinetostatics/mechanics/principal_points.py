@@ -6,9 +6,8 @@ the links. Collected link by link and divided by the whole mass m, they are the 
 
     h1 = (m1 L_OS1 + (m2 + m3) L_OA) / m,   h2 = (m2 L_AS2 + m3 L_AB) / m,   h3 = m3 L_BS3 / m
 
-Their sum is the common mass centre, and F = -m a_S the shaking force. A joint that no link holds at a constant
-distance takes part by itself: a fixed pivot adds a constant vector, a cam-guided pin A the mass hanging on it times
-its own motion, in place of a modulus along the crank.
+Their sum is the common mass centre, and F = -m a_S the shaking force. A joint that no link keeps at a constant distance
+contributes by itself: a fixed pivot a constant vector, a cam-guided pin A its own motion times the mass it carries.
 """
 
 from dataclasses import dataclass
@@ -31,9 +30,9 @@ class PrincipalPoints:
     mass : float or array
         Mass of all moving links, kg.
     static_moments : dict of link to (along, across)
-        m h of each link, in its own axes, kg m: what a counterweight on the link must meet.
+        m h of each link in its own axes, kg m, which a counterweight on the link cancels.
     carried : dict of joint to mass
-        Mass, kg, that moves with a joint no link holds at a constant distance: pin A of a cam-guided block, a fixed
+        Mass, kg, carried by a joint that no link keeps at a constant distance: pin A of a cam-guided block, a fixed
         pivot.
 
     Examples
@@ -51,16 +50,16 @@ class PrincipalPoints:
 
     @property
     def moduli(self):
-        """Modulus h by link, signed along the link, m; 0 for a link without effect."""
+        """Modulus h by link, m, positive along the link; 0 for a link without effect."""
         return {link: along / self._present_mass() for link, (along, _) in self.static_moments.items()}
 
     @property
     def offsets(self):
-        """Part of the principal-point vector across the link, by link, m: 0 while mass centres lie on the links."""
+        """Component of the principal-point vector across the link, by link, m; 0 if mass centres lie on the links."""
         return {link: across / self._present_mass() for link, (_, across) in self.static_moments.items()}
 
     def vectors(self, motion):
-        """Principal-point vector of each link, and of each joint that takes part by itself, (2, ..., N), m."""
+        """Principal-point vectors by link, and by joint that contributes by itself, (2, ..., N), m."""
         mass = self._present_mass()
         links = {
             name: motion.as_vector(scale_vector(1.0 / mass, arm_in))
@@ -112,7 +111,7 @@ class PrincipalPoints:
             yield scale_vector(part, acceleration_of(joint.first, joint.second, *motion.accelerating))
 
     def _arms(self, placement):
-        """By link: the link as if it turned in place, and its static moment turned into the frame's axes."""
+        """By link: the link turning about a fixed joint, and its static moment in the frame's axes, kg m."""
         arms = {}
         for name, (along, across) in self.static_moments.items():
             link = placement.links[name]
@@ -126,10 +125,10 @@ class PrincipalPoints:
         return self.mass
 
 
-def _holder(mechanism, held, joint):
-    """Link that holds a joint, its place on that link, and the link's reference joint; None where none holds it."""
-    if joint in held:
-        bar = held[joint]
+def _holder(mechanism, bars, joint):
+    """Link that keeps a joint at a constant distance, the joint's place on it, and its reference joint; or None."""
+    if joint in bars:
+        bar = bars[joint]
         return bar.link, (bar.length, 0.0), bar.start
     point = mechanism.joints[joint]
     if point.link == FRAME or mechanism.references[point.link] == joint:
@@ -138,7 +137,7 @@ def _holder(mechanism, held, joint):
 
 
 def principal_points(mechanism):
-    """Principal points of any mechanism, from its link masses and the way its links hang together.
+    """Principal points of any mechanism, from its link masses and joints.
 
     Parameters
     ----------
@@ -153,7 +152,7 @@ def principal_points(mechanism):
     Raises
     ------
     ParameterError
-        It is given no mechanism.
+        The argument is not a mechanism.
 
     Examples
     --------
@@ -169,10 +168,10 @@ def principal_points(mechanism):
     links = mechanism.links.items()
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}
-    held = {bar.end: bar for bar in reversed(mechanism.bars)}
+    bars = {bar.end: bar for bar in reversed(mechanism.bars)}
     for name, link in links:
         joint = mechanism.references[name]
-        while (step := _holder(mechanism, held, joint)) is not None:
+        while (step := _holder(mechanism, bars, joint)) is not None:
             on, place, joint = step
             static_moments[on] = tuple(
                 plus(moment, product(link.mass, present(part)))

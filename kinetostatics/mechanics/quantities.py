@@ -1,6 +1,6 @@
-"""What a solution offers, by name: units and labels that the mechanism's parts declare, and the values behind them.
+"""Quantities of a solution by name: unit, label, and the function that reads their values.
 
-One list serves extremes, tables, plots, sweeps and the command line.
+The groups declare units and labels. One table serves extremes, tables, plots, sweeps and the command line.
 """
 
 import json
@@ -16,23 +16,23 @@ from ..numbers.arithmetic import sqrt
 
 
 class Quantity(NamedTuple):
-    """A quantity that a mechanism has.
+    """A quantity of a mechanism.
 
     Attributes
     ----------
     unit : str
         SI.
     label : str
-        What a table or an axis calls it.
+        Name in tables and on axes.
     read : function
-        From a motion, dynamics or solution to its values: (..., N), of a vector (2, ..., N).
+        Takes a motion, dynamics or solution and returns values, (..., N), of a vector (2, ..., N).
     vector : bool
     kind : str
-        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (its pressure), "whole"
-        (of the whole mechanism), "energy" (of the whole mechanism too, in no table unless asked for), "rate",
-        "friction", or "check" of its solution.
+        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (a pressure), "whole" (of
+        the whole mechanism), "energy" (of the whole mechanism, in tables on request only), "rate", "friction", or
+        "check" (of the solution).
     owner : str
-        Link that a rate is of.
+        Link of a rate.
     """
 
     unit: str
@@ -44,14 +44,14 @@ class Quantity(NamedTuple):
 
     @property
     def reading(self):
-        """What `read` does, as code behind a solution: ``.shaking_force``, ``.reaction("O")``."""
+        """Python code that reads it from a solution: ``.shaking_force``, ``.reaction("O")``."""
         how: Any = self.read.__reduce__()
         kind, (name, *given) = how[:2]
         return f".{name}" if kind is attrgetter else f".{name}({json.dumps(given)[1:-1]})"
 
 
 FRICTION_CHECKS = ("friction_margin", "friction_residual")
-"""Quantities that tell how well friction was found."""
+"""Quantities that measure how well friction converged."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 
 
@@ -102,7 +102,7 @@ def _declare(mechanism):
 
 
 def of_scene(scene) -> dict[str, Quantity]:
-    """Every quantity of a scene, by name: those of its mechanism, and those of its friction."""
+    """Every quantity of a scene, by name: of its mechanism and its friction."""
     known, friction = of_mechanism(scene.mechanism), getattr(scene, "friction", None)
     if not friction:
         return known
@@ -121,14 +121,9 @@ def of_scene(scene) -> dict[str, Quantity]:
 
 
 def resolved_names(scene):
-    """Names of what is found together: closure, all that parts resolve, and friction."""
+    """Names of the quantities that one evaluation gives: closure, forces of groups, and friction."""
     own = of_mechanism(scene.mechanism)
     return ("closure", *scene.mechanism.outputs, *(name for name in of_scene(scene) if name not in own))
-
-
-def is_still(ratio):
-    """Whether a kinematic coefficient stands for what does not turn."""
-    return ratio is None
 
 
 def quantity(solution, name) -> Quantity:
@@ -137,7 +132,7 @@ def quantity(solution, name) -> Quantity:
     Raises
     ------
     QuantityError
-        The mechanism has no such quantity; the message lists those it has.
+        The mechanism has no such quantity; the message lists its quantities.
     """
     known = of_scene(solution)
     if not isinstance(name, str) or name not in known:
@@ -146,12 +141,12 @@ def quantity(solution, name) -> Quantity:
 
 
 def without_bars(solution, name):
-    """Name of a quantity, of "|O|" that of the vector whose magnitude it is.
+    """Name of a quantity without bars: "O" for the magnitude "|O|".
 
     Raises
     ------
     QuantityError
-        The mechanism has no such quantity, or it is no vector.
+        The mechanism has no such quantity, or it is not a vector.
     """
     bars = isinstance(name, str) and len(name) > 2 and name[0] == name[-1] == "|"
     bare = name[1:-1] if bars else name
@@ -199,13 +194,13 @@ def unit_of(solution, name):
 
 
 def label_of(solution, name):
-    """What a table or an axis calls a quantity of a solution; a name that it has not stays as it is."""
+    """Label of a quantity in tables and on axes; an unknown name is its own label."""
     known = of_scene(solution)
     return known[name].label if name in known else name
 
 
 def values(solution, name):
-    """Values of a quantity over the crank angles; of a vector the magnitude; of a function what it returns."""
+    """Values of a quantity, (..., N): the magnitude of a vector, the result of a function."""
     if callable(name):
         return name(solution)
     parts = components(solution, name)
@@ -213,16 +208,16 @@ def values(solution, name):
 
 
 def component_sizes(solution, name):
-    """Components of a quantity with the magnitude in place of those of a vector."""
+    """Components of a quantity, a tuple of (..., N); a vector gives its magnitude only."""
     parts = components(solution, name)
     vector = name != "closure" and quantity(solution, name).vector
     return (magnitude(parts),) if vector else parts
 
 
 def largest_term(solution, name):
-    """Largest of the terms that a force, moment or torque is the sum of; 0 for a motion or a function of the user's.
+    """Largest term in the sum of a force, N, or moment, N m; 0 for a motion or a function of the user's.
 
-    What is small beside it may be rounding of terms that cancel.
+    Values much smaller than it may be rounding of terms that cancel.
     """
     unit = unit_of(solution, name)
     if unit == "N m":
@@ -242,6 +237,6 @@ ENERGIES = {
     "potential_energy": "J",
     "load_torque": "N m",
 }
-"""Units of inertia and energies of the whole mechanism, and of what its loads ask of the crank."""
+"""Units of inertia, energies and load torque of the whole mechanism."""
 RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}
-"""Units of the quantities whose names these endings make of a link's."""
+"""Units of the rates of links, by the ending of their names."""

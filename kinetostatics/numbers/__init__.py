@@ -1,4 +1,4 @@
-"""What every calculation is made of: elementary functions, planar vectors, parameter trees, checks, units, files.
+"""Numbers: elementary functions, planar vectors, parameter trees, checks, units, formats and files.
 
 May import errors.
 """

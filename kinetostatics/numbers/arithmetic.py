@@ -1,7 +1,10 @@
-"""sin, cos and sqrt of whatever array, or number, the caller brought.
+"""Elementary functions of any number: NumPy, JAX and dask arrays, `arb` enclosures, recorded numbers.
 
-The kernels take their elementary functions from here and from nowhere else, so one source of physics runs on NumPy,
-on JAX, on dask, on object arrays of `arb` numbers and, with these three overloaded, inside numba.
+The kernels take sin, sqrt, clamped roots and compensated sums from here alone, so one source of physics serves every
+engine. A number of an engine brings its own methods (`forgiving_root`, `kept_off_zero`, `total_with` ...).
+
+`compensated_sum` is SumK with K = 3 (Ogita, Rump and Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26,
+2005) on Knuth's `two_sum`; `two_square` splits its argument as Veltkamp and Dekker do.
 """
 
 import numpy as np
@@ -12,7 +15,7 @@ _namespaces = dict.fromkeys((np.ndarray, np.float64, float, int), np)
 
 
 def namespace(x):
-    """Array namespace (array API standard) that `x` belongs to; NumPy for plain numbers."""
+    """Array namespace (array API standard) of `x`; NumPy for plain numbers."""
     kind = type(x)
     if kind not in _namespaces:
         from array_api_compat import array_namespace, is_array_api_obj
@@ -31,7 +34,7 @@ def is_foreign_array(x):
 
 
 def concrete_array(x):
-    """Numbers as a NumPy array; None where a library traces them, as JAX does for a derivative, and shows no value."""
+    """`x` as a NumPy array; None for traced numbers without a value, as in a derivative by JAX."""
     try:
         return np.asarray(x)
     except TypeError:
@@ -39,13 +42,13 @@ def concrete_array(x):
 
 
 def where_zero(x):
-    """Where numbers are 0; nowhere if their values are not known."""
+    """Mask of the zeros of `x`; False for traced numbers."""
     known = concrete_array(x)
     return np.False_ if known is None else np.asarray(known == 0.0)
 
 
 def read_only(array):
-    """The array, locked against writing if it is NumPy's: results are kept and handed out again."""
+    """The array itself, locked against writing if it is a NumPy array: results are cached and returned again."""
     if isinstance(array, np.ndarray):
         array.flags.writeable = False
     return array
@@ -71,23 +74,24 @@ def atan(x):
 
 _OBJECT = np.dtype(object)
 UNIT_ROUNDOFF = 2.0**-53
-"""Largest relative error of one rounding in double precision."""
+"""Unit roundoff of double precision: largest relative error of one operation."""
 SQUARE_TOLERANCE = 4e-15
-"""How far below zero, in its unit, a square counts as zero that rounding made negative."""
+"""Relative size of a negative square that `clamped_sqrt` takes for a rounding error."""
 SPLITTER, SINGLE_SPLITTER = 2.0**27 + 1.0, 2.0**12 + 1.0
-"""Factors by which a number, in double or single precision, is split into two of half as many digits."""
+"""Factors that split a number in double or single precision into two halves (Veltkamp)."""
 MAX_SUM_TERMS = 6
-"""Numbers that `total` takes, in every engine."""
+"""Largest number of terms of `compensated_sum`, in every engine."""
 NEGLIGIBLE_LENGTH = 2.0**-310
-"""Unit, m, of which what counts as nothing changes no digit of any other distance."""
+"""Length, m, whose product with `RELATIVE_OFFSET` changes no digit of a distance in a machine."""
 RELATIVE_OFFSET = 2.0**-90
-"""Distance, in its unit, that counts as nothing but still has a direction."""
+"""Offset, in its unit, that gives a zero distance a direction and changes no digit of others."""
 
 
 def clamped_sqrt(square, unit):
-    """Root of a square that counts in `unit`; NaN where that is negative by more than rounding.
+    """Root of a square, clamped to 0 where rounding makes the square negative, NaN where it is truly negative.
 
-    NaN also where both are too small for the precision: no sign is known of such a square.
+    `unit` is the size of the terms of the square: down to ``-SQUARE_TOLERANCE unit`` it counts as 0. NaN also where
+    both underflow, for the sign of the square is unknown then.
     """
     if _holds_objects(square):
         return _call_method("forgiving_root", square, unit, lambda square: square.sqrt())
@@ -96,14 +100,14 @@ def clamped_sqrt(square, unit):
 
 
 def guarded_divisor(root, unit):
-    """A root to divide by, not smaller than `unit`: rates and forces stay finite at their poles."""
+    """The divisor ``max(root, unit)``: rates and forces stay finite at their poles."""
     if _holds_objects(root):
         return _call_method("kept_off_zero", root, unit, lambda root: root)
     return namespace(root).maximum(root, unit)
 
 
 def sign(x):
-    """1.0 or -1.0, also of zero, which counts as approached from the side of its own sign."""
+    """1.0 or -1.0; a zero has the sign of its sign bit."""
     if _holds_objects(x):
         return np.frompyfunc(_sign_of_one, 1, 1)(x)
     xp = namespace(x)
@@ -113,19 +117,18 @@ def sign(x):
 
 
 def _sign_of_one(x):
-    """Of a recorded number or an enclosure; of a plain one among them too."""
     return np.copysign(1.0, x) if isinstance(x, float | int) else x.sign() if hasattr(x, "sign") else x.sgn()
 
 
 def stop_gradient(x):
-    """The same number, whose derivatives count as zero: for what a solution does not change with to first order."""
+    """The same number with zero derivatives, for values that do not change the solution to first order."""
     if _holds_objects(x):
         return np.frompyfunc(lambda part: part.held() if hasattr(part, "held") else part, 1, 1)(x)
     return x.held() if hasattr(x, "held") else x
 
 
 def offset_from_zero(distance, unit):
-    """A distance moved off zero by nothing that counts, so that it has a direction; an enclosure is left alone."""
+    """A distance plus a negligible offset, so that zero has a direction too; enclosures are unchanged."""
     if _holds_objects(distance):
         return _call_method("moved_apart", distance, unit, lambda distance: distance)
     if not isinstance(distance, float | int) and not hasattr(distance, "dtype"):
@@ -134,10 +137,9 @@ def offset_from_zero(distance, unit):
 
 
 def compensated_sum(*terms):
-    """Sum of up to six numbers, rounded as if once: what cancels leaves the digits that the numbers have.
+    """Sum of up to six numbers as if rounded once, so cancellation loses no digits; None terms are skipped.
 
-    What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
-    Absent numbers are none. Enclosures and others of any precision need no help from rounding.
+    Numbers of other kinds, enclosures for example, are summed plainly.
     """
     present = [term for term in terms if term is not None]
     if len(present) > MAX_SUM_TERMS:
@@ -154,15 +156,16 @@ def compensated_sum(*terms):
 
 
 def sum_corrections(*terms):
-    """Magnitudes of what a `total` adds up at last beside the sum; zero where that has not lost anything."""
+    """Sum of the magnitudes of the corrections in a `compensated_sum`; zero without rounding errors."""
     *parts, _ = vector_sum(vector_sum(terms))
     return sum(map(abs, parts))
 
 
 def length_error(length, x, y):
-    """What rounding took off the length of a vector: with it in a `total` that is as if exact.
+    """Rounding error of the length of a vector (x, y): (x^2 + y^2 - l^2) / (2 l) with exact squares.
 
-    In exact arithmetic there is none, so it has no derivatives. The squares are taken in two parts (Veltkamp, Dekker).
+    In a `compensated_sum`, length plus error is as if exact. The error has no derivatives: it is zero in exact
+    arithmetic.
     """
     recorded = next((part for part in (length, x, y) if hasattr(part, "rest_with")), None)
     if recorded is not None:
@@ -173,13 +176,13 @@ def length_error(length, x, y):
 
 
 def square_difference_terms(length, x, y):
-    """Terms of what the square of a length lacks of that of a vector, exactly."""
+    """Six terms whose exact sum is x^2 + y^2 - length^2."""
     (one, first), (two, second), (three, third) = map(two_square, (x, y, length))
     return one, first, two, second, -three, -third
 
 
 def two_square(a, split=None):
-    """Square of a number, rounded, and what that lost."""
+    """Rounded square of a number, and its rounding error."""
     if split is None:
         split = SINGLE_SPLITTER if _is_single(a) else SPLITTER
     whole, spread = a * a, split * a
@@ -197,7 +200,7 @@ def _are_floats(parts):
 
 
 def vector_sum(terms):
-    """What each sum of terms one after the other loses, and the last sum."""
+    """Rounding error of each partial sum, then the last sum (VecSum)."""
     whole, lost = terms[0], []
     for term in terms[1:]:
         whole, rest = two_sum(whole, term)
@@ -206,7 +209,7 @@ def vector_sum(terms):
 
 
 def two_sum(a, b):
-    """Sum of two numbers, and what it loses by rounding (Knuth)."""
+    """Rounded sum of two numbers, and its rounding error (Knuth)."""
     whole = a + b
     part = whole - a
     return whole, (a - (whole - part)) + (b - part)
@@ -217,7 +220,7 @@ def _holds_objects(x):
 
 
 def _call_method(method, x, unit, exactly):
-    """Apply a method of recorded numbers; enclosures and others of any precision need no help from rounding."""
+    """Values of a method of recorded numbers, element by element; of ``exactly(x)`` for numbers without it."""
 
     def of_one(x, unit):
         return getattr(x, method)(unit) if hasattr(x, method) else exactly(x)
@@ -226,6 +229,6 @@ def _call_method(method, x, unit, exactly):
 
 
 def stack(arrays):
-    """Arrays of one shape as one array, along a new first axis."""
+    """Arrays of one shape joined along a new first axis."""
     xp = namespace(arrays[0]) if arrays else np
     return np.array(arrays) if xp is np else xp.stack(arrays)  # np.stack takes three times as long

@@ -1,16 +1,16 @@
 """Zeros and minima of functions within brackets, many at once, by the methods of Chandrupatla.
 
-They return the bits of `find_root` and `find_minimum` of scipy.optimize.elementwise, which a test compares. They are
-here because importing scipy.optimize takes 0.4 s, longer than solving a case, and its loop four times as long as these.
+They return the same bits as `find_root` and `find_minimum` of scipy.optimize.elementwise; a test compares them.
+Importing scipy.optimize takes 0.4 s, longer than solving a case, and its loop takes four times as long.
 """
 
 import numpy as np
 
 EPSILON, TINY = np.finfo(float).eps, np.finfo(float).tiny
 MAX_ROOT_STEPS, MAX_MINIMUM_STEPS = 2000, 100
-"""Iterations after which the nearest value is returned; usual are 10 for a zero and 30 for a minimum."""
+"""Largest numbers of iterations; 10 are usual for a zero and 30 for a minimum."""
 GOLDEN_SECTION = 2.0 - (0.5 + 0.5 * 5.0**0.5)
-"""Part of the larger interval at which golden section evaluates."""
+"""Fraction of the larger interval at which golden section evaluates."""
 
 
 def find_roots(function, low, high, tolerance=4 * TINY):
@@ -57,7 +57,7 @@ def find_roots(function, low, high, tolerance=4 * TINY):
 
 
 def _interpolated(a, b, c, at_a, at_b, at_c):
-    """Part of the way from a to b at which to evaluate: by inverse quadratic interpolation where safe, else half."""
+    """Fraction from a to b of the next argument: inverse quadratic interpolation where safe, else bisection."""
     with np.errstate(all="ignore"):
         place, height = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
         safe = (1.0 - np.sqrt(1.0 - place) < height) & (height < np.sqrt(place))

@@ -1,4 +1,4 @@
-"""Files: CSV tables read to SI, and results written whole or not at all."""
+"""Files: CSV tables read in SI units, texts read with a size limit, results written whole or not at all."""
 
 import csv
 import io
@@ -13,22 +13,36 @@ import numpy as np
 
 from ..errors import CaseError, FileError
 from . import checks
-from .formatting import heading, parse_user_heading
-from .texts import find_on_disk
+from .formatting import heading, normalise, parse_user_heading
 from .units import NUMBER, factor, quoted
 
 MAX_TABLE_BYTES = 10_000_000
-"""Bytes that a table may have: half a million rows."""
+"""Largest size of a table: half a million rows."""
 _NUMBER = re.compile(NUMBER)
 
 
+def find_on_disk(path) -> Path:
+    """Path of a file, also where its name on disk has another Unicode form ("ä" as one character or as two).
+
+    Raises
+    ------
+    OSError, ValueError
+        The path cannot be looked for.
+    """
+    path = Path(path)
+    if path.name.isascii() or path.exists() or not path.parent.is_dir():
+        return path
+    same = (other for other in path.parent.iterdir() if normalise(other.name) == normalise(path.name))
+    return next(same, path)
+
+
 def read_text(path, largest):
-    """Text of a file in UTF-8, looked at before it is read: no pipe, device or folder, no more than `largest` bytes.
+    """Text of a regular file in UTF-8 of at most `largest` bytes.
 
     Raises
     ------
     CaseError
-        It is none of these, or no text.
+        It is a pipe, device or folder, larger, or no text.
     """
     try:
         path = find_on_disk(path)
@@ -61,8 +75,8 @@ def read_columns(path, wanted):
     ----------
     path : path
         Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
-        numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out. Before
-        the heading there may be comments, lines that begin with ``#``. Names are read as `formatting.tolerant` has it.
+        numbers have a decimal point, and every row has as many fields as the heading; empty lines are skipped.
+        Comments, lines that begin with ``#``, may precede the heading. `formatting.parse_user_heading` reads the names.
     wanted : dict
         Column name to SI unit.
 
@@ -93,12 +107,12 @@ def read_columns(path, wanted):
 
 
 def headings(path):
-    """Name and unit of each column of a CSV file, from its first line that is no comment."""
+    """Name and unit of each column of a CSV file, from its heading."""
     return list(map(parse_user_heading, _rows(path)[0]))
 
 
 def _column(headings, rows, name, wanted):
-    """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
+    """Values of a column in the SI unit wanted; `ValueError` if it is missing or unreadable."""
     names, units = zip(*map(parse_user_heading, headings), strict=True)
     places = [place for place, found in enumerate(names) if found == name]
     if len(places) != 1:
@@ -122,7 +136,7 @@ def _column(headings, rows, name, wanted):
 
 
 def _heading_advice(name, wanted, names, units):
-    """Advice on how to head the column that is meant by a name, empty if none is like it."""
+    """Advice on the heading of the column with the nearest name; empty if no name is near."""
     near = checks.nearest(name, names)
     if near is None:
         return ""
@@ -135,7 +149,7 @@ def _is_number(cell):
 
 
 def _rows(path):
-    """Headings, and each row that is not empty with the number of its line."""
+    """Headings, and each non-empty row with its line number."""
     text = read_text(path, MAX_TABLE_BYTES)
     lines = csv.reader(_without_comments(text), skipinitialspace=True, strict=True)
     try:
@@ -159,7 +173,7 @@ def _rows(path):
 
 
 def _without_comments(text):
-    """Lines of a text, those before the heading emptied, so that all keep their numbers."""
+    """Lines of a text; comments before the heading become empty lines, so line numbers stay."""
     before = True
     for line in io.StringIO(text, newline=""):
         before = before and line.lstrip()[:1] in ("", "#")
@@ -168,10 +182,10 @@ def _without_comments(text):
 
 @contextmanager
 def write_atomically(path):
-    """Path of a temporary file that takes the place of `path` when the block ends without an error.
+    """Path of a temporary file that replaces `path` when the block ends without an error.
 
-    What stands there keeps its permissions and, where that is allowed, its owner; through a symbolic link its target is
-    written. A file that may not be written is refused.
+    An existing file keeps its permissions and, where allowed, its owner; a symbolic link keeps its target. `FileError`
+    if the file cannot be written.
     """
     problem = write_problem(path)
     if problem:
@@ -197,7 +211,7 @@ def write_atomically(path):
 
 @contextmanager
 def _errors_naming(path):
-    """Errors of the system in writing, which name no file or a temporary one, name the file that is written."""
+    """Turn system errors of the block into a `FileError` that names the file written, not the temporary one."""
     try:
         yield
     except FileError:
@@ -207,7 +221,7 @@ def _errors_naming(path):
 
 
 def _create_empty(temporary, mode, path):
-    """An empty file that is new, in a folder made if missing; errors name what it is for."""
+    """Create an empty new file, and its folder if missing; errors name the final path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
@@ -216,12 +230,12 @@ def _create_empty(temporary, mode, path):
 
 
 def describe_os_error(error, elsewhere):
-    """What the system says of an error, without its number, behind the file that it names or `elsewhere`."""
+    """Text of a system error without its number: file (`elsewhere` if it names none) and reason."""
     return f"{error.filename or elsewhere}: {error.strerror or error}"
 
 
 def _copy_permissions(path, before):
-    """Give a file the permissions that another had, and its owner where this process may."""
+    """Give a file the permissions of another and, where allowed, its owner."""
     own = path.stat()
     if hasattr(os, "chown") and (own.st_uid, own.st_gid) != (before.st_uid, before.st_gid):
         with suppress(PermissionError):
@@ -230,15 +244,15 @@ def _copy_permissions(path, before):
 
 
 def write_problem(path, *, inputs=(), endings=()):
-    """Why a result cannot be written to this file, as a sentence, or None; to ask before the work that it takes.
+    """Why a result cannot be written to this file, as a sentence, or None; call it before a long calculation.
 
     Parameters
     ----------
     path : path
     inputs : sequence of paths
-        What is read and so must not be replaced, under whatever name.
+        Files that are read, so must not be replaced.
     endings : sequence of str
-        Those a file may have; pipes and devices have none.
+        Allowed endings; pipes and devices need none.
     """
     if not isinstance(path, str | os.PathLike):
         return f"{path!r} is no name of a file: give a text or a path"
@@ -263,7 +277,7 @@ def write_problem(path, *, inputs=(), endings=()):
 
 
 def folder_problem(path):
-    """What is wrong with what is given as a folder for results, as a sentence, or None."""
+    """Fault of an argument `folder` for results, as a sentence, or None."""
     if not isinstance(path, str | os.PathLike):
         return f"folder must be a path, got {checks.shown(path)}"
     if not os.fspath(path):
@@ -272,7 +286,7 @@ def folder_problem(path):
 
 
 def folder_write_problem(path):
-    """Why results cannot be written into this folder, as a sentence, or None; it need not exist."""
+    """Why results cannot be written into this folder, as a sentence, or None; a missing folder is no fault."""
     path = Path(path)
     try:
         standing = next(place for place in (path.absolute(), *path.absolute().parents) if os.path.lexists(place))

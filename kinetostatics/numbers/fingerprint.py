@@ -1,13 +1,13 @@
 """Fingerprints of user code and of designs: equal only where both compute the same.
 
-`key_of` and `of_class` give keys of functions and classes within a process, for programs that are kept. A key holds
-code and the constants that it refers to: globals, closures, defaults, attributes of functions, modules and classes. It
-is None where something may change unseen, as a list's items may.
+`key_of` and `class_key` return keys of functions and classes within a process, for cached programs. A key holds code
+and the constants it refers to: globals, closures, defaults, attributes of functions, modules and classes. It is None
+where a value may change unseen, as the items of a list may.
 
-`digest` gives a text that is the same in every session, for sweeps that are resumed: of a case's variant, a scene or a
-function. Of a function it covers the compiled code with all that it refers to: constants, defaults, closures, what a
-`partial` binds, what a decorator wraps, the object of a method, and the values and functions of its own module. Of
-other modules it covers name and version only, and nothing that is looked up by text.
+`digest` returns a text that is the same in every session, for resumed sweeps: of a variant, a scene or a function. For
+a function it covers the compiled code and all it refers to: constants, defaults, closures, arguments of a `partial`,
+the function inside a decorator, the object of a method, values and functions of its own module. Of other modules it
+covers name and version only, and no attribute that is looked up by text.
 """
 
 import hashlib
@@ -21,12 +21,12 @@ import numpy as np
 
 LIBRARY = __name__.partition(".")[0]
 TRUSTED_PACKAGES = (LIBRARY, "numpy", "math", "pint", "builtins", "typing", "abc")
-"""Packages whose functions and classes are taken as they are."""
+"""Packages whose functions and classes do not change within a process."""
 MISSING = "missing"
 GENERATED_METHODS = {
     f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]
 }
-"""Methods that dataclasses are given, and those that only make an item: they compute nothing afterwards."""
+"""Methods that construct or compare dataclass items; no calculation calls them afterwards."""
 
 CODE_ATTRIBUTES = (
     "co_code",
@@ -40,7 +40,7 @@ CODE_ATTRIBUTES = (
     "co_kwonlyargcount",
     "co_flags",
 )
-"""What of compiled code decides what it does; not where it was written."""
+"""Attributes of compiled code that decide what it does; not its file and lines."""
 
 IGNORED_ATTRIBUTES = (
     "__dict__",
@@ -51,11 +51,14 @@ IGNORED_ATTRIBUTES = (
     "__firstlineno__",
     "__slots__",
 )
-"""What stands in a class without deciding what it does."""
+"""Entries of a class that do not decide what it does."""
 
 
 def key_of(value, names=(), above=()):
-    """Key of a constant, of a function, or of a class of which some names are used; None where it may change unseen."""
+    """Key of a constant, a function, or the used `names` of a module; None where a value may change unseen.
+
+    `above` holds the objects that contain `value`; a reference to one of them becomes its depth.
+    """
     if isinstance(value, bool | int | float | complex | str | bytes | None):
         return type(value), value, np.copysign(1.0, value) if isinstance(value, float) else None
     if any(value is other for other in above):
@@ -81,7 +84,7 @@ def key_of(value, names=(), above=()):
 
 
 def class_key(kind, above=()):
-    """Key of all that classes of the user's say, those that a class is derived from among them."""
+    """Key of a user's class and its own base classes: methods, constants, declarations."""
     return _none_or_all(*(part for base in kind.__mro__ if not _is_trusted(base) for part in _class_keys(base, above)))
 
 
@@ -97,7 +100,7 @@ def _class_keys(base, above):
 
 
 def _attribute_key(value, above):
-    """Key of a class's attribute, which may be a table of declarations."""
+    """Key of a class attribute, which may be a table of declarations."""
     if isinstance(value, dict):
         return _none_or_all(dict, *(_attribute_key(part, above) for pair in value.items() for part in pair))
     if isinstance(value, list | tuple | set | frozenset):
@@ -118,7 +121,7 @@ def _function_key(function, above):
 
 
 def _closed_over(function):
-    """Values of a function's closure; None for a name that has no value yet."""
+    """Values in the closure of a function; None for a name without a value yet."""
     values = []
     for cell in function.__closure__ or ():
         try:
@@ -129,13 +132,13 @@ def _closed_over(function):
 
 
 def _names(code):
-    """Names that code, and functions within it, take from elsewhere."""
+    """Global and attribute names in code and its inner functions."""
     inner = (part for part in code.co_consts if isinstance(part, CodeType))
     return tuple(dict.fromkeys([*code.co_names, *(name for part in inner for name in _names(part))]))
 
 
 def _module_keys(module, names, above):
-    """What of a module is used; its functions are taken as they are."""
+    """Keys of the used `names` of a module; its functions stand for themselves."""
     if module.__name__.partition(".")[0] in TRUSTED_PACKAGES:
         return
     for name in names:
@@ -149,7 +152,7 @@ def _is_trusted(item):
 
 
 def _none_or_all(*parts):
-    """The parts, or None if one of them is."""
+    """The parts, or None if any part is None."""
     return None if any(part is None for part in parts) else parts
 
 
@@ -159,7 +162,7 @@ def digest(item):
 
 
 class _Digests:
-    """Digests of objects by what they hold, the same for equal ones; one that holds itself is told by its depth."""
+    """Digests of objects by content; an object inside itself counts by its depth."""
 
     def __init__(self):
         self._above, self._done = {}, {}
@@ -173,11 +176,11 @@ class _Digests:
             self._above[id(item)] = len(self._above)
             found = _hash_texts(_versioned_name(type(item)), *self._parts(item))
             del self._above[id(item)]
-            self._done[id(item)] = found, item  # kept, for another would take its id
+            self._done[id(item)] = found, item  # keeps the item alive, so that no other gets its id
         return self._done[id(item)][0]
 
     def _parts(self, item):
-        """What tells an object from others of its type."""
+        """Texts and digests that distinguish an object from others of its type."""
         if isinstance(item, np.ndarray | np.generic):
             whole = np.asarray(item)
             held = self._all(whole.ravel().tolist()) if whole.dtype.hasobject else [_sha256(whole.tobytes())]
@@ -219,7 +222,7 @@ def _sha256(content):
 
 
 def _versioned_name(item):
-    """Name of a module, class or function, with the version of what it comes from."""
+    """Name of a module, class or function, with the version of its package."""
     module = item.__name__ if isinstance(item, ModuleType) else str(getattr(item, "__module__", ""))
     version = getattr(sys.modules.get(_package(module)), "__version__", "")
     return f"{module}.{getattr(item, '__qualname__', None) or getattr(item, '__name__', '')} {version}"
@@ -230,7 +233,7 @@ def _package(module):
 
 
 def _is_library(module):
-    """Whether a module is Python's, ours, or installed, and so told by a version."""
+    """Whether a module is Python's, ours, or installed, so that its version identifies it."""
     if module == "__main__":
         return False
     file = getattr(sys.modules.get(module), "__file__", None) or ""
@@ -239,7 +242,7 @@ def _is_library(module):
 
 
 def _function_parts(function):
-    """Code of a function, what it holds and, unless it is a library's, what it names of its own module."""
+    """Code of a function, its defaults, closure and attributes, and the globals of its own module."""
     code, defaults = function.__code__, (function.__defaults__, function.__kwdefaults__)
     return code, *defaults, _closed_over(function), vars(function), _own_globals(function)
 
@@ -253,21 +256,21 @@ def _own_globals(function):
 
 
 def _is_own(item, module):
-    """Whether something is a value, or written in this module."""
+    """Whether a global is a value, or a function or class of this module."""
     if isinstance(item, ModuleType):
         return False
     return not callable(item) or getattr(item, "__module__", module) == module
 
 
 def _class_attributes(kind):
-    """What is written in a class and in those it inherits from, but for a library's."""
+    """Attributes of a class and its bases, libraries' bases excluded."""
     written = [vars(base) for base in kind.__mro__ if not _is_library(base.__module__)]
     return [{name: value for name, value in table.items() if name not in IGNORED_ATTRIBUTES} for table in written]
 
 
 def _object_parts(item):
-    """Class and state of any other object; its text where it has none, or is one of Python's own."""
-    wrapped = getattr(item, "__wrapped__", None)  # of what is cached or compiled
+    """Class and state of any other object; its text if it has no state or belongs to Python's library."""
+    wrapped = getattr(item, "__wrapped__", None)  # of a cached or compiled function
     if is_dataclass(item):
         return type(item), {field.name: getattr(item, field.name) for field in fields(item)}
     slots = [name for kind in type(item).__mro__ for name in _slots(kind) if hasattr(item, name)]

@@ -1,41 +1,41 @@
-"""Numbers, units and headings as people read them: in every table, text and explanation no digit that is not known.
+"""Numbers, units and headings as text for people: no table, text or explanation shows a digit that is not known.
 
-This module alone decides how many digits a number has; command line, report, explanations and frames call it. Messages
-of errors write the few numbers that they name themselves, with six digits as here.
+This module alone decides the number of digits; command line, report, explanations and frames call it. Error messages
+format their few numbers themselves, with six digits as here.
 """
 
 import math
 import re
+import unicodedata
 from decimal import ROUND_CEILING, Context, Decimal
 
 from . import checks
-from .texts import normalise
 from .units import factor
 
 DIGITS = 6
-"""Significant digits that are shown, at most."""
+"""Largest number of significant digits shown."""
 MAX_PLAIN_NUMBER = 1e9
-"""Size up to which a number is written without a power of ten."""
+"""Size below which a number has no power of ten."""
 ANGLE_DECIMALS = 3
-"""Decimals of a crank angle in degrees: as many as six digits of a turn have."""
+"""Decimals of a crank angle in degrees: six digits of a full turn."""
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
-"""Digits of what no reader takes so exactly, by column or row."""
+"""Significant digits of rough quantities, by column or row."""
 UNIT_SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
 _HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
 _ROUND_BRACKETS = re.compile(r"(.*?)\s*\(([^()]*)\)")
-"""A heading with its unit in brackets that are not meant for it."""
+"""A heading with its unit in round brackets."""
 
 
 def number(value, digits=DIGITS, bound=0.0, infinity="inf"):
-    """A number as text; "" for NaN, a text as it is.
+    """A number as text; "" for NaN, a text unchanged.
 
     Parameters
     ----------
     value : float or str
     digits : int
-        Significant digits wanted.
+        Significant digits, at most `DIGITS`.
     bound : float
-        By how much it may be wrong, if that is known: it has no digit below the first of this, and is 0 within it.
+        Bound on its error: no digit below the first digit of the bound is shown, and a number within it is "0".
     infinity : str
         Sign for infinity.
     """
@@ -67,32 +67,32 @@ def power_of(value):
 
 
 def round_bound_up(bound):
-    """A bound with two digits, rounded up."""
+    """A bound as text with two digits, rounded up."""
     return number(float(Decimal(float(bound)).normalize(Context(2, ROUND_CEILING))), 2)
 
 
 def round_uncertainty_up(uncertainty):
-    """An uncertainty with two digits, rounded up, but not for less than a thousandth of it: 0.1 mm stay 0.1 mm."""
+    """An uncertainty as text with two digits, rounded up unless by less than a thousandth: 0.1 mm stay 0.1 mm."""
     return round_bound_up(0.999 * uncertainty)
 
 
 def angle(degrees):
-    """A crank angle in degrees as text; "" for NaN, a text as it is."""
+    """A crank angle in degrees as text; "" for NaN, a text unchanged."""
     return number(degrees if isinstance(degrees, str) else round(degrees, ANGLE_DECIMALS))
 
 
 def shortest_exact(value):
-    """A number as short as tells it exactly."""
+    """Shortest text that gives the number exactly."""
     return repr(value).removesuffix(".0")
 
 
 def digits_of(row, column=""):
-    """Digits in which a number is told."""
+    """Significant digits of a number in this row and column."""
     return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
 
 
 def pretty_unit(unit):
-    """A unit with raised exponents and dots between its parts: "kg·m²", "m/s²"."""
+    """A unit with superscripts and dots: "kg·m²", "m/s²"."""
     if unit in ("", "1"):
         return ""
     over = [_pretty_product(part) for part in unit.replace("**", "^").split("/")]
@@ -108,17 +108,21 @@ def heading(name, unit):
     return f"{name} [{unit}]"
 
 
+def normalise(text):
+    """Text in Unicode's composed form (NFC), in which names are compared; any other value unchanged."""
+    return unicodedata.normalize("NFC", text) if isinstance(text, str) else text
+
+
 def parse_heading(text):
-    """Name and unit of a heading; the unit is empty where there is none."""
+    """Name and unit of a heading "name [unit]"; the unit may be empty."""
     found = _HEADING.fullmatch(str(text).strip())
     return (found[1].strip(), (found[2] or "").strip()) if found else (str(text).strip(), "")
 
 
 def parse_user_heading(text):
-    """Name and unit of a heading of a user's file, as the library writes them.
+    """Name and unit of a heading in a user's file: "Crank angle (deg)" gives "crank_angle", "deg".
 
-    Capital letters, blanks and hyphens in the name are no difference, and the unit may stand in round brackets:
-    "Crank angle (deg)" heads crank_angle.
+    Case, blanks and hyphens in the name do not matter, and the unit may stand in round brackets.
     """
     name, unit = parse_heading(text)
     rounded = None if unit else _ROUND_BRACKETS.fullmatch(name)
@@ -127,16 +131,16 @@ def parse_user_heading(text):
 
 
 def si_columns(columns, known=None, unknown=None):
-    """Name and factor to SI of each column of a table of designs, and what is wrong with them.
+    """Name and factor to SI of each column of a table of designs, and their faults.
 
     Parameters
     ----------
     columns : sequence of str
         Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
     known : mapping of name to SI unit, optional
-        What there is to vary; any name and unit will do if not given.
+        Numbers that can vary; without it any name and unit is allowed.
     unknown : function, optional
-        Says what is wrong with a name that is none of these.
+        From a name that is not known to a sentence.
 
     Returns
     -------
@@ -165,7 +169,7 @@ def si_columns(columns, known=None, unknown=None):
 
 
 def _round_bracket_problem(text, known):
-    """What is wrong with the heading of a known name that has its unit in round brackets, or None."""
+    """Fault of a known name with its unit in round brackets, as a sentence, or None."""
     found = _ROUND_BRACKETS.fullmatch(text)
     if not found or found[1] not in known:
         return None

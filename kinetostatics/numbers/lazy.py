@@ -1,4 +1,7 @@
-"""What is loaded or computed when first used, and kept: public names, properties, pyplot."""
+"""Lazy loading and caching: public names, cached properties, pyplot.
+
+It imports nothing heavy, for the package itself loads it first.
+"""
 
 import functools
 import os
@@ -14,7 +17,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class cached_property(functools.cached_property):  # noqa: N801  spelled as in the standard library
-        """That of Python 3.12, which takes no lock: in Python 3.11 the lock costs more than most of what is kept."""
+        """That of Python 3.12 without a lock: the lock of 3.11 costs more than most values."""
 
         def __get__(self, instance, owner=None):
             if instance is None:
@@ -28,7 +31,7 @@ __all__ = ["cached_property", "public_name", "pyplot"]
 
 @functools.cache
 def _stub(package):
-    """Function that loads a name of a package's stub `__init__.pyi`, and the names."""
+    """Loader of the public names in the stub `__init__.pyi` of a package, and these names."""
     import lazy_loader
 
     load, _, names = lazy_loader.attach_stub(package, sys.modules[package].__file__)
@@ -36,13 +39,13 @@ def _stub(package):
 
 
 def public_name(package, name, otherwise=lambda name: ""):
-    """Public name of a package as its stub says where it is; for ``"__all__"`` the list of names.
+    """Object of a public name of a package, loaded from where its stub says; for ``"__all__"`` the list of names.
 
     Parameters
     ----------
     package, name : str
     otherwise : function
-        What the error says of a name that is not near any.
+        From a name that is near no public name to the end of the error message.
     """
     missing = f"module {package!r} has no attribute {name!r}"
     if name.startswith("_") and name != "__all__":  # Python itself asks for these
@@ -65,7 +68,7 @@ def public_name(package, name, otherwise=lambda name: ""):
 
 
 def pyplot():
-    """Module matplotlib.pyplot; refused where the backend that MPLBACKEND names cannot be loaded."""
+    """Module matplotlib.pyplot; `ParameterError` if the backend in MPLBACKEND cannot be loaded."""
     backend = os.environ.get("MPLBACKEND", "")
     if "matplotlib.pyplot" not in sys.modules and backend:
         try:

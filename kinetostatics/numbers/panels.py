@@ -1,8 +1,8 @@
-"""A periodic function as Chebyshev polynomials on panels, which grow narrower where it needs it and end at its kinks.
+"""A periodic function as Chebyshev polynomials on panels: narrow where the function needs it, ending at its kinks.
 
-As chebfun does (Battles and Trefethen, SIAM J. Sci. Comput. 25, 2004), by values at points inside the panels only, so
-that a jump at the end of one belongs to none. A kink or jump is found where panels would have to become tiny: it is
-between the curves that continue from both sides.
+As chebfun does (Battles and Trefethen, SIAM J. Sci. Comput. 25, 2004). Nodes lie inside the panels, so a jump at the
+end of a panel belongs to no panel. Where panels would become tiny, bisection locates the kink between the curves that
+continue from both sides.
 """
 
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ from ..errors import ParameterError
 
 PANEL_DEGREE = 16
 INITIAL_PANELS = 16
-"""Panels to begin with."""
+"""Number of panels at first."""
 MAX_HALVINGS = 14
-"""How many times one is halved before it is taken to hold a kink."""
+"""Halvings of a panel before it counts as one with a kink."""
 COEFFICIENT_TOLERANCE = 1e-12
-"""Last coefficients, relative to the largest value, from which on a panel is narrow enough."""
+"""Size of the last coefficients, relative to the largest value, at which a panel is narrow enough."""
 MAX_ROUGH_PANELS = 400
-"""Panels at once that may be too wide; a function with more of them is rough everywhere."""
+"""Largest number of unresolved panels; a function with more is rough everywhere."""
 TAIL_COEFFICIENTS = 3
 CONTINUATION_WIDTH = 0.01
-"""Width of the panels, relative to the period, that continue a curve up to a kink."""
+"""Width, relative to the period, of the panels that extrapolate a curve to a kink."""
 _NODES = np.cos(np.pi * (np.arange(PANEL_DEGREE + 1) + 0.5) / (PANEL_DEGREE + 1))[::-1]
 _FIT = np.linalg.inv(chebyshev.chebvander(_NODES, PANEL_DEGREE))
 
@@ -38,7 +38,7 @@ class Panels:
 
     @classmethod
     def of(cls, function, period, breaks=()):
-        """Panels of a function of arrays; `breaks` are places where a kink is known to be.
+        """Panels of a function of arrays; `breaks` are the known kinks.
 
         Raises
         ------
@@ -64,11 +64,11 @@ class Panels:
         return float(self.edges[-1] - self.edges[0])
 
     def __call__(self, angle):
-        """Values at places anywhere."""
+        """Values at any arguments."""
         return self.at(angle, 0)[0]
 
     def at(self, angle, order):
-        """Value and derivatives up to an order at places anywhere, one after the other."""
+        """Tuple of value and derivatives up to an order, at any arguments."""
         angle = self.edges[0] + np.mod(np.asarray(angle, dtype=float) - self.edges[0], self.period)
         place = np.clip(np.searchsorted(self.edges, angle, side="right") - 1, 0, len(self.coefficients) - 1)
         start, width = self.edges[place], np.diff(self.edges)[place]
@@ -86,14 +86,14 @@ class Panels:
         return float(whole @ widths) / (2.0 * self.period)
 
     def plus(self, constant):
-        """The same and a constant."""
+        """Panels of the function plus a constant."""
         coefficients = self.coefficients.copy()
         coefficients[:, 0] += constant
         return Panels(self.edges, coefficients)
 
     @property
     def integral(self):
-        """Integral from the first edge on, of a function whose mean is 0."""
+        """Panels of the integral from the first edge, for a function of zero mean."""
         half = np.diff(self.edges)[:, None] / 2.0
         found = chebyshev.chebint(self.coefficients, lbnd=-1, axis=1) * half
         found[1:, 0] += np.cumsum(found.sum(axis=1))[:-1]
@@ -101,7 +101,7 @@ class Panels:
 
     @property
     def roots(self):
-        """Places where it changes its sign, jumps among them, in order."""
+        """Rising arguments at which the sign changes, also at a jump."""
         found = []
         for start, stop, coefficients in zip(self.edges[:-1], self.edges[1:], self.coefficients, strict=True):
             t = chebyshev.chebroots(chebyshev.chebtrim(coefficients, 1e-14 * np.max(np.abs(self.coefficients))))
@@ -114,7 +114,7 @@ class Panels:
 
 
 def _clenshaw(coefficients, t):
-    """Clenshaw's recurrence with coefficients (N, degree + 1) at N places, of any shape."""
+    """Chebyshev series by Clenshaw's recurrence: coefficients (..., degree + 1) at t (...)."""
     ahead = after = np.zeros_like(t)
     for order in range(coefficients.shape[-1] - 1, 0, -1):
         ahead, after = coefficients[..., order] + 2.0 * t * ahead - after, ahead
@@ -122,12 +122,12 @@ def _clenshaw(coefficients, t):
 
 
 def panel_nodes(low, high):
-    """Where values of a panel are taken, rising."""
+    """Rising nodes of a panel."""
     return low + (_NODES + 1.0) / 2.0 * (high - low)
 
 
 def _refine(function, edges, depth=MAX_HALVINGS):
-    """Coefficients by the start of each panel, and those that stay rough, neighbours as one."""
+    """Coefficients by the start of each panel, and the intervals that stay rough, neighbours joined."""
     waiting = list(pairwise(edges))
     found: dict[float, np.ndarray] = {}
     rough, size = [], 0.0
@@ -155,7 +155,7 @@ def _refine(function, edges, depth=MAX_HALVINGS):
 
 
 def _find_kink(function, low, high, period):
-    """The place between two curves, by halving: which of them continues there."""
+    """Argument of the kink, by bisection: the value belongs to the curve from the left or the right."""
     width = CONTINUATION_WIDTH * period
     sides = []
     for start, stop in ((low - width, low), (high, high + width)):

@@ -1,17 +1,11 @@
-"""Parameter trees: what a scene is apart from its numbers, the numbers, and both put together again.
+"""Parameter trees: a scene is flattened into a structure and its numbers, and put together again.
 
-A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, tells the kinds of parts,
-names, assemblies, and what is absent: a plain zero. Its *leaves* are the numbers, in the order of the structure, each a
-float or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are kept by
-structure, so that new numbers never make a new program.
-
-Scenes taken apart: the structure of each, and its leaves, in one pass by functions written for each type.
-
-It is done for every scene that is solved, so it must take microseconds.
-
-What all items of one structure have in common: found once, and kept by structure.
-
-What a class may still say when it derives from another: two attributes that say the same belong to one class.
+A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, holds the kinds of parts,
+names, assembly modes, and zeros, which count as absent. Its *leaves* are the numbers in the order of the structure,
+each a float or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are
+cached by structure, so new numbers never make a new program. `flatten` runs for every scene that is solved, so it takes
+microseconds: one function per type, written for its fields. `StructureCache` keeps results that all items of one
+structure share.
 """
 
 import itertools
@@ -28,7 +22,7 @@ from .lazy import cached_property
 
 
 class _Mark:
-    """Stands in a structure where a leaf was taken out."""
+    """Place of a leaf in a structure."""
 
     def __init__(self, name):
         self._name = name
@@ -42,23 +36,23 @@ class _Mark:
 
 NUMBER, TABLE, PART = _Mark("NUMBER"), _Mark("TABLE"), _Mark("PART")
 STRUCTURAL_TYPES = (bool, int, str)
-"""Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
+"""Types of dataclass fields that belong to the structure; metadata ``structural`` marks others."""
 FLOATS = frozenset((float,))
 
 
 class KeptZero(float):
-    """A zero that stays a leaf, so that it can be given another value."""
+    """A zero that stays a leaf, so that it can change."""
 
 
 class Axis(tuple):
-    """Unit vector along an axis, which belongs to the structure, so that what it turns is known to be exact."""
+    """Unit vector along an axis; it belongs to the structure, so rotations by it are exact."""
 
     @staticmethod
     def of(pair):
-        """A pair, as an axis if it is one of plain numbers."""
+        """The pair as an `Axis` if it is a unit vector of plain numbers along one, else unchanged."""
         if set(map(type, pair)) != FLOATS or sorted(map(abs, pair)) != [0.0, 1.0]:
             return pair
-        return Axis(part + 0.0 for part in pair)  # structures that are equal have one zero, which has no sign
+        return Axis(part + 0.0 for part in pair)  # no -0.0, so that equal structures are the same
 
 
 class Leaves:
@@ -70,9 +64,9 @@ class Leaves:
     tables : list of array
         With a value for each crank angle.
     parts : list
-        That declare `TABULATED`, as sampled cams do: they are computed beforehand, not recorded.
+        Parts that declare `TABULATED`, as sampled cams do: they are evaluated beforehand, not recorded.
     lasting : bool
-        Whether the structure tells all else; False with objects of the user's that may change unseen.
+        Whether structure and leaves hold everything; False with user objects that may change unseen.
     """
 
     def __init__(self):
@@ -80,7 +74,7 @@ class Leaves:
 
     @cached_property
     def are_plain(self):
-        """Whether all are plain numbers, and the structure tells all else."""
+        """Whether all leaves are floats, and structure and leaves hold everything."""
         return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
 
     def shape(self, angles):
@@ -91,14 +85,14 @@ class Leaves:
         return np.broadcast_shapes(angles, *arrays) if arrays else angles
 
     def with_numbers(self, numbers):
-        """The same with other numbers, in the same order."""
+        """Copy with other numbers, in the same order."""
         other = Leaves()
         other.numbers, other.tables, other.parts, other.lasting = numbers, self.tables, self.parts, self.lasting
         return other
 
 
 def unflatten(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
-    """The item of a structure, with leaves from functions that are called in order; nothing is checked anew."""
+    """Item of a structure; the functions are called in order, for each leaf one; no checks."""
     if structure is NUMBER:
         return number()
     if structure is TABLE:
@@ -118,12 +112,12 @@ def unflatten(structure, number: Callable[[], Any], table: Callable[[], Any], pa
 
 
 def _filled(kind: Any, values):
-    """Item of a dataclass with values in its fields, nothing checked."""
+    """Item of a dataclass with these values in the order of its fields, without checks."""
     return construct_unchecked(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
 
 
 class Opaque:
-    """A function or an object that is compared by what it is made of, and never looked into."""
+    """A function or object in a structure, compared by its key alone."""
 
     __slots__ = ("_key", "item")
 
@@ -138,9 +132,9 @@ class Opaque:
 
 
 def map_numbers(item, number, special=None):
-    """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew.
+    """Copy of an item with ``number(value)`` in place of each leaf, without checks.
 
-    `special` holds by type functions that copy an item in their own way.
+    `special` maps types to functions that copy items of these types instead.
     """
     for kind, copied in (special or {}).items():
         if isinstance(item, kind):
@@ -162,41 +156,38 @@ def map_numbers(item, number, special=None):
 
 
 def construct_unchecked(kind: Any, /, **values):
-    """Item of a dataclass with values in its fields, nothing checked."""
+    """Item of a dataclass with values by field, without checks."""
     whole = object.__new__(kind)
     whole.__dict__.update(values)
     return whole
 
 
 def replace_unchecked(item, **changes):
-    """Copy of a dataclass with some fields changed and nothing checked."""
+    """Copy of a dataclass with some fields changed, without checks."""
     return construct_unchecked(
         type(item), **{field.name: getattr(item, field.name) for field in fields(item)} | changes
     )
 
 
 def is_structural(field):
-    """Whether a field of a dataclass belongs to the structure, and is no number."""
+    """Whether a dataclass field belongs to the structure and holds no number."""
     return field.type in STRUCTURAL_TYPES or bool(field.metadata.get("structural"))
 
 
 def field_kinds(kind):
-    """Names of the fields of a dataclass, and whether each belongs to the structure."""
+    """Name of each field of a dataclass, and whether it belongs to the structure."""
     for field in fields(kind):
         yield field.name, is_structural(field)
 
 
 def broadcast_shape(shape, *parts):
-    """Shape of results that depend on these parts too: numbers, arrays, or parameters with a `batch`."""
+    """Shape of results that also depend on these numbers, arrays, or parameters with a `batch`."""
     more = [found for part in parts if (found := getattr(part, "batch", None) or getattr(part, "shape", ()))]
     return np.broadcast_shapes(shape, *more) if more else shape
 
 
-# How each type is taken apart
-
-
 def flatten(item, leaves: Leaves):
-    """Structure of an item; its leaves are appended to `leaves`."""
+    """Structure of an item; appends its leaves to `leaves`."""
     kind = type(item)
     if kind is float:
         if item == 0.0:
@@ -224,7 +215,7 @@ def _table(item, leaves):
 
 
 def _flatten_constants(item, leaves):
-    """Array of one axis that has nothing to do with crank angles: what it holds belongs to the structure."""
+    """Array of one axis that is no function of the crank angle: its values belong to the structure."""
     if item.ndim == 1 and item.size > 1:
         return Opaque(item, (item.shape, item.tobytes()))
     return flatten(item, leaves)
@@ -263,7 +254,7 @@ def _flatten_kept_zero(item, leaves):
 
 
 def _flatten_by_content(item, leaves):
-    """What is compared by what it is made of, or taken apart each time where that may change unseen."""
+    """Function or object compared by its key; without a key it may change unseen."""
     key = key_of(item)
     return _flatten_by_identity(item, leaves) if key is None else Opaque(item, key)
 
@@ -289,7 +280,7 @@ _CONSTANT_TYPES = frozenset((bool, int, float, str, type(None)))
 
 
 def _new_flattener(kind):
-    """How items of a type are taken apart, found once: dataclasses and named tuples field by field."""
+    """Function that flattens items of a type, made once: dataclasses and named tuples field by field."""
     if getattr(kind, "TABULATED", False):
         taker = _flatten_tabulated
     elif is_dataclass(kind):
@@ -303,7 +294,10 @@ def _new_flattener(kind):
 
 
 def _dataclass_flattener(kind):
-    """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
+    """Function that flattens items of a dataclass.
+
+    Its source is written for the fields, without loops and look-ups: it runs for each part of each scene solved.
+    """
     over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
     for place, (name, structural) in enumerate(field_kinds(kind)):
@@ -336,13 +330,13 @@ def _dataclass_flattener(kind):
 
 
 def _float_lines(value, indent):
-    """Lines that take a float."""
+    """Source lines that flatten a float."""
     lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
     return [" " * indent + line for line in lines]
 
 
 def _with_class_key(kind, taker):
-    """The same for a class of the user's: what its methods and constants are belongs to the structure."""
+    """The same for a user's class: its methods and constants belong to the structure."""
 
     def whole(item, leaves):
         key = class_key(kind, (kind,))
@@ -359,23 +353,23 @@ def _of_named_tuple(kind):
 
 
 MAX_STRUCTURES = 256
-"""Structures that are known at a time; the longest unused goes first."""
+"""Largest number of cached structures; the least recently used goes first."""
 
 
 class LeafIndex(int):
-    """Place of a number among the leaves of an item."""
+    """Index of a number among the leaves of an item."""
 
 
 class StructureCache:
-    """A structure, as `parameter_tree.taken_apart` gives it, and what is known of all items that have it.
+    """A structure, as `flatten` returns it, and cached results that hold for all its items.
 
     Attributes
     ----------
     structure : tuple
     known : dict
-        Whatever was found to hold for all of them, by the question.
+        Results by the function that computes them.
     used : int
-        When it was last asked for, counted in such questions.
+        Count of look-ups at its last use.
     """
 
     def __init__(self, structure):
@@ -386,12 +380,12 @@ class StructureCache:
 
     @cached_property
     def numbered(self) -> Any:
-        """The item with the place of each number among its leaves, a `Numbered`, instead of it."""
+        """The item with a `LeafIndex` in place of each number."""
         places = itertools.count()
         return unflatten(self.structure, lambda: LeafIndex(next(places)), lambda: None, lambda: None)
 
     def answer(self, question):
-        """What ``question(kind)`` found, asked once."""
+        """Result of ``question(self)``, computed once."""
         if question not in self.known:
             self.known[question] = question(self)
         return self.known[question]
@@ -403,14 +397,14 @@ _uses = itertools.count()
 
 
 def structure_cache(structure) -> StructureCache:
-    """Kind of a structure that tells all."""
+    """Cache of a structure."""
     found = _caches.get(structure) or _new_cache(structure)
     found.used = next(_uses)
     return found
 
 
 def _new_cache(structure):
-    """A new kind, or that which another thread has added meanwhile."""
+    """New cache of a structure, or the one that another thread has just added."""
     with _lock:
         found = _caches.setdefault(structure, StructureCache(structure))
         found.used = next(_uses)
@@ -421,22 +415,22 @@ def _new_cache(structure):
 
 
 def forget():
-    """Find all anew."""
+    """Drop all cached structures."""
     with _lock:
         _caches.clear()
 
 
 def come_from_one_class(kind, name, *others):
-    """Whether the class that last gives one of `others` to a kind gives `name` beside them.
+    """Whether `name` comes from the same class as the nearest definition of one of `others`.
 
-    One that is derived from it, and gives only the others anew, makes what `name` says of them untrue.
+    A subclass that overrides `push` alone makes an inherited `rate` wrong.
 
     >>> class Spring:
     ...     def push(self): ...
     ...     def rate(self): ...
     >>> class Stop(Spring):
     ...     def push(self): ...
-    >>> say_together(Spring, "rate", "push"), say_together(Stop, "rate", "push")
+    >>> come_from_one_class(Spring, "rate", "push"), come_from_one_class(Stop, "rate", "push")
     (True, False)
     """
     giving = (vars(one) for one in kind.__mro__ if not vars(one).keys().isdisjoint(others))

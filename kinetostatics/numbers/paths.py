@@ -1,9 +1,7 @@
-"""Names of the numbers in a parameter tree: "crank_length", "slider2.mass", "cam.centre.x", as in case files.
+"""Paths of the numbers in a parameter tree: "crank_length", "slider2.mass", "cam.centre.x", as in case files.
 
-A part tells by the rules of its fields (`checks.fields`) what its numbers are, with their units, and by `PATHS` what a
-field is called where that is not its name; "" stands for a part whose fields are called as they are.
-
-Parameters that may be arrays of designs, and the shape that these have in common.
+The rules of a part name its numbers and their units. `PATHS` of a part renames fields; "" drops the field's name.
+`Batched` parameters may be arrays of designs.
 """
 
 from dataclasses import fields, is_dataclass
@@ -13,13 +11,13 @@ import numpy as np
 
 from ..errors import ParameterError
 from . import checks
-from .checks import fitting
+from .checks import broadcast_problem
 from .lazy import cached_property
 from .parameter_tree import Leaves, broadcast_shape, flatten, is_structural
 
 
 class Place(NamedTuple):
-    """Where a number stands in a tree: names of fields and numbers of items, from the outermost; and its rule."""
+    """Place of a number in a tree: field names and item indices from the outermost, and its rule."""
 
     steps: tuple[str | int, ...]
     rule: checks.Number
@@ -31,9 +29,9 @@ class Place(NamedTuple):
 
 
 def places_by_path(item, prefix="", label="", absent=False) -> dict[str, Place]:
-    """Place by path of every number of a part, zeros among them; a label goes behind the first name.
+    """Place by path of every number of a part, also zeros; a label is appended to the first name.
 
-    If wanted, those `absent` too: numbers that might stand where there is None.
+    With `absent` also the numbers that are None.
     """
     names = getattr(type(item), "PATHS", {})
     found = {}
@@ -74,7 +72,7 @@ def _of_value(value, rule, path, label, absent):
 
 
 def replace_checked(item, **values):
-    """Copy of a dataclass with other values in some fields, checked as its constructor does."""
+    """Copy of a dataclass with some fields changed, checked as by its constructor."""
     made = object.__new__(type(item))
     for field in fields(item):
         object.__setattr__(made, field.name, values.get(field.name, getattr(item, field.name)))
@@ -86,9 +84,9 @@ def replace_checked(item, **values):
 
 
 def with_values(item, values: dict, changed=replace_checked):
-    """Copy of a tree with other values, by steps; ``changed(part, **fields)`` copies a part: checked anew, unless told.
+    """Copy of a tree with other values by steps; ``changed(part, **fields)`` copies a part, by default with checks.
 
-    A tree is made of tuples, mappings, and parts with fields.
+    A tree consists of tuples, mappings, and parts with fields.
     """
     if () in values:
         return values[()]
@@ -107,7 +105,7 @@ def with_values(item, values: dict, changed=replace_checked):
 
 
 def _is_number(value):
-    """Whether a value is one number, or one for each of some designs."""
+    """Whether a value is a number, or an array with one for each design."""
     return isinstance(value, float) or (isinstance(value, np.ndarray) and value.shape[-1:] in ((), (1,)))
 
 
@@ -116,9 +114,9 @@ class Batched:
 
     @cached_property
     def batch(self):
-        """Shape that arrays of designs among the parameters have in common; () for a single design.
+        """Common shape of the arrays of designs among the parameters; () for a single design.
 
-        An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
+        An array of one axis is a table of a cam or load, not a batch.
         """
         leaves = Leaves()
         flatten(self, leaves)
@@ -129,7 +127,7 @@ class Batched:
 
 
 def _shape_error(item):
-    """Error that names the arrays of designs in an item, which do not fit together."""
+    """Error that names the arrays of designs in an item whose shapes do not broadcast."""
     shapes = {path: np.shape(place.value(item)) for path, place in places_by_path(item).items()}
-    problem = fitting(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
+    problem = broadcast_problem(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
     return ParameterError(f"{getattr(item, 'name', type(item).__name__)}: {problem}")

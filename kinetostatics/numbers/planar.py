@@ -1,19 +1,17 @@
-"""Planar vectors by components, and the rule that what is absent costs nothing.
+"""Plane vectors (x, y) of numbers or arrays; None is an absent vector or number, a zero left out of sums.
 
-A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent: a vector or number that is zero and
-is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
-
-A zero that absorbs what it is multiplied by, and is left out of sums: arithmetic finds where there is nothing.
+All functions are kernels: no branches on values, no writing in place, no array library by name. `SYMBOLIC_ZERO` is the
+zero of plain arithmetic that absorbs factors and drops out of sums.
 """
 
 from .arithmetic import NEGLIGIBLE_LENGTH, length_error, offset_from_zero, sqrt
 
 
 class SymbolicZero:
-    """The zero; only `NOTHING` is made of it."""
+    """A zero that absorbs its factors and drops out of sums; its one object is `SYMBOLIC_ZERO`."""
 
     __slots__ = ()
-    __array_ufunc__ = None  # arrays leave arithmetic with it to it
+    __array_ufunc__ = None  # so arrays leave operations to this class
 
     def __add__(self, other):
         return other
@@ -37,14 +35,14 @@ class SymbolicZero:
         return 0.0
 
     def __repr__(self):
-        return "NOTHING"
+        return "SYMBOLIC_ZERO"
 
 
 SYMBOLIC_ZERO = SymbolicZero()
 
 
 def none_if_zero(value):
-    """None for nothing, and for a plain number that is zero; the value else."""
+    """None for the symbolic zero and a plain zero, else the value."""
     return None if value is SYMBOLIC_ZERO or (isinstance(value, int | float) and value == 0) else value
 
 
@@ -62,7 +60,7 @@ def length(a):
 
 
 def length_with_error(a):
-    """Length of a vector, never zero, and what rounding took off it; along an axis nothing, and as it is."""
+    """Length of a vector, never zero, and its rounding error; exact, with error None, along an axis."""
     x, y = map(none_if_zero, a)
     if x is None or y is None:
         return abs(number_or_zero(y if x is None else x)), None
@@ -71,15 +69,15 @@ def length_with_error(a):
 
 
 def curvature(first, second):
-    """Signed curvature of a path from two derivatives of its place, positive where it turns to the left."""
+    """Signed curvature of a path, 1/m, from two derivatives of its point; positive where it turns left."""
     square = dot(first, first)
     return cross(first, second) / (square * sqrt(square))
 
 
 def polar_curvature(radius, slope, second):
-    """Curvature of a curve from r, r', r'', 1/m, positive where it is convex seen from outside.
+    """Curvature of a curve in polar coordinates, 1/m, from r, r', r''; positive where it is convex seen from outside.
 
-    (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2): of its place as seen from the ray, where r turns with it.
+    (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2), with derivatives in the axes of the ray.
     """
     return curvature((slope, radius), (second - radius, 2.0 * slope))
 
@@ -90,14 +88,14 @@ def left(a):
 
 
 def rotate(a, direction):
-    """Vector a turned by the angle of a unit vector; None turns nothing."""
+    """Vector a rotated by the angle of a unit vector; unchanged for None."""
     if direction is None:
         return a
     return (direction[0] * a[0] - direction[1] * a[1], direction[1] * a[0] + direction[0] * a[1])
 
 
 def rotate_back(a, direction):
-    """Components of a along a unit vector and across it, to the left; None: of a as it is."""
+    """Components of a along a unit vector and to its left; unchanged for None."""
     if direction is None:
         return a
     return (dot(direction, a), cross(direction, a))
@@ -175,10 +173,10 @@ def work(force, displacement):
 
 
 def number_or_zero(a):
-    """An absent number as zero."""
+    """The number, 0.0 for None."""
     return 0.0 if a is None else a
 
 
 def vector_or_zero(a):
-    """An absent vector as zero."""
+    """The vector, (0.0, 0.0) for None."""
     return (0.0, 0.0) if a is None else a

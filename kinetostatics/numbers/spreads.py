@@ -1,7 +1,7 @@
-"""Spreads as texts say them: "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
+"""Spreads of numbers: "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
 
-Or quantities of pint: the values of a grid; ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low,
-likeliest, high)``.
+Or as quantities of pint: the values of a grid; ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular",
+low, likeliest, high)``.
 """
 
 import math
@@ -15,7 +15,7 @@ from . import checks
 from .units import MAX_TEXT_LENGTH, NUMBER, base_factor, factor, quoted, respelling_advice, unit_of_quantity
 
 MAX_TABLE_VALUES = 50_000_000
-"""Values that a table of designs may hold."""
+"""Largest number of values in a table of designs."""
 _NUMBER = f"({NUMBER})"
 _TO = r"\s*\.\.\s*"
 _UNIT = r"\s+((?:(?!\d)|1\s*(?:/|per\b))[^:+±]+?|1)"
@@ -26,7 +26,7 @@ _FORMS = {
     "normal": re.compile(rf"normal\s+{_NUMBER}{_UNIT}\s*(?:\+-|±)\s*{_NUMBER}{_UNIT}"),
 }
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
-"""Numbers that each kind of distribution takes."""
+"""Number of parameters of each distribution."""
 _NO_UNIT = re.compile(rf"(?:[a-z]+\s+)?{_NUMBER}(?:{_TO}{_NUMBER})*(?:\s*(?:\+-|±)\s*{_NUMBER})?\s*(?::\s*[0-9]+)?")
 _OTHER = "it has another form"
 _UNITLESS = 'it has no unit ("1" where there is none)'
@@ -48,7 +48,7 @@ def distributions(spreads):
     Returns
     -------
     dict of parameter to (distribution, unit)
-        Distributions as of scipy.stats, frozen, and the unit that their values are in.
+        Frozen distributions of scipy.stats, and the unit of their values.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def distributions(spreads):
 
 
 def read_spreads(spreads, reader):
-    """What the reader, which raises `ValueError`, makes of the spread of each parameter."""
+    """Result of ``reader(spread)`` by parameter; one `ParameterError` lists all its `ValueError`."""
     require_mapping(spreads)
     found, problems = {}, [] if spreads else ["there are no parameters"]
     for name, given in spreads.items():
@@ -81,7 +81,7 @@ def read_spreads(spreads, reader):
 
 
 def require_mapping(spreads):
-    """Raise `ParameterError` unless spreads are told by parameter."""
+    """Raise `ParameterError` unless spreads are a mapping."""
     form = '{"slider.mass": "500..700 kg"}'
     told = isinstance(spreads, Mapping)
     checks.require("designs", None if told else f"spreads must be a dict, as {form}, got {checks.shown(spreads)}")
@@ -96,7 +96,7 @@ def _text(text):
 
 
 def _quantity_numbers(given):
-    """Numbers of quantities of pint, of one or several, and their unit: that of the first."""
+    """Numbers of one or several pint quantities, and the unit of the first."""
     parts = given if isinstance(given, list | tuple) else [given]
     if not parts or not all(map(checks.is_quantity, parts)):
         raise ValueError(_BARE)
@@ -113,7 +113,7 @@ def _quantity_numbers(given):
 
 
 def parse_grid(given):
-    """Evenly spaced values as a text says, or those given as quantities, and their unit."""
+    """Values of a grid, from a text or quantities, and their unit."""
     if not isinstance(given, str):
         values, unit = _quantity_numbers(given)
         return np.array(values), unit
@@ -128,13 +128,13 @@ def parse_grid(given):
 
 
 class Spread(NamedTuple):
-    """How a number spreads.
+    """Distribution of a number.
 
     Attributes
     ----------
     kind : "uniform", "triangular" or "normal"
     numbers : list of float
-        Low, likeliest and high value, without the likeliest of a uniform one; mean and standard deviation.
+        Low, likeliest and high value of "triangular"; low and high of "uniform"; mean and standard deviation.
     unit : str
     """
 
@@ -144,7 +144,7 @@ class Spread(NamedTuple):
 
     @property
     def distribution(self):
-        """That of scipy.stats, frozen."""
+        """Frozen distribution of scipy.stats."""
         from scipy import stats  # takes 0.9 s
 
         low, *middle, high = self.numbers
@@ -177,7 +177,7 @@ class Spread(NamedTuple):
 
 
 def parse_spread(given):
-    """`Spread` of a text or of quantities; `ValueError` if it is none."""
+    """`Spread` of a text or quantities; `ValueError` if it is none."""
     spread = Spread(*_parts(given))
     if spread.kind != "normal":
         _require_rising(spread.numbers)
@@ -187,7 +187,7 @@ def parse_spread(given):
 
 
 def _parts(given):
-    """Kind of the spread, its numbers, and their unit."""
+    """Kind, numbers and unit of a spread."""
     if not isinstance(given, str):
         named = isinstance(given, list | tuple) and len(given) > 1 and isinstance(given[0], str)
         name, quantities = (given[0], given[1:]) if named else ("uniform", given)

@@ -1,10 +1,11 @@
-"""Text with a unit ("300 mm", "320 rpm") to SI. An angle is no plain number: 5 Hz is no crank speed.
+"""Units: text such as "300 mm" or "320 rpm" to SI, and the unit of a product of powers.
 
 Numbers are written in ASCII digits with a decimal point and no thousands separators. A unit is a product or quotient of
-names with small whole powers ("kN/mm", "kg m^2", "1/s"), worked from left to right. A table knows the usual names.
-pint, which takes half a second to load, is asked for others only, and gets nothing but names and powers.
+names with small whole powers ("kN/mm", "kg m^2", "1/s"), read from left to right. An angle is no plain number: 5 Hz is
+no crank speed. A table holds the usual names; pint, which takes half a second to load, converts others and gets only
+names and powers.
 
-Dimensions of numbers: powers of m, kg and s; radians count as 1.
+A dimension is the tuple of the powers of m, kg and s; radians count as 1.
 """
 
 import math
@@ -16,14 +17,14 @@ from functools import cache, partial
 import numpy as np
 
 NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
-"""A number, as a regular expression: the only form that case files, tables and spreads take."""
+"""Regular expression of a number in case files, tables and spreads."""
 MAX_TEXT_LENGTH = 200
-"""Characters that a text with a unit may have."""
+"""Largest number of characters of a text with a unit."""
 _NUMBER_AND_UNIT = re.compile(
     rf"\s*({NUMBER})(?:\s*(?![eE][-+]?[0-9])((?:[^\W\d_]|[°%]).*?)|\s+(1(?:\s*(?:/|per\b).*?)?))?\s*", re.DOTALL
 )
 _USUAL = {"m": ("300", "mm"), "rad": ("90", "deg"), "rad/s": ("300", "rpm")}
-"""What engineers write for a unit of SI, for advice."""
+"""Examples by SI unit as engineers write them, for advice."""
 _FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|°[CF]?|%)(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
 _BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
 _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
@@ -59,7 +60,7 @@ USUAL_UNITS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "rpm": (Fraction(math.pi) / 30, {"radian": 1, "second": -1}),
     "percent": (Fraction(1, 100), {}),
 }
-"""By name the exact factor to SI base units, and the powers of these, by the names that pint gives them."""
+"""Exact factor to SI base units by name, and powers of these by pint's names."""
 
 
 @cache
@@ -77,7 +78,7 @@ def to_si(text, unit):
     text : str
         A number and its unit.
     unit : str
-        The SI unit wanted; anything that converts to it will do.
+        SI unit of the result.
 
     Returns
     -------
@@ -108,13 +109,13 @@ def to_si(text, unit):
 
 
 def _spelling_examples(number, unit):
-    """A number in the unit that engineers write, or in that of SI."""
+    """Examples of the number in the engineers' unit and in the SI unit."""
     return " or ".join(f'"{number} {one}"' for one in dict.fromkeys((_USUAL.get(unit, ("", unit))[1], unit)))
 
 
 @cache
 def factor(given, unit):
-    """What a number in a given unit is multiplied by to be in the SI unit; `ValueError` if it does not convert."""
+    """Factor from a given unit to the SI unit; `ValueError` if it does not convert."""
     scale, base = _base(given, unit)
     if base != _base(unit, unit)[1]:
         raise ValueError(f'"{given}" does not measure the same as "{unit}"; give a unit that converts to it')
@@ -122,7 +123,7 @@ def factor(given, unit):
 
 
 def unit_of_quantity(quantity):
-    """Unit of a quantity of pint as texts spell it; `ValueError` if in its registry it is another than here."""
+    """Unit of a pint quantity as text; `ValueError` if its registry defines the unit differently."""
     unit = f"{quantity.units:~C}" or "1"
     base_factor(unit)
     theirs = quantity._REGISTRY.Quantity(1.0, quantity.units).to_root_units()
@@ -133,13 +134,13 @@ def unit_of_quantity(quantity):
 
 
 def base_factor(given):
-    """What a number in a given unit is multiplied by to be in SI base units."""
+    """Factor from a given unit to SI base units."""
     return factor(given, given)
 
 
 @cache
 def _base(given, unit):
-    """Factor to base units, and their powers by name; `unit` is the one wanted, for the message."""
+    """Factor to base units, and their powers by name; the message names the wanted `unit`."""
     try:
         parts = _parts(given)
         scale, base, zero = _by_table(parts) if USUAL_UNITS.keys() >= {name for name, _ in parts} else _by_pint(parts)
@@ -157,7 +158,7 @@ def _base(given, unit):
 
 
 def _by_table(parts):
-    """Factor to base units, their powers, and 0.0, the value in base units of the number 0."""
+    """Factor to base units, their powers, and the value 0.0 of a zero in base units."""
     scale, base = Fraction(1), dict.fromkeys(("meter", "kilogram", "second", "radian"), 0)
     for name, power in parts:
         size, inner = USUAL_UNITS[name]
@@ -168,7 +169,7 @@ def _by_table(parts):
 
 
 def _by_pint(parts):
-    """The same by pint; `ValueError` for a name that it does not know."""
+    """The same by pint; `ValueError` for an unknown name."""
     import pint
 
     registry = _registry()
@@ -185,7 +186,7 @@ def _spelled_for_pint(parts):
 
 
 def _parts(text):
-    """Names and powers that a unit is the product of; `ValueError` unless it is one of names with small powers."""
+    """Names and powers of the factors of a unit; `ValueError` if it has another form."""
     if len(text) > MAX_TEXT_LENGTH:
         raise ValueError("too long")
     reciprocal = re.match(r"\s*1\s*(?=/|per\b|$)", text)
@@ -213,7 +214,7 @@ def _parts(text):
 
 
 def quoted(value, most=80):
-    """The value as Python writes it, cut if it is long."""
+    """The value as Python writes it, shortened."""
     if isinstance(value, dict | list | tuple | set):
         return f"a {type(value).__name__}"
     text = repr(value[: most + 1] if isinstance(value, str) else value)
@@ -221,9 +222,9 @@ def quoted(value, most=80):
 
 
 def respelling_advice(text, readable):
-    """Advice how to write the numbers of a text that cannot be read; empty if no `readable` text comes of it.
+    """Advice on numbers in a text that cannot be read; empty unless the new text is `readable`.
 
-    A comma, or a plain space, is taken for the decimal point; what stands before three digits also for nothing.
+    A comma or blank counts as decimal point; before three digits also as thousands separator.
     """
     advice = []
     for choice in (0, -1):
@@ -242,7 +243,7 @@ def _reading(choice, found):
 
 
 def _readings(text):
-    """Numbers that digits with separators may stand for, in plain ASCII."""
+    """Possible readings of digits with separators, in plain ASCII."""
     text = "".join(str(unicodedata.digit(sign)) if sign.isdecimal() else sign for sign in text)
     text = re.sub("[−–]", "-", text)
     if re.fullmatch(NUMBER, text):
@@ -269,7 +270,7 @@ BASE_DIMENSIONS = {
     "Pa": (-1, 1, -2),
     "W": (2, 1, -3),
 }
-"""Powers of m, kg and s of units that others are made of."""
+"""Powers of m, kg and s of base units."""
 UNIT_NAMES = {
     (0, 0, 0): "1",
     (1, 0, 0): "m",
@@ -299,7 +300,7 @@ _POWER = re.compile(r"([A-Za-z]+)(?:\*\*|\^)?(\d*)")
 
 
 def dimension(unit):
-    """Powers of m, kg and s in a unit such as "N*m*s/rad" or "m/s2"."""
+    """Powers of m, kg and s of a unit such as "N*m*s/rad" or "m/s2"."""
     found = np.zeros(3)
     for over, part in enumerate(unit.split("/")):
         for base, power in _POWER.findall(part):
@@ -308,7 +309,7 @@ def dimension(unit):
 
 
 def unit_name(dimension):
-    """A unit of these powers."""
+    """Name of the unit with these powers of m, kg and s."""
     if dimension in UNIT_NAMES:
         return UNIT_NAMES[dimension]
     named = zip(("m", "kg", "s"), dimension, strict=True)

@@ -1,4 +1,4 @@
-"""What is read off values over the turn: extremes, means, reductions, comparison, tables.
+"""Functions of the crank angle over a period: extremes, means, reductions, losses, comparison.
 
 May import errors, numbers, machine, mechanics, engines.
 """

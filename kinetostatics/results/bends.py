@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..machine.loads import STRAIGHT, TURN, bends_of, is_bent, kinked
+from ..machine.loads import KINK_TOLERANCE, TURN, has_significant_kinks, kink_sources, significant_kinks
 from ..mechanics.quantities import quantity
 from .changes import sign_changes
 from .turn import beginnings, of_laws
@@ -33,22 +33,22 @@ class Bends(NamedTuple):
     rest: float
 
 
-def bent(solution, name, straight=STRAIGHT):
+def bent(solution, name, straight=KINK_TOLERANCE):
     """Whether friction, the law of a cam, or a load that bends by so much, may bend a quantity of a solution."""
     if of_laws(solution).size:
         return True
-    loads = any(is_bent(part, straight) for part in kinked(solution.loads))
+    loads = any(has_significant_kinks(part, straight) for part in kink_sources(solution.loads))
     return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in SMOOTH
 
 
-def bends(solution, straight=STRAIGHT):
+def bends(solution, straight=KINK_TOLERANCE):
     """The `Bends` of a solution, of loads those that bend by so much."""
     law = of_laws(solution)[None]
     found, rest = [(law, np.isin(law, of_laws(solution, jumps=True)))], 0.0
     if solution.friction.acting:
         found.append(_of_friction(solution))
-    for part in kinked(solution.loads):
-        own, jumps, left = bends_of(part, solution, straight)
+    for part in kink_sources(solution.loads):
+        own, jumps, left = significant_kinks(part, solution, straight)
         again = beginnings(part, solution)
         found.append(((own[..., None] + again).reshape(len(own), -1), np.repeat(jumps, again.size)[None]))
         rest = max(rest, left)

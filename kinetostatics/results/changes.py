@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..machine.loads import in_rows
+from ..machine.loads import pad_rows
 from ..numbers.brackets import find_roots
 
 ASIDE = 1e-3
@@ -58,7 +58,7 @@ def _brackets(signs, values, angle):
     found = [(design, angle[0, place], angle[0, place + 1], row)]
     row, design, place, vertex = _turning(values, angle)
     if vertex.size:
-        at, known, order = in_rows(design, values.shape[1], vertex, row, np.arange(vertex.size))
+        at, known, order = pad_rows(design, values.shape[1], vertex, row, np.arange(vertex.size))
         there = signs(np.where(np.isnan(at), angle[0, 0], at))
         there = np.take_along_axis(there, np.nan_to_num(known).astype(int)[None], axis=0)[0]
         own = np.empty(vertex.size)
@@ -68,7 +68,7 @@ def _brackets(signs, values, angle):
         found += [(design, angle[0, place - 1], vertex, row), (design, vertex, angle[0, place + 1], row)]
     design, low, high, row = (np.concatenate(parts) for parts in zip(*found, strict=True))
     order = np.lexsort((low, row, design))
-    return in_rows(design[order], values.shape[1], low[order], high[order], row[order])
+    return pad_rows(design[order], values.shape[1], low[order], high[order], row[order])
 
 
 def _turning(values, angle):

@@ -20,7 +20,7 @@ NODES = 0.5 + np.concatenate([-_HALF[::-1], _HALF])
 """Of Gauss's quadrature, in shares of a panel (Abramowitz and Stegun, table 25.4)."""
 _HALF = np.array([0.362683783378362, 0.31370664587788727, 0.22238103445337448, 0.10122853629037626]) / 2
 WEIGHTS = np.concatenate([_HALF[::-1], _HALF])
-"""Theirs, right to the last digit: those of `numpy.polynomial` are off by up to 72 `UNIT`."""
+"""Theirs, right to the last digit: those of `numpy.polynomial` are off by up to 72 `UNIT_ROUNDOFF`."""
 SPLIT = 0.4
 """Where a panel is parted: not in the middle, on both sides of which nodes lie alike, so that jumps there hide."""
 CLOSE = 1e-14

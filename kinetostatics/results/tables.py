@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning
-from ..mechanics.quantities import Quantity, is_still, of_scene
+from ..mechanics.quantities import Quantity, of_scene
 from .extremes import extrema, warning
 from .rounding import PLACED, Known, without_rounding, zeroed
 
@@ -60,7 +60,7 @@ def extremes_by_name(solution):
         name: extrema(solution, name)
         for name, quantity in of_scene(solution).items()
         if quantity.kind not in ("check", "energy")
-        and not (quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio_slope))
+        and not (quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio_slope is None)
     }
     text = warning(solution, found.values())
     if text:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, is_given, kinked, kinks_of, period_of, period_on, refusals
+from ..machine.loads import TURN, has_no_user_code, kink_sources, kinks_of, period_of, period_on, refusals
 from ..mechanics import assembly, energy_contact
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
@@ -86,7 +86,7 @@ class Turn:
             The solution depends on a table over its own crank angles, or a load does not repeat after its period.
         """
         turns = round(solution.period / TURN)
-        count = SAMPLES * turns * (1 if all(map(is_given, solution.loads)) else FINER)
+        count = SAMPLES * turns * (1 if all(map(has_no_user_code, solution.loads)) else FINER)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
         kinks, jumps = _kinks(solution)
         if kinks.size:
@@ -243,7 +243,7 @@ def _kinks(solution):
     rubbing = _friction_changes(solution)
     law = of_laws(solution, jumps=True)
     found: list[Any] = [(rubbing, rubbing), (law, law)]
-    for part in kinked(solution.loads):
+    for part in kink_sources(solution.loads):
         again = beginnings(part, solution)[:, None]
         kinks, jumps = kinks_of(part, solution)
         found.append((np.ravel(np.concatenate([kinks, jumps]) + again), np.ravel(jumps + again)))
@@ -302,7 +302,7 @@ def require_repeating(solution):
 def repeating_problem(solution):
     """What is wrong with the period of the loads that are functions of one design, or None."""
     for item in solution.loads:
-        if is_given(item):
+        if has_no_user_code(item):
             continue
         period = period_of([item], solution.mechanism.turns)
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3

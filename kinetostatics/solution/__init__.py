@@ -1,4 +1,4 @@
-"""What users hold: the scene, its solution, `solve` and `compile`.
+"""What users hold: the scene, its solution, compiled programs, uncertainty of results.
 
-May import all rooms above: numbers to results.
+May import errors, numbers to explain.
 """

@@ -1,12 +1,10 @@
-"""How sure each value of a solution is: proven bounds on rounding, and what uncertain inputs do.
+"""How sure each value of a solution is: proven bounds on rounding, and uncertainty from uncertain inputs.
 
-Where uncertainties to first order say too little: beside them stands what the second order makes.
-
-Of independent normal inputs with deviations u the terms of second order, 1/2 sum f_ij d_i d_j, have the mean
-1/2 sum f_ii u_i^2 and the variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note): products of two inputs
-shift nothing, but they spread. What the second order makes is the root of their mean square.
-
-Derivatives of what a program computes, by numbers of its scene.
+The uncertainty is of first order: sensitivities f_i, exact derivatives of the recorded program, times the standard
+uncertainties u_i (JCGM 100:2008, section 5.1). A warning reports where the second order is not small beside it. Of
+independent normal inputs the terms of second order, 1/2 sum f_ij d_i d_j, have the mean 1/2 sum f_ii u_i^2 and the
+variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note); the second order counts as the root of their mean
+square. All in the unit of the quantity.
 """
 
 import warnings
@@ -37,11 +35,11 @@ from .parameters import (
 )
 
 MAX_SECOND_ORDER_SHARE = 0.1
-"""Part of an uncertainty to first order that the second order may be."""
+"""Largest second order that needs no warning, relative to the first."""
 MEDIAN_SHARE = 0.01
-"""Part of the median over the crank angles that is not small beside a first order that vanishes at some."""
+"""Least first order to compare with, relative to its median over the crank angles: at some angles it vanishes."""
 MAX_PAIRWISE_INPUTS = 3
-"""Inputs up to which each product of two is looked at by itself."""
+"""Inputs up to which each product of two is computed without looking at their sums first."""
 
 
 class LargeSecondOrder(NamedTuple):
@@ -54,9 +52,9 @@ class LargeSecondOrder(NamedTuple):
     angle : float
         Crank angle where it is worst, rad.
     paths : tuple of str
-        Of the input, or of both, that make most of the second order there.
+        The input, or the two inputs, with the largest second order there.
     first, second : float
-        What both orders make there; the second is NaN where there is no value with these inputs moved.
+        Both orders there; the second is NaN where the quantity has no value with these inputs moved.
     """
 
     values: int
@@ -67,7 +65,7 @@ class LargeSecondOrder(NamedTuple):
     second: float
 
     def doubt(self, quantity, unit, inputs):
-        """What must be said of it, as a `Doubt`."""
+        """The `Doubt` that a warning reports."""
         moved, way = " and ".join(f"{path} {inputs[path]:.3g}" for path in self.paths), " or smaller"
         found = f"with {moved} larger{way if len(self.paths) == 1 else ''} there is no value"
         if np.isfinite(self.second):
@@ -79,7 +77,7 @@ class LargeSecondOrder(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """Why the uncertainty of a quantity to first order says too little: what it does, where or when, and how much."""
+    """Why the first-order uncertainty of a quantity is too small: a clause, where, and second order over first."""
 
     quantity: str
     what: str
@@ -88,7 +86,7 @@ class Doubt(NamedTuple):
 
 
 def doubt_text(doubts):
-    """What must be said of some quantities, as one sentence."""
+    """One sentence on the doubts about some quantities."""
     if len(doubts) == 1:
         (doubt,) = doubts
         return f"the uncertainty of {doubt.quantity} is of first order in the inputs, {doubt.what}: {doubt.where}"
@@ -101,17 +99,17 @@ def doubt_text(doubts):
 
 
 class SecondOrderTerms:
-    """Terms of second order, as differences have them, of values (components, *shape); zero where there are none.
+    """Terms of second order by differences, each (components, *shape); zero where there is no value.
 
     Parameters
     ----------
     run : function
-        ``run(leaves)``: values.
+        ``run(leaves)`` gives the values.
     plain : array
-        These of the leaves as they are.
+        Values of the unchanged leaves.
     leaves : Leaves
     places : dict of path to int
-        Which leaf each input is.
+        Leaf of each input.
     deviations : dict of path to float
     """
 
@@ -123,7 +121,7 @@ class SecondOrderTerms:
             self._by_one = {sign: {path: self._moved({path: sign}) for path in places} for sign in (1.0, -1.0)}
 
     def _moved(self, signs):
-        """What values change by with some inputs larger or smaller by their deviations."""
+        """Change of the values with some inputs larger or smaller by their deviations."""
         numbers = list(self._leaves.numbers)
         for path, sign in signs.items():
             numbers[self._places[path]] = numbers[self._places[path]] + sign * self._deviations[path]
@@ -131,20 +129,20 @@ class SecondOrderTerms:
         return change if self._gap is None else np.where(self._gap, 0.0, change)
 
     def _together(self, signs):
-        """The same beyond what each of them changes by itself."""
+        """The same less the changes by each input alone."""
         return self._moved(signs) - sum(self._by_one[sign][path] for path, sign in signs.items())
 
     def of_one(self):
-        """By (path,) 1/2 f_ii u_i^2."""
+        """1/2 f_ii u_i^2 by (path,)."""
         ahead, behind = self._by_one.values()
         return {(path,): 0.5 * (ahead[path] + behind[path]) for path in self._places}
 
     def of_two(self):
-        """By (path, other) f_ij u_i u_j."""
+        """f_ij u_i u_j by (path, other)."""
         return {pair: self._together(dict.fromkeys(pair, 1.0)) for pair in combinations(self._places, 2)}
 
     def of_all(self):
-        """Sums of all products of two, with such signs that no two products take each other away in all of them."""
+        """Sums of all products of two, with signs so that no two products cancel in every sum."""
         codes = dict(zip(self._places, _codes(len(self._places)), strict=True))
         bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
         signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
@@ -153,7 +151,7 @@ class SecondOrderTerms:
 
 @lru_cache(maxsize=64)
 def _codes(count):
-    """Whole numbers, of few bits, of which no two differ in the same bits as two others do."""
+    """Integers of few bits whose pairwise differences (exclusive or) are all distinct."""
     codes: list[int] = []
     known: set[int] = set()
     for code in numbers():
@@ -166,7 +164,7 @@ def _codes(count):
 
 
 def find_second_order(terms, count, angle, first, rounding) -> LargeSecondOrder | None:
-    """Where second order is not small; products of so many inputs are looked at in few sums if these are small."""
+    """Where the second order is not small, or None; of many inputs sums of products are tried first."""
     with np.errstate(all="ignore"):
         squares = terms.of_one()
         if count > MAX_PAIRWISE_INPUTS and large_second_order(angle, first, squares | terms.of_all(), rounding) is None:
@@ -175,7 +173,7 @@ def find_second_order(terms, count, angle, first, rounding) -> LargeSecondOrder 
 
 
 def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | None:
-    """Where the second order of some inputs is not small beside the first, or rounding; None if it is nowhere.
+    """Where the second order is not small beside the first order and rounding; None if nowhere.
 
     Parameters
     ----------
@@ -211,13 +209,13 @@ def _root_sum_square(part: Any, axis: Any = 0):
 
 
 def sensitivities(program, by, state, leaves, backend):
-    """Derivatives by quantity and by path, shaped as the quantities; NaN where these are.
+    """Derivatives by quantity and path, shaped as the quantities; NaN where the quantity is.
 
     Parameters
     ----------
     program : engines.program.Program
     by : dict of path to int
-        Which leaf each number is.
+        Leaf of each number.
     state : Dynamics
     leaves : Leaves
     backend : engines.jax_backend.Backend
@@ -240,7 +238,7 @@ class Uncertainty:
     Attributes
     ----------
     inputs : dict of path to array
-        What the standard uncertainty of each input alone makes.
+        Uncertainty from each input alone.
     rounding : array
         Proven bound on the rounding error.
     unit : str
@@ -267,7 +265,7 @@ class Uncertainty:
 
     @property
     def total(self):
-        """Tolerance and, as a bound is no standard deviation, rounding added to it."""
+        """Tolerance plus rounding: a bound is no standard deviation, so both are added."""
         return self.tolerance + self.rounding
 
     def __array__(self, dtype=None, copy=None):
@@ -292,9 +290,9 @@ class Certainty(Parameters):
     def error_bound(self, quantity, tight=False):
         """Proven bound on the rounding error of each value of a quantity, by running error analysis.
 
-        No value of a certified computation in exact arithmetic differs from the solution's by more. Exact are the
-        numbers given to constructors, as floats, and the crank angles; what is derived from them, directions of guides
-        and gravity among it, is bounded. A guide through two points counts as rounded once.
+        No value computed in exact arithmetic differs from the solution's by more. Numbers given to constructors, as
+        floats, and crank angles are exact; all that is derived from them, as directions of guides and gravity, is
+        bounded. A guide through two points counts as rounded once.
 
         Parameters
         ----------
@@ -308,7 +306,7 @@ class Certainty(Parameters):
         array
             Shaped as the quantity, in its unit: of a vector for each component. Infinite where nothing can be proven
             (a divisor may vanish, a sign is not sure), NaN where there is no value. At a dead centre where a table over
-            travel has another value on the way back, as large as the step: which side of it holds is not known.
+            travel has another value on the way back, it is as large as that step.
 
         Raises
         ------
@@ -352,7 +350,7 @@ class Certainty(Parameters):
         -------
         Uncertainty
             With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; for NumPy's functions it
-            is an array of its `total`. Printed, it tells the largest over the crank angles.
+            is an array of its `total`. Printed, it shows the largest over the crank angles.
 
         Raises
         ------
@@ -364,9 +362,9 @@ class Certainty(Parameters):
         Warns
         -----
         ConditionWarning
-            At some crank angle what the second order of the inputs makes, products of two among it, is more than a
-            tenth of the first and more than a thousandth of the first's median, or there is no value with an input
-            larger or smaller by its uncertainty, or with two larger.
+            At some crank angle the second order of the inputs, products of two included, is more than a tenth of the
+            first and more than a thousandth of the first's median, or there is no value with an input larger or
+            smaller by its uncertainty, or with two larger.
 
         Examples
         --------
@@ -382,7 +380,7 @@ class Certainty(Parameters):
         return found
 
     def with_doubt(self, quantity, inputs):
-        """The same, and the `second_order.Doubt` that it says too little, or None."""
+        """The same, and the `Doubt` that it is too small, or None."""
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
         checks.require("uncertainty", *(path_problem(self, path) for path in inputs if path not in self.places))
@@ -403,7 +401,7 @@ class Certainty(Parameters):
         return Uncertainty(parts, rounding, quantities.unit_of(self, name)), doubt
 
     def _slopes(self, name, inputs, values, rounding):
-        """Derivatives of a quantity by numbers of the scene, by path; and a doubt where they change with the inputs."""
+        """Derivatives of a quantity by path, and the doubt where they change with the inputs."""
         state = keep_numbers(self, self.places, inputs).dynamics
         program, leaves = program_of(state, (name,))
         known = leaf_by_path(self.places, state)
@@ -427,7 +425,7 @@ class Certainty(Parameters):
         return found, doubt
 
     def _with_bounds(self, name, tight=False):
-        """Values of a quantity, and bounds on their errors."""
+        """Values of a quantity and bounds on their errors, a list of two arrays."""
         return [found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight)]
 
 
@@ -439,7 +437,7 @@ def _rounding_bound(values, bounds, of_its_magnitude):
 
 
 def _magnitude_slope(vector, slope):
-    """Derivative of the magnitude of a vector from that of the vector; of one that vanishes the magnitude of that."""
+    """Derivative of the magnitude of a vector from that of the vector; where the vector is 0, its magnitude."""
     (x, y), size = vector, np.hypot(*vector)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(size > 0.0, (x * slope[0] + y * slope[1]) / size, np.hypot(*slope))[()]

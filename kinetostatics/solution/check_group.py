@@ -1,8 +1,9 @@
-"""A test of a group of one's own, by what does not use its formulas: differences of positions, and virtual work.
+"""Test of a user's group without its own formulas: differences of positions, rigid links, and virtual work.
 
-The group hangs on joints that are moved by hand from many places in which it closes. What it says of velocities and
-accelerations is compared with differences of what it says of positions; the forces it asks of the joints must do the
-work that its loads do, whichever way a joint is moved (d'Alembert and Lagrange; holds for any ideal constraint).
+The test moves the joints that the group is attached to, from many places in which the group closes. Velocities and
+accelerations must agree with differences of positions. Each link's state must agree with those of its joints, guides
+and slots. The forces on the joints must do the work of the loads for any motion of a joint (d'Alembert and Lagrange;
+true for any ideal constraint). All errors are relative to the largest value.
 """
 
 from dataclasses import dataclass, replace
@@ -14,39 +15,42 @@ from ..errors import ParameterError
 from ..machine.crank import ORIGIN, ray
 from ..machine.group import FRAME, MEMBERS
 from ..machine.kinematic_state import Course, Placement, margin, place, require_positions
-from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
+from ..machine.links import Joint, LinkMotion, PointMotion, Sliding, Turning, Wrench, arm, load, virtual_work
 from ..machine.mechanism import output_problems
 from ..numbers import checks
 from ..numbers.planar import (
     add_vectors,
+    cross,
+    dot,
     length,
     number_or_zero,
     product,
     rotate,
+    rotate_back,
     scale_vector,
     subtract_vectors,
     vector_or_zero,
     work,
 )
-from . import link_states
 
+STATE_NAMES = ("position", "velocity", "acceleration")
 MAX_RELATIVE_ERROR = 1e-6
-"""Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
+"""Largest error that passes; right groups reach 1e-10, a wrong term gives about 1."""
 ANGLE_STEP = 2.0**-8
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
-"""Of a central difference of the eighth order, with steps of so many rad."""
+"""Of a central difference of the eighth order, with steps of `ANGLE_STEP` rad."""
 MAX_PLACES = 24
 
 
 @dataclass(frozen=True, repr=False)
 class GroupReport:
-    """What a check of a group found.
+    """Errors found by a check of a group.
 
     Attributes
     ----------
     group : str
     errors : dict of str to float
-        By what was checked, the largest error relative to the largest value.
+        Largest error by check, relative to the largest value.
     """
 
     group: str
@@ -54,12 +58,12 @@ class GroupReport:
 
     @property
     def problems(self):
-        """A sentence for each thing that is wrong."""
+        """A sentence for each check that fails."""
         return tuple(f"{what}: off by {error:.2g} of its size" for what, error in self.errors.items() if _fails(error))
 
     @property
     def ok(self):
-        """Whether nothing is wrong."""
+        """Whether all checks pass."""
         return not self.problems
 
     def __bool__(self):
@@ -79,7 +83,7 @@ def _fails(error):
 
 
 def check(group):
-    """Test a group, of one's own above all: its derivatives, its forces and its power.
+    """Test a group, above all a user's own: its derivatives, forces and power.
 
     Parameters
     ----------
@@ -90,7 +94,7 @@ def check(group):
     -------
     GroupReport
         True if all is right; its text has a line for each check, `problems` a sentence for each that fails. Reactions
-        inside the group are seen as far as they make up the force it asks of the joint it hangs on.
+        inside the group are tested only as far as they add to the force on the joints it is attached to.
 
     Raises
     ------
@@ -105,7 +109,7 @@ def check(group):
     >>> report.ok
     True
     """
-    _, problem = checks.HasMembers(MEMBERS, "a group").taken(group, "group")
+    _, problem = checks.HasMembers(MEMBERS, "a group").check(group, "group")
     checks.require("check", problem)
     if getattr(group, "passes", False):
         group = replace(group)  # its joint is moved by hand, and on no crank it has no change points
@@ -115,7 +119,7 @@ def check(group):
 
 
 class _Stage(NamedTuple):
-    """A group, its shortest length, and places (x, y) of the joint it hangs on and crank angles at which it closes."""
+    """A group, its shortest length, and crank angles and places (x, y) of its first carrying joint where it closes."""
 
     group: Any
     size: float
@@ -123,28 +127,28 @@ class _Stage(NamedTuple):
     angle: Any
 
     @property
-    def hung(self):
-        """Joints it hangs on, but for O."""
+    def carrying_joints(self):
+        """Joints that it is attached to, but for O."""
         return [name for name in getattr(self.group, "hangs_on", ("O",)) if name != "O"]
 
     @property
     def carriers(self):
-        """Links of others that it fixes a joint to."""
+        """Links of other groups that it fixes a joint to."""
         return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
 
-    def placed(self, turn=0.0, way=(0.5, 0.3), alone=""):
-        """Placement with the crank turned from there, each joint on a curve that starts along its way, or one alone."""
+    def place_joints(self, turn=0.0, way=(0.5, 0.3), alone=""):
+        """Placement with the crank turned further; each carrying joint, or one alone, moves on a curve along `way`."""
         angle = self.angle + turn
         direction = ray(angle)
         joints = {"O": ORIGIN}
-        for order, name in enumerate(self.hung):
+        for order, name in enumerate(self.carrying_joints):
             joints[name] = self._joint(order, turn, way if alone in ("", name) else (0.0, 0.0))
         links = {"crank": LinkMotion(ORIGIN, direction, 1.0, None)}
         for name in self.carriers:
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
             links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
-        for name in self.hung:
+        for name in self.carrying_joints:
             departure = add_vectors(joints[name].second, joints[name].position)
             placement.courses[name] = Course(departure=departure)
         with np.errstate(all="ignore"):
@@ -152,7 +156,7 @@ class _Stage(NamedTuple):
         return placement
 
     def _joint(self, order, turn, way):
-        """One of the joints it hangs on: the first at the places, others near O."""
+        """One of the carrying joints: the first at the places, others near O."""
         sine, cosine = np.sin(turn), np.cos(turn)
         way, bend = (rotate(part, ray(float(order))) for part in (way, (0.2, -0.4)))
         along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
@@ -164,7 +168,7 @@ class _Stage(NamedTuple):
 
 
 def _stage(group):
-    """The group in places where it closes well, evenly chosen from many."""
+    """The group at places where it closes well, chosen evenly from many."""
     lengths = [float(np.max(bar.length)) for bar in group.bars] or [1.0]
     size, farthest = min(lengths), 30.0 * max(lengths)
     reach, direction = np.meshgrid(np.geomspace(0.02 * size, farthest, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
@@ -173,7 +177,7 @@ def _stage(group):
     if any(np.ndim(length) > 1 for length in group.lengths):
         raise ParameterError("check: give a group of one design, not a batch")
     with np.errstate(all="ignore"):
-        placement = whole.placed()
+        placement = whole.place_joints()
         margins = margin(group, placement, whole.angle.shape)
     margins = np.broadcast_to(np.asarray(margins, dtype=float), x.shape)
     if not group.trusted:
@@ -189,8 +193,8 @@ def _stage(group):
 
 
 def _of_shape(stage):
-    """Errors of bars that must keep their lengths, unit vectors, and links that must begin at their joints."""
-    group, placement = stage.group, stage.placed()
+    """Errors of lengths of bars, unit vectors, reference joints, and what groups declare of travels and courses."""
+    group, placement = stage.group, stage.place_joints()
     errors = {}
     for bar in group.bars:
         ends = (vector_or_zero(placement.joints[name].position) for name in (bar.end, bar.start))
@@ -224,20 +228,11 @@ def _of_shape(stage):
     return errors
 
 
-def _of_links(stage):
-    """Errors of states of links against those of joints, guides and slots."""
-    compared = link_states.link_comparisons(stage.group, stage.placed(), stage.size)
-    return {
-        what: max(_error(*both, unit) for both in zip(_parts(found), _parts(expected), strict=False))
-        for what, (found, expected, unit) in compared.items()
-    }
-
-
 def _of_derivatives(stage):
-    """Errors of derivatives by crank angle against differences of what they are derivatives of."""
+    """Errors of derivatives by crank angle against differences."""
     steps = range(1, len(WEIGHTS) + 1)
-    beside = {k: _rates(stage.placed(k * ANGLE_STEP), stage) for step in steps for k in (step, -step)}
-    here, again = (_rates(stage.placed(), stage) for _ in range(2))
+    beside = {k: _rates(stage.place_joints(k * ANGLE_STEP), stage) for step in steps for k in (step, -step)}
+    here, again = (_rates(stage.place_joints(), stage) for _ in range(2))
     errors = {"place called twice": max(_error(again[what][0], values[0], values[2]) for what, values in here.items())}
     for what, (_, claimed, unit) in here.items():
         slope = sum(
@@ -249,7 +244,7 @@ def _of_derivatives(stage):
 
 
 def _rates(placement, stage):
-    """By name: a value, what is claimed to be its derivative, and a size below which neither counts."""
+    """Value, claimed derivative, and a size below which neither counts, by name."""
     found = {}
 
     def add(name, joint):
@@ -257,7 +252,7 @@ def _rates(placement, stage):
         found[f"first derivative of {name}"] = joint.position, first, stage.size
         found[f"second derivative of {name}"] = first, second, stage.size
 
-    for name in placement.joints.keys() - {"O", *stage.hung}:
+    for name in placement.joints.keys() - {"O", *stage.carrying_joints}:
         add(f"joint {name}", placement.joints[name])
     for name, travel in placement.travels.items():
         add(f"travel of {name}", travel)
@@ -280,7 +275,7 @@ def _parts(value):
 
 
 def _of_forces(stage):
-    """Errors of the forces, by the work they and the loads do on small motions of the joint, whichever way it goes."""
+    """Errors of the forces, from their work and that of the loads on small motions of each joint."""
     if not stage.group.links:
         return {}
     random = np.random.default_rng(0)
@@ -288,16 +283,16 @@ def _of_forces(stage):
     def any_vector():
         return tuple(random.uniform(-1.0, 1.0, (2, stage.angle.size)))
 
-    still = stage.placed()
+    still = stage.place_joints()
     wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
     pushes = {name: any_vector()[0] for name in still.travels}
     ways: dict[str, Any] = {
-        f"{axis} of {name}" if len(stage.hung) > 1 else axis: {"way": way, "alone": name}
-        for name in stage.hung
+        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"way": way, "alone": name}
+        for name in stage.carrying_joints
         for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
     }
     errors = {
-        f"work of the forces along {name}": _work_error(stage, stage.placed(**way), wrenches, pushes)
+        f"work of the forces along {name}": _work_error(stage, stage.place_joints(**way), wrenches, pushes)
         for name, way in (ways or {"the turn": {}}).items()
     }
     inertia = {
@@ -310,7 +305,7 @@ def _of_forces(stage):
 
 
 def _work_error(stage, placement, wrenches, pushes):
-    """Work that is left over, relative to the largest part of it."""
+    """Sum of all work, relative to its largest part."""
     resolved = stage.group.resolve(placement, wrenches, pushes)
     if not stage.group.trusted:
         checks.require("check", *output_problems(stage.group, resolved))
@@ -326,7 +321,149 @@ def _work_error(stage, placement, wrenches, pushes):
 
 
 def _error(found, expected, unit):
-    """Largest difference relative to the largest value, or to a size that counts; infinite if it is no number."""
+    """Largest difference over the largest value, or over `unit` if larger; infinite if not finite."""
     found, expected = (np.asarray(values, dtype=float) for values in (found, expected))
     error = np.max(np.abs(found - expected)) / max(np.max(np.abs(found)), np.max(np.abs(expected)), unit)
     return float(error) if np.isfinite(error) else np.inf
+
+
+# States of links against those of joints, guides and slots
+
+
+class Comparison(NamedTuple):
+    """Two values that must agree, and a size below which neither counts."""
+
+    found: object
+    expected: object
+    unit: float
+
+
+def _of_links(stage):
+    """Errors of states of links against those of joints, guides and slots."""
+    group, placement, size = stage.group, stage.place_joints(), stage.size
+    parts = (_points, _fixed_joints, _guides, _slots, _slidings, _courses)
+    return {
+        what: max(_error(*both, unit) for both in zip(_parts(found), _parts(expected), strict=False))
+        for part in parts
+        for what, (found, expected, unit) in part(group, placement, size).items()
+    }
+
+
+def _points(group, placement, size):
+    """Joints that are points of links, by position, velocity and acceleration."""
+    found = {}
+    for name, (link, along, across) in group.joints.items():
+        joint = placement.joints[name]
+        if link == FRAME:
+            for what, part, fixed in zip(STATE_NAMES, joint, ((along, across), (0.0, 0.0), (0.0, 0.0)), strict=True):
+                found[f"{what} of {name} as a point of the frame"] = Comparison(vector_or_zero(part), fixed, size)
+            continue
+        motion = placement.links[link]
+        spot = PointMotion(motion.joint, arm(motion.direction, along, across), motion)
+        for what, part, by_link in zip(STATE_NAMES, joint, _states(spot), strict=True):
+            found[f"{what} of {name} as a point of {link}"] = Comparison(
+                vector_or_zero(by_link), vector_or_zero(part), size
+            )
+    return found
+
+
+def _fixed_joints(group, placement, size):
+    """Joints that a link keeps at one place in its own axes: the end of a bar at its length, other pins anywhere."""
+    fixed = {(pair.link, pair.joint): None for pair in _declared(group, "pairs").values() if type(pair) is Turning}
+    for bar in group.bars:
+        fixed |= {(bar.link, bar.start): (0.0, 0.0), (bar.link, bar.end): (bar.length, 0.0)}
+    found = {}
+    for (link, name), at in fixed.items():
+        if link not in group.links:
+            continue
+        motion, joint = placement.links[link], placement.joints[name]
+        to_joint = subtract_vectors(joint.position, motion.joint.position)
+        seen = rotate_back(to_joint, motion.direction)
+        expected = tuple(np.mean(part) for part in seen) if at is None else at
+        found[f"place of {name} in the axes of {link}"] = Comparison(seen, expected, size)
+        _, first, second = _states(PointMotion(motion.joint, to_joint, motion))
+        found[f"velocity of {name} by {link}"] = Comparison(vector_or_zero(first), vector_or_zero(joint.first), size)
+        found[f"acceleration of {name} by {link}"] = Comparison(
+            vector_or_zero(second), vector_or_zero(joint.second), size
+        )
+    return found
+
+
+def _guides(group, placement, size):
+    """Sliders: the pin on the guide, the direction of the guide, and the travel along it."""
+    found = {}
+    for link, guide in _declared(group, "guides").items():
+        motion, direction = placement.links[link], guide.direction
+        position = motion.joint.position
+        found[f"distance of {link} from its guide"] = Comparison(cross(direction, position), guide.guide_offset, size)
+        found[f"direction of {link} along its guide"] = Comparison(motion.direction, direction, 1.0)
+        travel = placement.travels.get(link)
+        for what, claimed, part in zip(STATE_NAMES, travel, motion.joint, strict=True) if travel else ():
+            found[f"{what} of the travel of {link}"] = Comparison(
+                number_or_zero(claimed), dot(direction, vector_or_zero(part)), size
+            )
+    return found
+
+
+def _slots(group, placement, size):
+    """Joints that slide in the slot of a link: on the line of the slot."""
+    found = {}
+    for slot in _declared(group, "slots"):
+        motion = placement.links[slot.link]
+        axis = rotate((np.cos(slot.angle), np.sin(slot.angle)), motion.direction)
+        away = subtract_vectors(placement.joints[slot.joint].position, motion.joint.position)
+        found[f"distance of {slot.joint} from the slot of {slot.link}"] = Comparison(
+            cross(axis, away), slot.offset, size
+        )
+        if slot.rod:
+            aside = cross(axis, placement.links[slot.rod].direction)
+            found[f"direction of {slot.rod} along {slot.link}"] = Comparison(aside, 0.0, 1.0)
+    return found
+
+
+def _slidings(group, placement, size):
+    """Rates of sliding pairs, which give the sense of friction, as velocities of one link against the other."""
+    found = {}
+    for name, pair in _declared(group, "pairs").items():
+        if type(pair) is not Sliding:
+            continue
+        slide, joint = group.sliding(name, placement), placement.joints[pair.joint]
+        direction = (1.0, 0.0) if slide.direction is None else slide.direction
+        first = subtract_vectors(_velocity(placement, pair.link, joint), _velocity(placement, pair.against, joint))
+        found[f"rate of sliding of {name}"] = Comparison(
+            number_or_zero(slide.rate), dot(direction, vector_or_zero(first)), size
+        )
+        if pair.against != FRAME:
+            away = subtract_vectors(joint.position, placement.links[pair.against].joint.position)
+            found[f"moment of sliding of {name}"] = Comparison(
+                number_or_zero(slide.moment), cross(away, direction), size
+            )
+    return found
+
+
+def _courses(group, placement, size):
+    """Centre and radius of a joint that swings about a fixed place."""
+    found = {}
+    for name in group.joints:
+        swing = placement.course(name).swing
+        if swing is not None:
+            parts = (*swing.centre, swing.radius)
+            found[f"centre and radius of the swing of {name}"] = Comparison(parts, tuple(map(np.mean, parts)), size)
+    return found
+
+
+def _declared(group, name):
+    """A declaration of a group; one not derived from `Group` may lack it."""
+    return getattr(group, name, {})
+
+
+def _states(spot):
+    return spot.position, spot.first, spot.second
+
+
+def _velocity(placement, link, joint):
+    """Velocity of the point of a link that is at a joint."""
+    if link == FRAME:
+        return None
+    motion = placement.links[link]
+    return PointMotion(motion.joint, subtract_vectors(joint.position, motion.joint.position), motion).first

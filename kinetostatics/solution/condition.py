@@ -483,5 +483,5 @@ def warn_of_lost_digits(solution, margins):
         "angle by angle; how many digits are correct for the very numbers given, often far more, is proven by "
         f"solution.error_bound(quantity)){''.join(f'; {text}' for text in kinks)}",
         ConditionWarning,
-        stacklevel=5,
+        stacklevel=4,
     )

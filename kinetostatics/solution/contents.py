@@ -1,13 +1,13 @@
 """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
-Every result is computed when first asked for, and kept; none can be written to. SI and radians throughout; angles count
+Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
 counter-clockwise from +x. Arrays end with the crank angles, N of them; batch axes of designs come before: (..., N). A
 vector has (x, y) as its first axis: (2, ..., N).
 
 A group's `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup` with
-``label="2"``; its joints are called as its `pin` and `pivot_name` say. `reactions` and `scalars` list the names that
-there are. Where the mechanism does not close, `solve` raises, or with ``on_gap="nan"`` all is NaN there that hangs on
-a group in its gap or carries its forces.
+``label="2"``; its `pin` and `pivot_name` name its joints. `reactions` and `scalars` list all names. Where the mechanism
+does not close, `solve` raises, or with ``on_gap="nan"`` gives NaN for the open group, groups attached to it, and forces
+of groups that carry it.
 
 Attributes
 ----------
@@ -17,13 +17,13 @@ crank_angle : array (..., N)
 crank_speed, crank_acceleration : float or array
     omega, rad/s, and alpha, rad/s2, counter-clockwise positive.
 sense : None, float or array
-    Which way a crank at rest is about to turn, as it was given: +1 counter-clockwise, -1 clockwise.
+    Way that a crank at rest is about to turn, as given: +1 counter-clockwise, -1 clockwise.
 crank_sense : float or array
-    The same of every crank: `sense`, else the sign of its speed, at rest of its acceleration; +1 where both are 0.
+    `sense` if given, else the sign of the crank speed, at rest of the crank acceleration; +1 where both are 0.
 loads : tuple
 friction : mapping of joint to friction
 engine, silent
-    What computes it; whether it warns no more.
+    Engine that computes it; whether it warns no more.
 shape : tuple
     (..., N) of a scalar result.
 period : float
@@ -33,8 +33,8 @@ closed : array (..., N) of bool
 closure : tuple of array (..., N)
     Margin of each group: negative where it cannot be assembled, 0 at a limit position.
 slider_position, slider_velocity, slider_acceleration : array (..., N)
-    Of the slider's pin along its guide, m, m/s, m/s2, positive in the guide's direction; of the only slider, or that
-    without a label. Of others by `travel`.
+    Of the slider's pin along its guide, m, m/s, m/s2, positive in the guide's direction; of the only slider, or the one
+    without a label. `travel` gives the others.
 pressure_angle : array (..., N)
     Of the cam pair, atan(r'/r), rad, positive where the radius grows with the crank angle.
 reactions, scalars : tuple of str
@@ -71,19 +71,18 @@ reduced_inertia, reduced_inertia_slope : array (..., N)
 kinetic_energy, potential_energy : array (..., N)
     Of all links; of weight and springs, J. Weight has none at the height of O.
 friction_loss, friction_torque : array (..., N)
-    Power lost at all joints, W, not negative; the torque on the crank that it takes, N m.
+    Power lost at all joints, W, not negative; this power over the crank speed, N m.
 friction_margin, friction_residual : array (..., N)
-    How far friction is from jamming: 1 without friction, positive where there is surely one state of forces; how much
-    forces would change by one more pass.
+    Distance of friction from jamming: 1 without friction, positive where exactly one state of forces exists; relative
+    change of the forces by one more pass.
 converged : array (..., N) of bool
-    Whether friction and reactions were found together to rounding.
+    Whether friction and reactions agree to rounding.
 losses : Losses
     Mean powers over the period by joint and load, W; of one design.
 efficiency : float
-    Of what loads take and joints lose, the part that loads take.
+    Work taken by loads over work taken by loads and lost at joints.
 condition : array (..., N)
-    How many times relative errors of lengths are magnified in rates and forces, at most: 16 - log10 of it digits are
-    left.
+    Largest magnification of relative errors of lengths in rates and forces: 16 - log10 of it digits are left.
 largest_force_term, largest_torque_term : float or array
     Largest single load that a reaction, N, or the torque, N m, is a sum of.
 
@@ -111,7 +110,7 @@ travel(slider), travel_velocity(slider), travel_acceleration(slider)
 elongation(free_position, slider)
     Slider position less a free position, m, without cancellation.
 measure(name)
-    Another quantity of motion that a group has, such as "pressure_angle", "cylinder_length", (..., N).
+    Another quantity of motion of a group, as "pressure_angle", "cylinder_length", (..., N).
 at(crank_angle)
     The same mechanism, speed and loads at other crank angles.
 condition_of(quantity)
@@ -119,7 +118,7 @@ condition_of(quantity)
 error_bound(quantity, tight)
     Proven bound on the rounding error of each value, in the quantity's shape and unit; ``"|O|"`` for a magnitude.
 uncertainty(quantity, inputs)
-    What standard uncertainties of inputs, by path, and rounding do to each value, as `Uncertainty`.
+    `Uncertainty` of each value from standard uncertainties of inputs, by path, and from rounding.
 explain(quantity, angle, design)
     The hand calculation of a quantity at one crank angle, link by link: formula, numbers with units, result.
 frame()

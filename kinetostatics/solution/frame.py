@@ -6,11 +6,11 @@ import numpy as np
 
 from ..errors import ConditionWarning
 from ..mechanics.assembly import NO_DIGITS_CONDITION
-from ..mechanics.quantities import is_still, of_scene
+from ..mechanics.quantities import of_scene
 from ..results.turn import NEAR
 
 COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
-"""Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
+"""Order of kinds of quantities in the table, after the positions of joints; energies are left out."""
 
 
 def solution_frame(solution):
@@ -29,7 +29,7 @@ def solution_frame(solution):
         columns |= _components(joint, "m", solution.position(joint))
     quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in COLUMN_ORDER)
     for name, quantity in sorted(quantities, key=lambda pair: COLUMN_ORDER.index(pair[1].kind)):
-        if quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio):
+        if quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio is None:
             continue
         values = quantity.read(solution)
         if quantity.vector:

@@ -1,16 +1,104 @@
-"""The numbers of a scene by path, and what they are to a program: absent where zero, judged together with others."""
+"""Inputs of a solution: its crank angles, its drive and loads, and every number of its scene by path.
 
-from typing import ClassVar
+Paths are those of case files: "crank_length", "slider.mass". A number that is zero, or of a direction along an axis, is
+absent from the recorded program unless it is kept. Numbers far from usual values give hints at slips of units.
+"""
 
+import math
+import warnings
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from ..engines.program import plausibility_test
+from ..errors import HintWarning
+from ..machine import plausibility
+from ..machine.loads import value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
+from ..numbers.arithmetic import read_only
+from ..numbers.checks import PlausibleRange, plausible_range_of
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import Axis, KeptZero, LeafIndex, replace_unchecked
+from ..numbers.parameter_tree import Axis, KeptZero, LeafIndex, construct_unchecked, replace_unchecked, unflatten
 
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
 )
 SENSE = checks.Optional(checks.Number("1", table=True))
+ANGLE_RULE = checks.Number("rad", "crank_angle", table=True)
+PLAIN_TYPES = int, float, list, tuple
+FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
+BYTES_PER_VALUE = 8
+MAX_ANGLES = checks.MAX_TABLE_MEMORY // BYTES_PER_VALUE
+"""Crank angles that fit into memory."""
+
+
+# Crank angles
+
+
+def crank_angles(given, owner="solve"):
+    """Crank angles as an array: a read-only copy of plain ones; an array of another library as it is."""
+    if type(given) is np.ndarray and given.dtype in FLOAT_TYPES and given.size <= MAX_ANGLES:
+        return read_only(given.copy())
+    if ANGLE_RULE.quick(given) is not checks.UNDECIDED:
+        return read_only(np.array(float(given)))
+    if isinstance(given, list | tuple) and not given:
+        checks.require(owner, "there are no crank angles")
+    if isinstance(given, np.ndarray) and given.size:
+        checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES_PER_VALUE))
+    angle, problem = ANGLE_RULE.check(given)
+    checks.require(owner, problem)
+    return angle if hasattr(angle, "shape") else read_only(np.array(angle))
+
+
+def hint_at_angles(owner, given):
+    """Warn the caller's caller if valid crank angles look like degrees, or like a count of angles."""
+    if type(given) is float and abs(given) < plausibility.TWO_TURNS:
+        return
+    if type(given) is np.ndarray:
+        texts = plausibility.angle_hints(given)
+    else:
+        texts = plausibility.given_angle_hints(given, np.asarray(given) if isinstance(given, PLAIN_TYPES) else given)
+    for text in texts:
+        warnings.warn(HintWarning(owner, text), stacklevel=3)
+
+
+def angle_problem(angle):
+    """Sentence if there are no crank angles, or one is not finite; else None. Foreign arrays are not read."""
+    if not (angle.size if isinstance(angle, np.ndarray) else math.prod(angle.shape)):
+        return "there are no crank angles"
+    if not isinstance(angle, np.ndarray) or angle.dtype == object:
+        return None
+    finite = (angle.ndim < 2 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
+    return None if finite else "crank angles must be finite; found NaN or infinity"
+
+
+# Drive and loads of a scene or solution
+
+
+def tables_over_angles(item):
+    """Names of the drive and loads that have one value for each crank angle given, unknown between them."""
+    drive = ("crank_speed", item.crank_speed), ("crank_acceleration", item.crank_acceleration)
+    loads = ((type(load).__name__, value_of(load)) for load in item.loads)
+    return [
+        name for name, value in (*drive, *loads) if np.ndim(value) and np.shape(value)[-1] > 1 and not callable(value)
+    ]
+
+
+def drive_and_loads_text(item):
+    """Drive and loads in one line, for reprs."""
+
+    def shown(value):
+        return checks.shown(value) if np.ndim(value) == 0 else f"<array of shape {np.shape(value)}>"
+
+    loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
+    drive = f"crank_speed={shown(item.crank_speed)}, crank_acceleration={shown(item.crank_acceleration)}"
+    friction = f", friction at {', '.join(item.friction)}" if item.friction else ""
+    sense = "" if item.sense is None else f", sense={shown(item.sense)}"
+    return f"{drive}{sense}, {loads}{friction}"
+
+
+# Numbers by path
 
 
 class Parameters:
@@ -28,12 +116,12 @@ class Parameters:
 
     @cached_property
     def places(self):
-        """Where each number stands, by path, with its unit and rule."""
+        """Place of each number by path, with its unit and rule."""
         return paths.places_by_path(self)
 
 
 def path_problem(scene, path, known=None):
-    """What is wrong with a path that is none of the known ones of a scene, all unless told; or None."""
+    """Sentence on a path that is none of the known ones, by default of all those of the scene; else None."""
     problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
     is_other = problem and isinstance(path, str) and path not in scene.places
     place = paths.places_by_path(scene, absent=True).get(path) if is_other else None
@@ -41,20 +129,20 @@ def path_problem(scene, path, known=None):
         return problem
     within = place.steps[:-1]
     others = [name for name, other in scene.places.items() if other.steps[: len(within)] == within]
-    told = getattr(place._replace(steps=within).value(scene), "instead", "")
+    instead = getattr(place._replace(steps=within).value(scene), "instead", "")
     beside = f"; beside it stand {', '.join(others)}" if others else ""
-    return f"parameter {path} has no number here{told}{beside}"
+    return f"parameter {path} has no number here{instead}{beside}"
 
 
 def leaf_by_path(places, state):
-    """Which leaf of a `Dynamics` each number is, by path; of what is zero, and so absent, none."""
+    """Number of the leaf of a `Dynamics` by path; zeros are absent."""
     numbered = state.kind.numbered
     found = {path: place.value(numbered) for path, place in places.items()}
     return {path: number for path, number in found.items() if isinstance(number, LeafIndex)}
 
 
 def keep_numbers(scene, places, wanted):
-    """The scene with the wanted numbers that are zero or of an axis, and so absent from programs, kept as numbers."""
+    """The scene with the wanted numbers kept in its programs, though they are zero or of an axis."""
     for path in wanted:
         place = places[path]
         owner = place._replace(steps=place.steps[:-1])
@@ -64,12 +152,12 @@ def keep_numbers(scene, places, wanted):
 
 
 def is_zero(value):
-    """Whether a value is the one number zero, which is absent from a program unless it is kept."""
+    """Whether a value is the plain number zero, which is absent from a program unless it is kept."""
     return isinstance(value, int | float) and value == 0
 
 
 def _keep_number(item, steps):
-    """Copy of a tree in which a number, though it is zero or of an axis, is kept as one; nothing is checked."""
+    """Copy of a tree with the number at the end of the steps kept, unchecked."""
     if not steps:
         return KeptZero(0.0) if item == 0 else item
     step, *rest = steps
@@ -79,7 +167,7 @@ def _keep_number(item, steps):
 
 
 def has_joint_rule(item, steps):
-    """Whether a number stands in a part that has rules for several of its numbers together."""
+    """Whether a number belongs to a part whose rules check several of its numbers together."""
     for step in steps:
         rules = getattr(item, "RULES", None)
         if rules is not None and rules.also is not None:
@@ -89,12 +177,12 @@ def has_joint_rule(item, steps):
 
 
 def paths_without_derivative(places, mechanism):
-    """Paths by which there is no derivative: the sense, and lengths of which any other makes another kind."""
+    """Paths of the sense, and of lengths that decide which change points are passed."""
     return passage_paths(places, mechanism, [group for group in mechanism.groups if group.passes]) | {"sense"}
 
 
-def require_derivatives(owner, mechanism, paths, fixed):
-    """Refuse to derive by a length that decides which change points are passed, and by the sense of rotation."""
+def require_derivatives(owner, mechanism, paths, without):
+    """Refuse paths that have no derivative, see `paths_without_derivative`."""
     checks.require(
         owner,
         *(
@@ -105,13 +193,13 @@ def require_derivatives(owner, mechanism, paths, fixed):
                 else f"{mechanism.name} passes change points, and with any other length it would be of another kind"
             )
             for path in paths
-            if path in fixed
+            if path in without
         ),
     )
 
 
 def passage_paths(places, mechanism, groups):
-    """Paths of what decides which change points some groups pass: pins of the crank, their own lengths and lines."""
+    """Paths that decide which change points some groups pass: pins of the crank, own lengths and guides."""
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
     pins = {group.on for group in groups}
     numbers += [number for number, group in enumerate(mechanism.groups) if pins.intersection(group.throws)]
@@ -122,3 +210,55 @@ def passage_paths(places, mechanism, groups):
         for path, place in places.items()
         if any(place.steps[: len(owner)] == owner for owner in owners) and not links & set(place.steps)
     }
+
+
+# Hints at slips of units
+
+
+class PlausibleNumber(NamedTuple):
+    """A number of a structure of scenes whose rule has usual values.
+
+    Attributes
+    ----------
+    path : str
+    leaf : int
+        Its place among the leaves.
+    usual : PlausibleRange
+    is_own : bool
+        Whether it belongs to the mechanism.
+    """
+
+    path: str
+    leaf: int
+    usual: PlausibleRange
+    is_own: bool
+
+
+def scene_plausibility_test(kind):
+    """Fast test of a structure, see `plausibility_test`; it looks at all lengths of the mechanism together."""
+    numbers = (item for item in kind.answer(plausible_numbers) if not (item.is_own and item.usual.unit == "m"))
+    return plausibility_test(kind, [(item.leaf, item.usual) for item in numbers])
+
+
+def plausible_numbers(kind):
+    """Each `PlausibleNumber` of a structure."""
+    ones = construct_unchecked(
+        Parameters, **unflatten(kind.structure, lambda: 1.0, lambda: None, lambda: None)._asdict()
+    )
+    numbered, found = construct_unchecked(Parameters, **kind.numbered._asdict()), []
+    for path, place in paths.places_by_path(ones).items():
+        leaf, usual = place.value(numbered), plausible_range_of(place.rule)
+        if isinstance(leaf, LeafIndex) and usual:
+            found.append(PlausibleNumber(path, leaf, usual, place.steps[0] == "mechanism"))
+    return found
+
+
+def plausibility_hints(solution):
+    """Sentences on numbers of a solution's scene that look like slips."""
+    values = solution.apart[1].numbers
+    numbers = [(path, values[leaf], usual) for path, leaf, usual, _ in solution.kind.answer(plausible_numbers)]
+    mechanism = solution.mechanism
+    return (
+        *plausibility.scene_hints(mechanism, solution.crank_speed, numbers),
+        *plausibility.load_hints(mechanism, solution.loads),
+    )

@@ -1,7 +1,4 @@
-"""What a scene computes as a program, called with other crank angles and numbers as often as one likes.
-
-`compile`: what a scene computes made ready once, and called with other numbers as often as one likes.
-"""
+"""Quantities of a scene as a program: `compile` records it once, calls take other crank angles and numbers."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,7 +13,7 @@ from ..engines.jax_backend import Backend
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import ParameterError
-from ..machine.loads import by_sense, is_given, may_refuse, refusals
+from ..machine.loads import depends_on_sense, has_no_user_code, may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
@@ -24,11 +21,13 @@ from ..mechanics.quantities import FRICTION_CHECKS
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.parameter_tree import construct_unchecked
-from .angles import angle_problem, crank_angles, hint_at_angles
 from .certainty import sensitivities
 from .parameters import (
     DRIVE,
+    angle_problem,
+    crank_angles,
     has_joint_rule,
+    hint_at_angles,
     is_zero,
     keep_numbers,
     leaf_by_path,
@@ -40,9 +39,9 @@ from .parameters import (
 from .scene import scene_problem, unchecked_solution
 
 MAPPING_TYPES = (dict, MappingProxyType)
-"""Types that are mappings for sure: asking for the protocol takes longer."""
+"""Types that are accepted without the slower test for the protocol."""
 FRICTION_ANGLES = 180
-"""Crank angles around the turn at which friction is looked at."""
+"""Crank angles around the turn at which passes over friction are chosen."""
 
 
 class Program:
@@ -53,7 +52,7 @@ class Program:
     scene : Scene
     quantities : tuple of str
     parameters : mapping of path to value
-        Every number that can be given another value, as in the scene.
+        Every number that a call may change, with its value in the scene.
 
     Examples
     --------
@@ -78,10 +77,10 @@ class Program:
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = program_of(state, quantities)
         self._friction: Any = program_of(state, FRICTION_CHECKS)[0] if scene.friction.acting else None
-        self._numbers = {
-            path: (number, _rule_without_table(places[path].rule))
-            for path, number in leaf_by_path(places, state).items()
-        }
+        self._numbers = {}
+        for path, number in leaf_by_path(places, state).items():
+            rule = places[path].rule  # one value a design is recorded, no table over the crank angles
+            self._numbers[path] = number, replace(rule, table=False) if getattr(rule, "table", False) else rule
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if has_joint_rule(scene, places[path].steps)}
         if scene.sense is not None:  # it must not contradict the speed
@@ -109,7 +108,7 @@ class Program:
         angle : float or array (..., N)
             Crank angles, rad; tables over the crank angles of the scene, a crank speed for instance, must fit them.
         values : mapping of path to float or array (designs, 1)
-            Other numbers, in SI, checked as when a scene is made; all others stay.
+            Other numbers, SI, checked as in a scene; all others stay.
 
         Returns
         -------
@@ -119,22 +118,22 @@ class Program:
         Raises
         ------
         ParameterError
-            No machine has such a value, or there is no such parameter: what is zero in the scene, or of a
-            direction along an axis, is absent unless `compile` was told to keep it.
+            No machine has such a value, or there is no such parameter: a number that is zero in the scene, or of a
+            direction along an axis, is absent unless `parameters` of `compile` names it.
 
         Warns
         -----
         HintWarning
             The crank angles look like degrees, or like a count of them.
         ConditionWarning
-            With these values friction is not found to rounding: compile a scene that has them.
+            With these values friction does not converge to rounding: compile a scene that has them.
         """
         found = self.evaluated(angle, values)
         hint_at_angles(self.scene.mechanism.name, angle)
         return found
 
     def evaluated(self, angle, values=MappingProxyType({})):
-        """The values of a call, without hints at what its crank angles look like."""
+        """The values of a call, without hints at its crank angles."""
         state, leaves = self._at(angle, values)
         if values and self._friction is not None:
             self._look_at_friction(state, leaves, values)
@@ -146,7 +145,7 @@ class Program:
 
     @property
     def engine(self):
-        """What runs it: "compiled", "numpy" or "jax"."""
+        """Engine: "compiled", "numpy" or "jax"."""
         return self._backend.engine
 
     @property
@@ -156,13 +155,13 @@ class Program:
 
     @property
     def device(self):
-        """What computes: "cpu", or as JAX calls it, "gpu: NVIDIA H100" for instance."""
+        """Processor: "cpu", or as JAX names it, "gpu: NVIDIA H100" for instance."""
         return self._backend.device
 
     def error_bound(self, angle, values=MappingProxyType({}), tight=False):
-        """Proven bounds on the rounding errors of the values that a call gives, computed in double.
+        """Proven bounds on the rounding errors of the values of a call, computed in double.
 
-        Exact are numbers and crank angles as they are given, in double; `Solution.error_bound` says what is bounded.
+        Numbers and crank angles, in double, count as exact; see `Solution.error_bound`.
 
         Parameters
         ----------
@@ -203,7 +202,7 @@ class Program:
         return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
-        """The same, compiled or not, where the caller sees to it that values are right, and looks at friction."""
+        """Values by quantity, compiled or not; the caller has checked the numbers, and checks friction."""
         numbers = list(self._leaves.numbers)
         for path, value in values.items():
             numbers[self._numbers[path][0]] = value
@@ -220,8 +219,8 @@ class Program:
         angle, values
             As for a call.
         by : str or sequence of str, optional
-            Paths; all parameters unless told, but for lengths where change points are passed. `values`, a mapping, may
-            stand before it, as in a call.
+            Paths; by default all parameters but lengths where change points are passed. The mapping `values` may also
+            come first, as in a call.
 
         Returns
         -------
@@ -257,19 +256,21 @@ class Program:
 
     @property
     def unrecorded(self):
-        """What messages call the code of the user's behind the quantities whose dependence is not recorded."""
+        """Names of the user's code whose dependence on parameters is not recorded, a tuple."""
         return self._program.unrecorded
 
     def depends_on(self, path):
-        """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
+        """Whether a quantity depends on a parameter, as far as it is recorded; see `unrecorded`."""
         self._require_known((path,))
         place, _ = self._numbers[path]
-        if path == ("crank_speed" if self.scene.sense is None else "sense") and any(map(by_sense, self.scene.loads)):
+        if path == ("crank_speed" if self.scene.sense is None else "sense") and any(
+            map(depends_on_sense, self.scene.loads)
+        ):
             return True
         return self._program.recording.parameters[place] in set(needed(self._program.outputs))
 
     def _at(self, angle, values):
-        """The scene at crank angles, with its leaves."""
+        """The scene at crank angles, a `Dynamics`, and its leaves."""
         angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
         wrong = angle_problem(angle)
         if wrong:
@@ -291,14 +292,14 @@ class Program:
         return state, leaves
 
     def _numbers_with(self, values):
-        """All numbers, in their order, with some values in place of their own."""
+        """All numbers in their order, some with new values, checked."""
         self._require_known(values)
         numbers, wrong = list(self._leaves.numbers), []
         for path, value in values.items():
             number, rule = self._numbers[path]
             found = rule.quick(value)
             if found is checks.UNDECIDED:
-                found, problem = rule.taken(value, path)
+                found, problem = rule.check(value, path)
                 wrong.append(problem)
             numbers[number] = found
         if wrong:
@@ -310,7 +311,7 @@ class Program:
         return numbers
 
     def _require_same_kind(self, values):
-        """Refuse lengths that make change points, or take them away: the arithmetic is that of one kind."""
+        """Refuse lengths that change which change points are passed: they need other arithmetic."""
         name, before = self.scene.mechanism.name, self._passages
         if self.scene.varied(values).mechanism.passages != before:
             given = ", ".join(sorted(self._lengths.intersection(values)))
@@ -332,7 +333,7 @@ class Program:
 
 
 def _names_and_values(by, values):
-    """Names to derive by, and other numbers, in whichever order they stand: only numbers are a mapping."""
+    """Names to derive by and values, given in either order: only values are a mapping."""
     if not isinstance(by, Mapping):
         return by, values
     if isinstance(values, Mapping) and values:
@@ -343,13 +344,8 @@ def _names_and_values(by, values):
     return None if isinstance(values, Mapping) else values, by
 
 
-def _rule_without_table(rule):
-    """The rule of a number that is one for all crank angles of a design, as it was recorded."""
-    return replace(rule, table=False) if getattr(rule, "table", False) else rule
-
-
 def _solve_friction(scene):
-    """The scene with as many passes over its friction as it takes around the turn."""
+    """The scene with enough passes over its friction all around the turn."""
     if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
         return jamming.solve_friction(scene)
     angles = np.linspace(0.0, scene.period, FRICTION_ANGLES, endpoint=False)
@@ -360,7 +356,7 @@ def _solve_friction(scene):
 
 
 def _shape(angle, leaves):
-    """Shape (..., N) of scalar results; refused where tables over the crank angles, or designs, do not fit them."""
+    """Shape (..., N) of scalar results; an error if tables or designs do not fit the crank angles."""
     try:
         return leaves.shape(angle.shape)
     except ValueError:
@@ -371,7 +367,7 @@ def _shape(angle, leaves):
 
 
 TRIAL_ANGLES = np.array([0.3, 2.0])
-"""Crank angles at which functions of loads are called before they are recorded."""
+"""Crank angles at which functions of loads are tested before they are recorded, rad."""
 
 
 def compile(  # noqa: A001 - the contract's name
@@ -385,13 +381,12 @@ def compile(  # noqa: A001 - the contract's name
     quantities : str or sequence of str
         "balancing_torque", a joint (its reaction), "slider_acceleration", "coupler_rate" ...
     parameters : str or sequence of str
-        Paths of numbers that are zero in the scene and shall be given other values. What is zero is otherwise absent,
-        and costs nothing.
+        Paths of numbers that are zero in the scene and that calls may change; other zeros cost nothing.
     engine : "compiled", "numpy" or "jax"
-        Unless told, compiled if numba is installed; "jax" (extra `grad`) runs on the accelerator that JAX finds.
+        By default compiled if numba is installed; "jax" (extra `grad`) runs on the accelerator that JAX finds.
     precision : "double" or "single"
-        Of what is computed at each crank angle, and of the results. Sines of crank angles, tables and all that a design
-        fixes are computed in double even then, and rounded once; `Program.error_bound` says what single costs.
+        Of the arithmetic at each crank angle and of the results. In single, sines of crank angles, tables and constants
+        of a design are still computed in double and rounded once; `Program.error_bound` bounds the error.
     device : str, optional
         For JAX: "cpu", "gpu" or another platform instead of the first that it has.
 
@@ -435,7 +430,10 @@ def compile(  # noqa: A001 - the contract's name
     )
     if engine == "compiled":
         require_numba()
-    if not all(map(is_given, scene.loads)) and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1:
+    if (
+        not all(map(has_no_user_code, scene.loads))
+        and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1
+    ):
         require_pure(unchecked_solution(scene, TRIAL_ANGLES))
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     backend = Backend(engine or ("compiled" if numba_available() else "numpy"), precision, device)
@@ -444,7 +442,7 @@ def compile(  # noqa: A001 - the contract's name
 
 
 def _device_problem(device, engine):
-    """What is wrong with a device that is asked for, but that it is not there; or None."""
+    """Sentence on an impossible device, else None; whether it exists is asked later."""
     if engine != "jax":
         return 'device is for engine="jax"; all others run on the processor'
     return None if isinstance(device, str) else f'device must be a text as "gpu", got {checks.shown(device)}'

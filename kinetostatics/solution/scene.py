@@ -1,4 +1,4 @@
-"""A scene: a mechanism, what drives it and what loads it; the door through which all of it comes to a solution."""
+"""A scene, a mechanism with its drive and loads; `solve` checks it and makes its solution."""
 
 import math
 import warnings
@@ -13,23 +13,29 @@ from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
 from ..machine import plausibility
-from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
+from ..machine.loads import KINDS, MAX_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.arithmetic import concrete_array
 from ..numbers.parameter_tree import construct_unchecked
-from . import slips
-from .angles import BYTES_PER_VALUE, angle_problem, crank_angles
-from .checked import check_solution
-from .drive_and_loads import drive_and_loads_text
-from .parameters import DRIVE, SENSE, Parameters, path_problem
+from . import parameters
+from .parameters import (
+    BYTES_PER_VALUE,
+    DRIVE,
+    SENSE,
+    Parameters,
+    angle_problem,
+    crank_angles,
+    drive_and_loads_text,
+    path_problem,
+)
 from .solution import Solution
 
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 MIN_VALUES_COMPILED = 1_000_000
-"""Crank angles, all designs together, from which a compiled loop is worth its preparation."""
+"""Crank angles times designs from which a compiled loop is worth its preparation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +129,7 @@ class Scene(Parameters):
         return {path: place.rule.unit for path, place in self.places.items()}
 
     def varied(self, values):
-        """The scene with other values at some paths, in SI, checked as when it was made; all others stay.
+        """The scene with other values at some paths, SI, checked as when it was made.
 
         Parameters
         ----------
@@ -145,18 +151,18 @@ class Scene(Parameters):
         Parameters
         ----------
         angles : int, float or array
-            A whole number is a count of angles over one period from 0, its end excluded; all else are angles, rad.
+            A whole number is a count of even angles over one period from 0, end excluded; all else are angles, rad.
         on_gap, engine
             As for `solve`.
         """
-        return check_solution(_start(self, self.turn(angles), on_gap, engine), on_gap)
+        return _start(self, self.turn(angles), on_gap, engine).check(on_gap)
 
     def unsolved(self, angle):
-        """Motion and forces at crank angles, an array, nothing checked."""
+        """Solution at an array of crank angles, without any check."""
         return Solution(crank_angle=angle, **self._parts)
 
     def dynamics(self, angle):
-        """The same as engines take it."""
+        """Motion and forces at crank angles as engines take them, without any check."""
         return Dynamics(crank_angle=angle, **self._parts)
 
     @property
@@ -165,7 +171,7 @@ class Scene(Parameters):
         return {name: getattr(self, name) for name in SceneParts._fields}
 
     def turn(self, angles):
-        """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
+        """Even crank angles over one period from 0, end excluded; anything but a whole number is returned as it is."""
         if not isinstance(angles, int | np.integer) or isinstance(angles, bool):
             return angles
         checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
@@ -173,7 +179,7 @@ class Scene(Parameters):
 
 
 def scene_problem(value):
-    """What is wrong with what is given as a scene, or None; a variant of a case and others hold one."""
+    """Sentence on an argument that is no scene, else None; a variant of a case and others have a `.scene`."""
     if isinstance(value, Scene):
         return None
     hint = "; give its .scene" if isinstance(getattr(value, "scene", None), Scene) else ""
@@ -204,9 +210,9 @@ def solve(
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
-        nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
-        A function must be pure: engines call it as often as they need.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them. Arrays and loads of
+        your own are copied: later changes of them have no effect. A function must be pure: engines call it as often as
+        they need.
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
@@ -216,13 +222,13 @@ def solve(
         stroke back, depend on it. Unless given, the sign of the crank speed, at rest of the crank acceleration.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
-        give NaN there and exact values elsewhere (as needed under ``jax.jit``). Of several groups one may be open: NaN
-        are then its motion and that of what hangs on it, their forces, those of what carries them, and all that is of
-        the crank or of the mechanism as a whole (torque, "O", shaking, inertia, energies); the rest stays.
+        give NaN there and exact values elsewhere (as needed under ``jax.jit``). If one of several groups is open, NaN
+        are its motion and forces and those of groups attached to it, the forces of groups that carry it, and all
+        quantities of the crank or the whole mechanism (torque, "O", shaking, inertia, energies); the rest stays.
     engine : "numpy" or "compiled"
-        "compiled" runs the same kernels as one loop made by numba (extra `fast`), for each quantity when it is asked
-        for: the first time takes about a second, then machine code is kept on disk. Unless told, it is taken for a
-        million crank angles (designs times angles) and more, if numba is installed. Results agree to a few ulp.
+        "compiled" runs the same kernels as one loop compiled by numba (extra `fast`) for each quantity: the first time
+        takes about a second, then machine code is kept on disk. By default it is used from a million crank angles
+        (designs times angles) on, if numba is installed. Results agree to a few ulp.
 
     Returns
     -------
@@ -275,7 +281,7 @@ def solve(
         sense=sense,
     )
     scene._admit("solve")
-    return check_solution(_start(scene, crank_angle, on_gap, engine), on_gap)
+    return _start(scene, crank_angle, on_gap, engine).check(on_gap)
 
 
 def _start(scene, crank_angle, on_gap, engine):
@@ -290,13 +296,13 @@ def _start(scene, crank_angle, on_gap, engine):
 
 
 def scene_hints(solution):
-    """Sentences on what looks like a slip in the scene of a solution, looked for only where there may be one."""
+    """Sentences on numbers of the scene that look like slips; the full test runs only if the fast one fails."""
     _, may_be = solution.first_look or (None, True)
-    return slips.plausibility_hints(solution) if may_be else ()
+    return parameters.plausibility_hints(solution) if may_be else ()
 
 
 def unchecked_solution(scene, crank_angle, engine=None):
-    """What `solve` returns, before a look at slips, at where the mechanism closes and at where digits are lost."""
+    """The solution that `solve` returns, before hints at slips and before `Solution.check`."""
     angle = crank_angles(crank_angle)
     solution = construct_unchecked(Solution, crank_angle=angle, **scene._parts)
     wrong = None if 0.0 < solution.farthest < math.inf else angle_problem(angle)
@@ -317,7 +323,7 @@ def unchecked_solution(scene, crank_angle, engine=None):
 
 
 def _engine(name, angle, solution):
-    """The engine asked for, or the one that suits so many crank angles, all designs together."""
+    """The engine of that name, by default the one that suits the number of values."""
     if name == "compiled":
         if not is_plain(angle):
             raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
@@ -329,8 +335,8 @@ def _engine(name, angle, solution):
 
 
 def _sense(owner, given, speed):
-    """The sense of rotation, checked: +1 or -1, and that of the speed where the crank turns."""
-    sense, problem = SENSE.taken(given, "sense")
+    """The sense of rotation, checked: +1 or -1, equal to the sign of the speed where the crank turns."""
+    sense, problem = SENSE.check(given, "sense")
     ways, rates = None if problem else concrete_array(sense), concrete_array(speed)
     if ways is not None and np.any(np.abs(ways) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
@@ -344,7 +350,7 @@ def _sense(owner, given, speed):
 
 
 def mechanism_problem(found):
-    """What is wrong with what was given for a mechanism, or None."""
+    """Sentence on an argument that is no mechanism, else None."""
     if isinstance(found, Mechanism):
         return None
     itself = not isinstance(found, type) and hasattr(found, "solve")
@@ -353,7 +359,7 @@ def mechanism_problem(found):
 
 
 def _shapes(scene, angle):
-    """Shapes that must fit together, by what has them."""
+    """Shapes that must fit together, by name."""
     arrays = {"crank_angle": angle} | {name: getattr(scene, name) for name in (*DRIVE.rules, "sense")}
     shapes = {name: value.shape for name, value in arrays.items() if hasattr(value, "shape")}
     if scene.mechanism.batch:
@@ -366,16 +372,16 @@ def _shapes(scene, angle):
 
 
 def _period_problem(loads):
-    """What is wrong with the period that loads have in common, or None."""
+    """Sentence if the common period of the loads is too long, else None."""
     turns = period_of(loads) / TURN if len(loads) > 1 else 1.0
-    if turns <= MOST_TURNS:
+    if turns <= MAX_TURNS:
         return None
     each = ", ".join(f"{getattr(item, 'period', TURN) / TURN:.6g}" for item in loads)
-    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MOST_TURNS} at most"
+    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MAX_TURNS} at most"
 
 
 def _load_problems(mechanism, item):
-    """What is wrong with a load on a mechanism, as sentences."""
+    """Sentences on a load that does not fit the mechanism."""
     if isinstance(item, Load):
         return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):

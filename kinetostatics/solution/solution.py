@@ -1,4 +1,9 @@
-"""What users hold: motion and forces of a scene, each computed by an engine when first asked for."""
+"""What users hold: motion and forces of a scene, each quantity computed by an engine when it is first read.
+
+`Solution` reads top to bottom: checks, crank angles, forces, inertia and energy, friction, condition, explanation, and
+last how a quantity is asked of the engine. Positions, velocities and accelerations are those of `Motion`, proven bounds
+and uncertainties those of `Certainty`. SI and radians; shapes (..., N), vectors (2, ..., N).
+"""
 
 import math
 import warnings
@@ -10,62 +15,89 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.links import Turning
-from ..machine.loads import period_of
-from ..mechanics import assembly
+from ..machine.loads import period_of, refusals
+from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.load_values import require_pure
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import largest_term, resolved_names, values, without_bars
+from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
+from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked
 from ..results.turn import Turn
-from . import contents, slips
-from .angles import crank_angles, hint_at_angles
+from . import contents
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
-from .contacts import Contacts
-from .drive_and_loads import drive_and_loads_text, tables_over_angles
-from .energies import Energies
-from .explained import Explained
+from .parameters import (
+    crank_angles,
+    drive_and_loads_text,
+    hint_at_angles,
+    scene_plausibility_test,
+    tables_over_angles,
+)
 
 MAX_VALUES_TOGETHER = 100_000
 """Values over designs and angles up to which all forces are computed together."""
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, Energies, Contacts, Explained, Motion):
-    """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
-
-    The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
-    """
+class Solution(Certainty, Motion):
+    """Motion and forces of a mechanism; every result is computed when first read, and kept."""
 
     __doc__ = contents.__doc__
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
 
+    def __repr__(self):
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads_text(self)}>"
+
+    # Checks of a new solution
+
+    def check(self, on_gap="raise"):
+        """The solution with its friction solved; `on_gap` as for `solve`.
+
+        Raises where the mechanism does not close, friction jams or a load has no value; warns where half of the digits
+        are lost.
+        """
+        solution = self
+        if on_gap != "raise":
+            warn_of_lost_digits(self.dynamics, self.dynamics.closure)
+        elif not is_surely_well_conditioned(self, self._found("closure")):
+            warn_of_lost_digits(self.dynamics, assembly.check(self.dynamics))
+        if self.friction.acting:
+            checks.require("solve", jamming.problem_at_rest(self))
+            solution = jamming.solve_friction(self, jamming.checks_of)
+            jamming.check(solution, on_gap)
+        if not self.loads_are_given:
+            require_pure(solution)
+        checks.require("solve", *refusals(solution), *(energy_contact.refusals(solution) if on_gap == "raise" else ()))
+        return solution
+
     @cached_property
     def first_look(self):
         """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
         _, leaves = self.apart
-        look = self.kind.answer(slips.scene_plausibility_test) if leaves.are_plain and not leaves.parts else None
-        return look and look(leaves.numbers)
+        test = self.kind.answer(scene_plausibility_test) if leaves.are_plain and not leaves.parts else None
+        return test and test(leaves.numbers)
 
     @property
     def proportion(self):
+        """Sum of all lengths over the shortest, the largest of a batch."""
         return self.first_look[0] if self.first_look else self.mechanism.proportion
 
-    def check(self):
-        """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
-        if not is_surely_well_conditioned(self, self._found("closure")):
-            warn_of_lost_digits(self.dynamics, assembly.check(self.dynamics))
+    @property
+    def closed(self):
+        """Whether the mechanism closes, (..., N) of bool."""
+        return self.dynamics.closed
 
-    def warn(self):
-        """Warn where half of the digits are lost; where the mechanism does not close there are none."""
-        warn_of_lost_digits(self.dynamics, self.dynamics.closure)
+    @property
+    def is_given(self):
+        """Whether it contains no code of the user's, which may be wrong and is checked when it runs."""
+        return self.mechanism.trusted and self.loads_are_given
 
-    def __repr__(self):
-        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads_text(self)}>"
+    # Crank angles
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles.
@@ -90,18 +122,20 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     @property
     def period(self):
-        """Crank angle after which motion and loads repeat, rad: what extremes, means and tables run over."""
+        """Crank angle after which motion and loads repeat, rad; extremes, means and tables cover one period."""
         return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
     def sampled(self):
-        """The solution over its period as extremes and means look at it (`turn.Turn`), whatever its crank angles."""
+        """The solution over one period, a `Turn`, from which extremes and means are found."""
         return Turn.of(self)
 
     @cached_property
     def sampled_for_forces(self):
-        """The same with change points that are passed as limit positions: reactions grow there."""
+        """The same with passed change points treated as limit positions: reactions grow there."""
         return Turn.of(replace(self, silent=True), forces=True) if self.mechanism.passes else self.sampled
+
+    # Forces and moments
 
     @property
     def reactions(self):
@@ -140,35 +174,6 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         return found
 
     @property
-    def guide_force(self):
-        """Force of the guide on the slider along the guide's left normal, N."""
-        return self.scalar("guide_force")
-
-    @property
-    def guide_moment(self):
-        """Moment of the guide on the slider about the slider pin, N m."""
-        return self.scalar("guide_moment")
-
-    def pin_load(self, joint):
-        """Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint."""
-        owner = self._look_up("joint", joint, self.mechanism.joints).link
-        total = np.zeros((2, *self.shape))
-        for name, pair in self.mechanism.pairs.items():
-            if isinstance(pair, Turning) and pair.joint == joint:
-                total = total + (1.0 if pair.link == owner else -1.0) * self.reaction(name)
-        return total
-
-    @property
-    def cam_force(self):
-        """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
-        return self.scalar("cam_force")
-
-    @property
-    def slot_force(self):
-        """Force of the slotted crank on the block across the ray, positive with growing crank angle, N."""
-        return self.scalar("slot_force")
-
-    @property
     def balancing_torque(self):
         """Torque on the crank that the drive must give, counter-clockwise positive, N m; times omega its power, W."""
         return self.scalar("balancing_torque")
@@ -189,23 +194,63 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     @property
     def largest_torque_term(self):
-        """Largest torque that one load alone would take, N m: what the balancing torque is a sum of."""
+        """Largest torque that one load alone would take, N m; the balancing torque is a sum of such terms."""
         return self.dynamics.largest_torque_term
 
     @property
     def largest_force_term(self):
-        """Largest load on one link, weight, inertia or applied, N: what a reaction is a sum of."""
+        """Largest load on one link, weight, inertia or applied, N; a reaction is a sum of such terms."""
         return self.dynamics.largest_force_term
 
     @property
-    def shaking_force(self):
-        """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
-        return self._found("shaking_force")
+    def guide_force(self):
+        """Force of the guide on the slider along the guide's left normal, N."""
+        return self.scalar("guide_force")
 
     @property
-    def shaking_moment(self):
-        """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
-        return self._found("shaking_moment")
+    def guide_moment(self):
+        """Moment of the guide on the slider about the slider pin, N m."""
+        return self.scalar("guide_moment")
+
+    @property
+    def cam_force(self):
+        """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
+        return self.scalar("cam_force")
+
+    @property
+    def slot_force(self):
+        """Force of the slotted crank on the block across the ray, positive with growing crank angle, N."""
+        return self.scalar("slot_force")
+
+    def pin_load(self, joint):
+        """Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint."""
+        owner = self._look_up("joint", joint, self.mechanism.joints).link
+        total = np.zeros((2, *self.shape))
+        for name, pair in self.mechanism.pairs.items():
+            if isinstance(pair, Turning) and pair.joint == joint:
+                total = total + (1.0 if pair.link == owner else -1.0) * self.reaction(name)
+        return total
+
+    def pressure(self, name="contact_pressure"):
+        """Largest Hertz pressure of a line contact by name, (..., N), Pa; NaN where there is no such contact.
+
+        A cam with a `Roller` and a follower with a `Face` have one; for a second follower the name ends with its label.
+        """
+        checks.require("pressure", checks.quantity(name))
+        known = of_scene(self)
+        return self._found(name) if name in known and known[name].kind == "contact" else self.dynamics.pressure(name)
+
+    @property
+    def contact_pressure(self):
+        """Largest Hertz pressure between cam and roller, Pa, of a cam that has a `Roller`."""
+        return self.pressure()
+
+    @property
+    def pressure_angle(self):
+        """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
+        return self.measure("pressure_angle")
+
+    # Inertia and energy
 
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N.
@@ -221,9 +266,115 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         return self.dynamics.inertia_force(link)
 
     @property
-    def pressure_angle(self):
-        """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
-        return self.measure("pressure_angle")
+    def shaking_force(self):
+        """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
+        return self._found("shaking_force")
+
+    @property
+    def shaking_moment(self):
+        """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
+        return self._found("shaking_moment")
+
+    @property
+    def reduced_inertia(self):
+        """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
+        return self._found("reduced_inertia")
+
+    @property
+    def reduced_inertia_slope(self):
+        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
+        return self._found("reduced_inertia_slope")
+
+    @property
+    def kinetic_energy(self):
+        """Kinetic energy of all links, (..., N), J."""
+        return self._found("kinetic_energy")
+
+    @property
+    def potential_energy(self):
+        """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
+
+        Loads without potential, as process forces and dampers, count nothing.
+        """
+        return self._found("potential_energy")
+
+    @property
+    def load_torque(self):
+        """Torque on the crank that balances weight and loads at their speed, without any inertia, (..., N), N m.
+
+        With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
+        """
+        return self._found("load_torque")
+
+    @cached_property
+    def energy_per_turn(self):
+        """Work of the balancing torque in a turn of the crank, J; of one design."""
+        from ..results.means import energy_per_turn
+
+        return energy_per_turn(self)
+
+    # Friction
+
+    def friction_at(self, joint):
+        """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
+        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        return self._of_friction(f"{joint}_friction")
+
+    def friction_loss_at(self, joint):
+        """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 without friction there."""
+        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        return self._of_friction(f"{joint}_friction_loss")
+
+    @property
+    def guide_friction(self):
+        """Friction of the guide on the slider along the guide, N; 0 without friction."""
+        return self._of_friction("guide_friction")
+
+    @property
+    def friction_loss(self):
+        """Power lost by friction at all joints, (..., N), W, not negative."""
+        return self._of_friction("friction_loss")
+
+    @property
+    def friction_torque(self):
+        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
+        return self._of_friction("friction_torque")
+
+    @cached_property
+    def losses(self):
+        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
+        from ..results.losses import losses
+
+        return losses(self)
+
+    @property
+    def efficiency(self):
+        """Mechanical efficiency over the period: work taken by loads over work taken by loads and lost at joints."""
+        return self.losses.efficiency
+
+    @property
+    def friction_margin(self):
+        """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
+
+        Of a single guide or pin with friction it is ``1 - |kappa|``, exactly: where it is 0 or less there is no state,
+        or there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where
+        it is 0 or less there may still be one state; none is looked for, and friction is NaN.
+        """
+        return self._of_friction("friction_margin") if self.friction else self._scalar(1.0)
+
+    @property
+    def friction_residual(self):
+        """How much forces would change by one more pass over friction, relative to the largest of a group."""
+        return self._of_friction("friction_residual")
+
+    @property
+    def converged(self):
+        """Whether friction and reactions agree to rounding, (..., N) of bool; without friction: whether it closes."""
+        if not self.friction.acting:
+            return np.broadcast_to(self.closed, self.shape)
+        return jamming.converged(*jamming.checks_of(self))
+
+    # Condition, explanation and table
 
     @cached_property
     def condition(self):
@@ -234,8 +385,8 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
 
-        Where change points are passed ("open", "crossed") it is of motion and torque alone, which are ordinary there;
-        `condition_of` tells it of a reaction.
+        Where change points are passed ("open", "crossed") it covers motion and torque alone, which are ordinary there;
+        `condition_of` gives it for a reaction.
 
         Derivatives are exact, those of the recorded program. Where a group of the user's own does more than arithmetic,
         so that it cannot be recorded, they are differences, and a `ConditionWarning` says so.
@@ -250,7 +401,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def condition_of(self, quantity):
         """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).
 
-        Of a vector that is its magnitude, "O" as "|O|".
+        Of a vector it is that of the magnitude: "O" as "|O|".
 
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
@@ -272,11 +423,55 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
             found = self._condition_with_reactions
         return found * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (found.ndim > 0))
 
+    def explain(self, quantity, angle, design=None):
+        """The hand calculation of a quantity at one crank angle: formula, numbers with units, result, link by link.
+
+        The steps are the kernels' own arithmetic. Friction, which is found by iteration, is shown by the law that it
+        satisfies.
+
+        Parameters
+        ----------
+        quantity : str
+            Any that the solution has: "balancing_torque", a joint (its reaction), "slider_acceleration" ...;
+            ``"|O|"`` for the magnitude of a vector.
+        angle : float
+            Crank angle, rad; it need not be one of those solved.
+        design : int or tuple of int, optional
+            Which one of several designs.
+
+        Returns
+        -------
+        Explanation
+            ``print`` it, or show it in a notebook; `.text`, `.latex`, `.html`, and `.steps` as data.
+
+        Raises
+        ------
+        QuantityError
+            There is no such quantity; the message lists those there are.
+        AssemblyError
+            The mechanism does not close at that crank angle.
+        ParameterError
+            Several designs and no `design`, several crank angles, or an angle between those of a table.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+        >>> shown = ks.solve(pump, 0.0, crank_speed=100.0).explain("slider_velocity", 0.7)
+        >>> print(shown.steps[-1].formula, "=", shown.steps[-1].numbers, "=", shown.steps[-1].shown)
+        omega*s_slider' = 100*(-0.0384514) = -3.84514
+        """
+        from .hand_calculation import explain
+
+        return explain(self, quantity, angle, design)
+
     def frame(self):
         """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
         from .frame import solution_frame
 
         return solution_frame(self)
+
+    # How a quantity is asked of the engine
 
     @cached_property
     def dynamics(self):
@@ -298,11 +493,6 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         )
 
     @property
-    def closed(self):
-        """Whether the mechanism closes at each angle."""
-        return self.dynamics.closed
-
-    @property
     def placement(self):
         """Joints and links by name, as kinematic coefficients."""
         return self.dynamics.placement
@@ -311,10 +501,26 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def _values(self):
         return {}
 
-    @property
-    def is_given(self):
-        """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
-        return self.mechanism.trusted and self.loads_are_given
+    def _force(self, kind, name, vector):
+        """A force by name; all are computed together if they are not too many."""
+        if isinstance(name, str) and name in self._values:
+            return self._values[name]
+        self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
+        return self._found(name)
+
+    def _of_friction(self, name):
+        """A quantity of friction by name; 0 without friction there."""
+        return self._found(name) if name in of_scene(self) else self._scalar(None)
+
+    def _found(self, name):
+        """Any quantity by its name in the table of quantities, or "closure"."""
+        if name not in self._values:
+            if not self.mechanism.trusted and name in self.mechanism.outputs:
+                self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
+            of_all = self.is_given if name == "closure" else name in resolved_names(self)
+            together = of_all and math.prod(self.shape) <= MAX_VALUES_TOGETHER
+            self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
+        return self._values[name]
 
     def _warn_of_growth(self, name, values):
         """Say once that forces grow without bound at a change point that is passed."""
@@ -326,19 +532,3 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         if text:
             object.__setattr__(self, "silent", True)
             warnings.warn(text, ConditionWarning, stacklevel=3)
-
-    def _force(self, kind, name, vector):
-        """A force by name; all are computed together if they are not too many."""
-        if isinstance(name, str) and name in self._values:
-            return self._values[name]
-        self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
-        return self._found(name)
-
-    def _found(self, name):
-        if name not in self._values:
-            if not self.mechanism.trusted and name in self.mechanism.outputs:
-                self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            of_all = self.is_given if name == "closure" else name in resolved_names(self)
-            together = of_all and math.prod(self.shape) <= MAX_VALUES_TOGETHER
-            self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
-        return self._values[name]

@@ -1,4 +1,4 @@
-"""How sure the largest values of a machine are: what tolerances of its numbers make, and what rounding does."""
+"""Table of the largest values of a machine with their uncertainty from tolerances of its numbers and from rounding."""
 
 import warnings
 from functools import lru_cache
@@ -16,19 +16,19 @@ from .scene import Scene
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 TABLE_KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
-"""Of quantities that the table tells."""
+"""Kinds of quantities in the table."""
 SMOOTH_KINDS = (*SMOOTH, "whole")
-"""Of those that no load or friction bends: motion, and the inertia forces of the whole machine."""
+"""Kinds without kinks from loads or friction: motion, and the inertia forces of the whole machine."""
 SECOND_TORQUE = "balancing_torque_by_power"
-"""Says what the torque says."""
+"""Equal to the torque, so left out."""
 
 
 def largest_with_uncertainty(solution, inputs):
     """Largest value of each quantity over the period, and its uncertainty there, a pandas DataFrame.
 
-    To first order an extremum changes with the inputs as the value at its crank angle does. Not so one that a row of a
-    table or a jump makes, which stands where the curve is steep and moves with them: there the largest values with each
-    input smaller and larger by its uncertainty are compared. Quantities that do not vary over the period are left out.
+    To first order an extremum changes with the inputs as the value at its crank angle does. At a kink or jump it also
+    moves along a steep curve: there the largest values with each input smaller and larger by its uncertainty are
+    compared. Quantities that do not vary over the period are left out.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ def largest_with_uncertainty(solution, inputs):
     -------
     pandas.DataFrame
         By quantity its unit, its value of largest magnitude and the crank angle, the standard uncertainty from all
-        inputs, the proven bound on rounding (NaN where there is none), the input that makes most of the uncertainty,
-        and its share of the variance.
+        inputs, the proven bound on rounding (NaN where there is none), the input with the largest share of the
+        variance, and this share.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def largest_with_uncertainty(solution, inputs):
 
 
 def _row(known, name, quantity, moved):
-    """A row of the table, and the doubt that it says too little, or None."""
+    """A row of the table, and the doubt that its uncertainty is too small, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
     at_kink = np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP)
     if at_kink and quantity.kind not in SMOOTH_KINDS:
@@ -97,10 +97,7 @@ class _ShiftedScenes:
         return [self._scene.varied({path: given + way * by}).unsolved(self._angle) for way in (-1.0, 1.0)]
 
     def parts(self, name, rounding):
-        """Half of what the largest magnitude differs by, by path, and the doubt that it says too little, or None.
-
-        Within a bound on rounding that is 0.
-        """
+        """Half the difference of the largest magnitude by path, 0 within rounding; and the doubt or None."""
         found, doubt = {}, None
         for path in self.inputs:
             try:
@@ -118,5 +115,5 @@ def _largest(solution, name):
 
 
 def format_with_uncertainty(value, uncertainty):
-    """A number to the second digit of its uncertainty, and that: "40578.9 +- 3.1"."""
+    """A number to the second digit of its uncertainty, and the uncertainty: "40578.9 +- 3.1"."""
     return f"{number(value, bound=0.1 * uncertainty)} +- {round_uncertainty_up(uncertainty)}"

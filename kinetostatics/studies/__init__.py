@@ -1,4 +1,4 @@
-"""Questions about methods and models: needs, precision, stability, and the methods under study; they return data.
+"""Studies of models and methods: needs, precision, stability; they return data.
 
-May import all rooms above: numbers to sweeps.
+May import errors, numbers to sweeps.
 """

@@ -1,8 +1,8 @@
-"""What a scene is made of, and how much of it a quantity needs: the smallest model within a tolerance.
+"""The smallest model of a scene that keeps a quantity within a tolerance.
 
-An ingredient can be left out or put more simply. `needs` tries every combination by running it, counts the operations
-each one takes at a crank angle, and names the cheapest that keeps the quantity. A simplification that alone changes too
-much may still be allowed beside another, as errors may cancel; so none is skipped unless there are too many models.
+`needs` runs every combination of simplifications, counts the operations at each crank angle, and names the cheapest
+combination within the tolerance. Errors may cancel, so a simplification that alone changes too much is still tried
+beside others, unless there are too many models.
 """
 
 import itertools
@@ -20,23 +20,23 @@ from ..solution.solution import Solution
 from .simplifications import ingredients
 
 MAX_MODELS = 2_000
-"""Combinations that `needs` is ready to run: a minute of work."""
+"""Largest number of combinations that `needs` runs: a minute of work."""
 PROGRESS_DELAY = 10.0
-"""Seconds after which a bar shows how far it has come."""
+"""Seconds before a progress bar appears."""
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A scene with some of it left out or simplified.
+    """A scene with some of its parts left out or simplified.
 
     Attributes
     ----------
     simplifications : tuple of str
-        What was done; empty for the full scene.
+        Names of the simplifications; empty for the full scene.
     error : float
         Largest change of the quantity over the crank angles, relative to its largest value in the full scene.
     operations : int
-        Arithmetic operations at each crank angle that the quantity takes.
+        Arithmetic operations for the quantity at each crank angle.
     solution : Solution
         The model itself, ready to use.
     """
@@ -53,25 +53,25 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Needs:
-    """How much of a scene a quantity needs; made by `needs`.
+    """The models that a quantity needs; made by `needs`.
 
     Attributes
     ----------
     quantity : str
     within : float
-        Change of the quantity that is allowed, relative to its largest value.
+        Allowed change of the quantity, relative to its largest value.
     full : Model
     alone : tuple of Model
         Each simplification by itself.
     ladder : tuple of Model
-        From the full scene down, each the cheapest of all combinations with so small an error.
+        From the full scene down, each the cheapest combination with its error or less.
     smallest : Model
-        The cheapest of the combinations run that are within the tolerance; of equally cheap ones, that with the least
-        in it. All were run but those with what is told in `left_out`.
+        The cheapest combination within the tolerance; of equally cheap ones the most simplified. Combinations with the
+        simplifications in `left_out` were not run.
     tried : int
         Number of combinations run.
     left_out : dict of str to str
-        Simplifications that were not tried in combinations, by name, and why not.
+        Simplifications that were not tried in combinations, with the reason.
 
     Examples
     --------
@@ -96,16 +96,13 @@ class Needs:
         return (
             f"{self.label} within {self.within:.3g}: {self.smallest.name}, {self.smallest.operations} of "
             f"{self.full.operations} operations ({saved:.0%} saved), error {self.smallest.error:.2g}; "
-            f"{self.tried} models run{self._omissions()}"
+            f"{self.tried} models run" + "".join(f"; {name} left out: {why}" for name, why in self.left_out.items())
         )
 
     @property
     def label(self):
-        """What a table or an axis calls the quantity."""
+        """Label of the quantity in tables and charts."""
         return label_of(self.full.solution, self.quantity)
-
-    def _omissions(self):
-        return "".join(f"; {name} left out: {why}" for name, why in self.left_out.items())
 
     __repr__ = __str__
 
@@ -119,17 +116,16 @@ class Needs:
 
 
 def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs:
-    """How much model a quantity needs: every combination of simplifications run, the cheapest one named.
+    """Find the cheapest model within a tolerance: run every combination of simplifications.
 
-    Left out or put more simply: gravity, springs, process forces, friction of pins, of guides, of slots and of rollers,
-    crank acceleration, guide offset, mass-centre offsets across the links, masses of links, inertia of those that keep
-    two joints apart, such as coupler and rocker, about their centres, the coupler as two masses at its joints, and
-    kinematics as Fourier series of one or two harmonics. Links of one kind, such as coupler and coupler2, are
-    simplified together, and joints that rub in the same way. Where that makes more than 2000 combinations, the
-    simplifications that alone change most are left out of them; a cheaper model in which their errors cancel would be
-    missed. So are those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond
-    its joints, or harmonics that take a slider beyond the table of its load. The result tells them by name, with the
-    reason.
+    Simplifications: no gravity, springs, process forces, friction of pins, guides, slots or rollers; constant crank
+    speed; guide through O; mass centres on the links; massless links; links with two joints, such as coupler and
+    rocker, without moment of inertia; the coupler as two masses at its joints; kinematics as Fourier series of one or
+    two harmonics. Links of one kind, such as coupler and coupler2, are simplified together, and so are joints with one
+    kind of friction. Above 2000 combinations, the simplifications that alone change most are left out; a cheaper model
+    in which their errors cancel would be missed. Simplifications that the scene does not allow are left out too, such
+    as two masses for a coupler whose mass centre lies beyond its joints, or harmonics that move a slider beyond the
+    table of its load. `Needs.left_out` lists both with the reason.
 
     Parameters
     ----------
@@ -140,9 +136,9 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     within : float
         Allowed change relative to the quantity's largest value.
     variant : str, optional
-        Of a case; its reference unless told.
+        Of a case; its reference by default.
     progress : bool
-        Whether a bar is shown where it takes longer than ten seconds.
+        Show a progress bar after ten seconds.
 
     Returns
     -------
@@ -174,7 +170,7 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
 
 
 def _check_arguments(scene, quantity, within, variant):
-    """The solution of one design that is asked about, and the change that is allowed."""
+    """The checked solution of one design, and the allowed change."""
     known = isinstance(scene, Solution) or hasattr(scene, "variants")
     within = checks.single_numbers(
         "needs",
@@ -195,7 +191,7 @@ class _ModelRunner:
     Attributes
     ----------
     left_out : dict of name to reason
-        Simplifications that the scene does not allow, as far as they were tried.
+        Simplifications that the scene does not allow.
     """
 
     def __init__(self, solution, quantity):
@@ -209,8 +205,8 @@ class _ModelRunner:
         self.left_out: dict[str, str] = {}
 
     def of(self, choices):
-        """The model with some simplifications; None if the scene does not allow them, or one changes nothing."""
-        simplified = self._simplified(choices)
+        """The model with some simplifications; None if the scene does not allow them or one changes nothing."""
+        simplified = self._simplify(choices)
         if simplified is None:
             return None
         names = tuple(choice.name for choice in choices)
@@ -218,19 +214,19 @@ class _ModelRunner:
             with np.errstate(all="ignore"):
                 off = np.array(components(simplified, self._quantity)) - self._exact
                 change = np.linalg.norm(off, axis=0).max() / self._largest
-        except ParameterError as why:  # a load has no value where the model goes, as a table over travel
+        except ParameterError as why:  # a load has no value there, as a table over travel
             self.left_out[" with ".join(names)] = str(why)
             return None
         error = float(change) if math.isfinite(change) else math.inf
         program, _ = program_of(simplified.dynamics, (self._quantity,))
         return Model(names, error, program.recording.operations, simplified)
 
-    def _simplified(self, choices):
-        """The solution with some simplifications, one after the other; None as for `of`."""
+    def _simplify(self, choices):
+        """The solution with some simplifications, made in turn; None as for `of`."""
         simplified = self._solution
         for choice in choices:
             try:
-                simplified = choice.simplified(simplified)
+                simplified = choice.simplify(simplified)
             except NotGivenError as why:
                 if len(choices) == 1:
                     self.left_out[choice.name] = str(why)
@@ -241,7 +237,7 @@ class _ModelRunner:
 
 
 def _with_progress(combinations, options, progress):
-    """The combinations, with a bar of how many of them have been taken."""
+    """The combinations, with a progress bar."""
     from tqdm import tqdm
 
     total = math.prod(map(len, options))
@@ -249,7 +245,7 @@ def _with_progress(combinations, options, progress):
 
 
 def _choices_by_ingredient(parts, alone, left_out):
-    """By ingredient: None and its simplifications; those that change most are left out if there are too many models."""
+    """By ingredient: None and its simplifications, without those that change most if there are too many models."""
     kept = set(alone)
 
     def options():

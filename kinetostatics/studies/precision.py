@@ -1,4 +1,4 @@
-"""Work against precision: what every method takes in time, and how near it comes to a certified reference."""
+"""Work against precision: time and error of every method against a certified reference."""
 
 import math
 from pathlib import Path
@@ -9,9 +9,11 @@ from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
-from .methods import METHODS, Method
+from .methods import engines, papers
+from .methods.global_system import newton
 from .methods.high_precision.certified import Enclosure, certified, enclosure, relative_errors
-from .methods.method import circumstances, seconds
+from .methods.kane import equations
+from .methods.method import Method, circumstances, seconds
 from .methods.running import BENCHMARKS, MOTION_METHODS, RUNNING_METHODS, study_motion, study_running
 
 __all__ = [
@@ -33,16 +35,26 @@ __all__ = [
     "study_running",
 ]
 
+METHODS = (
+    *engines.METHODS,
+    *papers.METHODS,
+    *equations.METHODS,
+    *newton.NEWTON_METHODS,
+    *engines.APPROXIMATE_METHODS,
+    *newton.INTEGRATION_METHODS,
+    papers.AS_PRINTED,
+)
+"""All methods for a solution, in the order of charts."""
 QUANTITY = "balancing_torque"
 FRONT_ACCURACY = 1e-6
-"""Accuracy from which on no method may be both faster and nearer than the library's own."""
+"""Error below which no method may be both faster and more accurate than the library's own."""
 
 
 def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None):
     """Time and error of every method for one quantity.
 
-    The reference is certified. With friction no crank angle may be one at which a link or slider turns back: it jumps
-    there.
+    The reference is certified. With friction no crank angle may be one at which a link or slider reverses: friction
+    jumps there.
 
     Parameters
     ----------
@@ -51,9 +63,9 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     quantity : str
         "balancing_torque", a joint (its reaction), "slider_acceleration" ...
     methods : sequence of Method, optional
-        `METHODS` unless told.
+        `METHODS` by default.
     repeats : int
-        Of each timing; the median counts, what a method does once for a mechanism does not.
+        Of each timing; the median counts, without the work done once for a mechanism.
     progress : function, optional
         Called with the name of each method before it runs.
 
@@ -61,9 +73,8 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     -------
     pandas.DataFrame
         A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
-        quantity's largest value, the bound that the method itself proves for that, NaN where it proves none, the device
-        that computes, and for what a method cannot give the reason, with NaN for the three numbers: a motion that is
-        too coarse for a table is one.
+        quantity's largest value, the bound that the method proves on it (NaN if none), the device, and the reason, with
+        NaN for the three numbers, if a method does not give the quantity.
 
     Raises
     ------
@@ -134,14 +145,14 @@ def front(table):
 
 
 def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=360, progress=None, page=None):
-    """Study a case: one CSV, and a chart as PNG and SVG if told how to draw it, into a folder; returns their paths.
+    """Study a case and write one CSV to a folder, and charts if `page` is given; returns the paths.
 
     Parameters
     ----------
     case : Case
     folder : path
     variants : sequence of str, optional
-        One of each kind of mechanism unless told.
+        One of each kind of mechanism by default.
     quantities : sequence of str
     angles : int
         Crank angles over the turn.
@@ -151,7 +162,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     Raises
     ------
     ParameterError
-        Before any work: the files cannot be written there, or would replace what the case is read from.
+        Before any work: the files cannot be written there, or would replace files of the case.
     """
     import pandas as pd
 
@@ -177,7 +188,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
 
 
 def _solve_turn(case, name, angles):
-    """Solution over the turn; with friction half a step on, off the dead centres, at which it jumps."""
+    """Solution over the turn; with friction shifted by half a step, off the dead centres, where it jumps."""
     solution = case.solve(name, angles)
     return solution.at(solution.crank_angle + math.pi / angles) if solution.friction else solution
 

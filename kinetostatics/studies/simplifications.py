@@ -1,6 +1,7 @@
-"""Motion found in other ways: joints by any method, links and forces as in the library; harmonic series among them.
+"""Parts of a scene that can be left out or simplified, and how each simplification is made.
 
-What a scene is made of, and how each part of it can be left out or put more simply, read off what groups declare.
+Among them are the couplers as two point masses, and the kinematics as Fourier series of the joint paths (harmonic
+series of engine theory; Biezeno and Grammel, *Technische Dynamik*).
 """
 
 from collections.abc import Callable
@@ -26,11 +27,11 @@ from ..numbers.planar import rotate
 from ..solution.solution import Solution
 
 SERIES_SAMPLES = 512
-"""Positions over the turn from which the coefficients of harmonic series are found."""
+"""Samples of a turn for the coefficients of harmonic series."""
 
 
 def placement_from_joints(mechanism, angle, joints) -> Placement:
-    """Placement of a mechanism whose moving joints are known, by name, with their derivatives."""
+    """Placement of a mechanism from its moving joints by name, with their derivatives."""
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
         if not group.follows:
@@ -40,12 +41,12 @@ def placement_from_joints(mechanism, angle, joints) -> Placement:
 
 
 def moving_joints(mechanism):
-    """Names of the joints that groups place and that move; the crank pin is known exactly."""
+    """Names of the moving joints of groups; the crank pin is not among them."""
     return [name for group in mechanism.groups for name, point in group.joints.items() if point.link != FRAME]
 
 
 def joint_positions(mechanism, angle):
-    """Positions of the moving joints, (joints, 2, ...)."""
+    """Positions of the moving joints, (joints, 2, ...), m."""
     names, shape = moving_joints(mechanism), np.shape(angle)
     joints = mechanism.place(angle).joints
     found = [[np.broadcast_to(part, shape) for part in joints[name].position] for name in names]
@@ -53,7 +54,7 @@ def joint_positions(mechanism, angle):
 
 
 def paths_over_turn(mechanism, angle):
-    """The same over a whole turn; refused where no joint moves but the crank pin, and where one cannot be found."""
+    """Positions over a whole turn; an error if no joint moves or a group does not close all around."""
     found = joint_positions(mechanism, angle)
     if not found.size:
         what = "moves no joint but the crank pin" if mechanism.groups else "is a crank alone"
@@ -73,9 +74,9 @@ def joint_motions(mechanism, position, first, second):
 
 
 def harmonic_series(solution, order):
-    """Way to a placement from Fourier series of the joints' paths, cut off after a harmonic of the crank angle.
+    """Placement method from Fourier series of the joint paths, truncated after a harmonic of the crank angle.
 
-    Of the plain crank-slider these are the series of engine theory (Biezeno and Grammel, *Technische Dynamik*), with
+    For the plain crank-slider these are the series of engine theory (Biezeno and Grammel, *Technische Dynamik*), with
     coefficients to all powers of crank over coupler length.
     """
     mechanism = solution.mechanism
@@ -106,7 +107,7 @@ def _multiples(ray, order):
 
 
 def _sum_series(coefficients, turns, derivative):
-    """Derivative of the real part of the series, sum of a conj(turn), over its harmonics; absent terms left out."""
+    """Derivative of the real part of the series sum of a conj(turn), without zero terms."""
     total = coefficients[0].real if derivative == 0 else 0.0
     for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], turns, strict=True), 1):
         factor = coefficient * (1j * k) ** derivative
@@ -118,13 +119,13 @@ def _sum_series(coefficients, turns, derivative):
 
 @dataclass(frozen=True)
 class Choice:
-    """One simplification: what it is called, and how it is made; None where it changes nothing.
+    """A simplification by name; `simplify` returns the simpler solution, or None if nothing changes.
 
-    Where it cannot be made it raises `NotGivenError`, which says why.
+    `simplify` raises `NotGivenError` with the reason if the scene does not allow it.
     """
 
     name: str
-    simplified: Callable[[Solution], Solution | None]
+    simplify: Callable[[Solution], Solution | None]
 
 
 def two_mass_coupler(mechanism, only=None):
@@ -138,7 +139,7 @@ def two_mass_coupler(mechanism, only=None):
     ----------
     mechanism : Mechanism
     only : str, optional
-        What the couplers to be replaced are called without the labels of their groups; all unless told.
+        Name of the couplers to replace, without the labels of their groups; all by default.
 
     Returns
     -------
@@ -181,70 +182,49 @@ def _is_zero(value):
     return isinstance(value, int | float) and value == 0
 
 
-# Simplifications of a scene, each a function of the solution; None if there is nothing to simplify
+# Simplifications of a scene: functions of the solution that return None if there is nothing to simplify
 
 
-def _without_load(kind):
-    def simplified(solution):
-        kept = tuple(item for item in solution.loads if not isinstance(item, kind))
-        return replace(solution, loads=kept) if len(kept) < len(solution.loads) else None
-
-    return simplified
+def _without_load(kind, solution):
+    kept = tuple(item for item in solution.loads if not isinstance(item, kind))
+    return replace(solution, loads=kept) if len(kept) < len(solution.loads) else None
 
 
-def _without_friction(kind):
-    def simplified(solution):
-        gone = {joint for joint, friction in solution.friction.acting.items() if isinstance(friction, kind)}
-        left = {joint: replace(item, mu=0.0) if joint in gone else item for joint, item in solution.friction.items()}
-        return replace(solution, friction=replace(friction_of(left), passes=solution.friction.passes)) if gone else None
-
-    return simplified
+def _without_friction(kind, solution):
+    gone = {joint for joint, friction in solution.friction.acting.items() if isinstance(friction, kind)}
+    left = {joint: replace(item, mu=0.0) if joint in gone else item for joint, item in solution.friction.items()}
+    return replace(solution, friction=replace(friction_of(left), passes=solution.friction.passes)) if gone else None
 
 
 def _at_constant_speed(solution):
     return None if _is_zero(solution.crank_acceleration) else replace(solution, crank_acceleration=0.0)
 
 
-def _with_links(changed):
-    """Simplification that changes every link by ``changed(mechanism, name, link)``."""
-
-    def simplified(solution):
-        mechanism = solution.mechanism
-        for name, link in solution.mechanism.links.items():
-            new = changed(solution.mechanism, name, link)
-            if new is not None:
-                mechanism = mechanism.with_link(name, new)
-        return None if mechanism is solution.mechanism else replace(solution, mechanism=mechanism)
-
-    return simplified
+def _with_links(changed, solution):
+    """The solution with every link by ``changed(link, name without label)``, None for a link that stays."""
+    mechanism = solution.mechanism
+    for name, link in solution.mechanism.links.items():
+        new = changed(link, solution.mechanism.own_names[name])
+        if new is not None:
+            mechanism = mechanism.with_link(name, new)
+    return None if mechanism is solution.mechanism else replace(solution, mechanism=mechanism)
 
 
-def _massless(kind):
-    def changed(mechanism, name, link):
-        absent = _is_zero(link.mass) and _is_zero(link.inertia)
-        return None if absent or mechanism.own_names[name] != kind else Link()
-
-    return _with_links(changed)
+def _massless(kind, link, own_name):
+    return None if own_name != kind or (_is_zero(link.mass) and _is_zero(link.inertia)) else Link()
 
 
-def _without_inertia(kind):
-    def changed(mechanism, name, link):
-        absent = _is_zero(link.inertia) or mechanism.own_names[name] != kind
-        return None if absent else replace(link, inertia=0.0)
-
-    return _with_links(changed)
+def _without_inertia(kind, link, own_name):
+    return None if own_name != kind or _is_zero(link.inertia) else replace(link, inertia=0.0)
 
 
-def _centre_on_axis(mechanism, name, link):
+def _centre_on_axis(link, own_name):
     return None if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
 
 
-def _two_mass(kind):
-    def simplified(solution):
-        mechanism = two_mass_coupler(solution.mechanism, kind)
-        return None if mechanism is None else replace(solution, mechanism=mechanism)
-
-    return simplified
+def _two_mass(kind, solution):
+    mechanism = two_mass_coupler(solution.mechanism, kind)
+    return None if mechanism is None else replace(solution, mechanism=mechanism)
 
 
 def _guides_through_crank_centre(solution):
@@ -255,39 +235,43 @@ def _guides_through_crank_centre(solution):
     return replace(solution, mechanism=map_numbers(mechanism, lambda number: number, through))
 
 
-def _up_to_harmonic(order):
-    return lambda solution: replace(solution, engine=Kernels(harmonic_series(solution, order)))
+def _up_to_harmonic(order, solution):
+    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
 CHOICES_BEFORE_LINKS = {
-    **{name: (Choice(f"no {name}", _without_load(kind)),) for kind in KINDS for name in [kind.RULES.owner]},
+    **{name: (Choice(f"no {name}", partial(_without_load, kind)),) for kind in KINDS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
-    "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centre_on_axis)),),
+    "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis)),),
 }
 CHOICES_AFTER_LINKS = {
     "kinematics": (
-        Choice("two harmonics", _up_to_harmonic(2)),
-        Choice("one harmonic", _up_to_harmonic(1)),
+        Choice("two harmonics", partial(_up_to_harmonic, 2)),
+        Choice("one harmonic", partial(_up_to_harmonic, 1)),
     ),
 }
 
 
 def ingredients(mechanism):
-    """By ingredient: how it can be simplified, from the least to the most; applied in this order.
+    """Simplifications by ingredient, mildest first; they are applied in this order.
 
-    Links go by what they are called without the labels of their groups; others come before couplers, which share their
-    masses out to them, and kinematics come last.
+    Links have their names without the labels of groups. Couplers come after other links, to which they add masses;
+    kinematics come last.
     """
     kinds = mechanism.own_names
     couplers = {kinds[bar.link] for bar in mechanism.couplers}
     hung = {kinds[bar.link] for group in mechanism.groups for bar in group.bars}
     links = {}
     for kind in sorted(dict.fromkeys(kinds.values()), key=lambda kind: kind in couplers):
-        choices = [Choice(f"no {kind} inertia", _without_inertia(kind))] if kind in hung else []
-        choices += [Choice(f"two-mass {kind}", _two_mass(kind))] if kind in couplers else []
-        links[kind] = (*choices, Choice(f"massless {kind}", _massless(kind)))
+        choices = (
+            [Choice(f"no {kind} inertia", partial(_with_links, partial(_without_inertia, kind)))]
+            if kind in hung
+            else []
+        )
+        choices += [Choice(f"two-mass {kind}", partial(_two_mass, kind))] if kind in couplers else []
+        links[kind] = (*choices, Choice(f"massless {kind}", partial(_with_links, partial(_massless, kind))))
     rubs = {friction_kind(pair) for pair in mechanism.pairs.values()}
     names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
-    friction = {name: (Choice(f"no {name}", _without_friction(kind)),) for name, kind in names.items()}
+    friction = {name: (Choice(f"no {name}", partial(_without_friction, kind)),) for name, kind in names.items()}
     return CHOICES_BEFORE_LINKS | friction | links | CHOICES_AFTER_LINKS

@@ -1,10 +1,8 @@
-"""Places where methods may fail: families of scenes with one number that leads toward each.
-
-Stability: what every method does near the places where it should hurt, against a certified reference.
+"""Stability: the error of every method near places where it may fail, against a certified reference.
 
 A place is a family of scenes with one number that leads toward it: the distance from a dead centre, a mass ratio, the
-size of the mechanism. The error of a method counts as exact while it is below the rounding unit times the condition of
-the problem, which the library reports itself, at crank angles counted from the last full turn.
+size of the mechanism. The error of a method counts as exact while it is below the rounding unit times the condition
+that the library reports, at crank angles counted from the last full turn.
 """
 
 import math
@@ -25,10 +23,10 @@ from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..solution.solution import Solution
-from .methods import METHODS
 from .methods.engines import proven_bound
 from .methods.high_precision.certified import differences, enclosure, relative_errors
 from .methods.method import circumstances
+from .precision import METHODS
 
 CRANK_SPEED = 320 * math.pi / 30
 DISTANCES = tuple(10.0**k for k in range(-17, 0))
@@ -36,13 +34,13 @@ DISTANCES = tuple(10.0**k for k in range(-17, 0))
 
 @dataclass(frozen=True)
 class Place:
-    """Where methods may fail.
+    """A family of scenes in which methods may fail.
 
     Attributes
     ----------
     name : str
     axis : str
-        What the number is that leads toward it, with its unit.
+        Meaning of the number that leads toward it, with its unit.
     numbers : tuple of float
     scene : function
         Solution for one number.
@@ -70,7 +68,7 @@ def _solution(mechanism, angle, loads=(Gravity(),)):
 
 
 def _saw(size=1.0, mass=1.0, **lengths):
-    """Sawframe-like plain crank-slider; any size, any mass."""
+    """Plain crank-slider like the sawframe, scaled in size and mass."""
     given = {"crank_length": 0.3, "coupler_length": 2.0, "guide_offset": 0.0, "guide_angle": 0.0} | lengths
     return crank_slider(
         given["crank_length"] * size,
@@ -107,7 +105,7 @@ def _turn(count=90):
 
 
 def _dead_centre(distance):
-    """Guide through O; no length is a power of two, so that points on the guide round as they do elsewhere."""
+    """Guide through O; no length is a power of two, so that points on the guide are rounded."""
     mechanism = _saw(coupler_length=2.2, guide_angle=1.3)
     return _solution(mechanism, np.concatenate([_around(1.3, distance), _around(1.3 + math.pi, distance)]))
 
@@ -139,7 +137,7 @@ def _pressure_angle(distance):
 
 
 def _toggle(distance):
-    """Coupler and rocker stretched into one line: as far as this crank can turn."""
+    """Coupler and rocker in one line: the limit position of this crank."""
     crank, coupler, rocker, pivot = 0.3, 0.4, 0.2, 0.7
     angle = math.acos((crank**2 + pivot**2 - (coupler + rocker) ** 2) / (2 * crank * pivot))
     just_closing = rocker * (1.0 + 8.0 * UNIT_ROUNDOFF)
@@ -152,21 +150,21 @@ def _change_point(distance):
 
 
 def _just_turning(distance):
-    """Crank and ground in one line are a little shorter than coupler and rocker: the crank only just gets through."""
+    """Crank and ground in one line are little shorter than coupler and rocker: the crank only just turns."""
     crank, coupler, ground = 0.3, 0.45, 0.7
     mechanism = _chain_unit(crank, coupler, (crank + ground - coupler) * (1.0 + distance), (ground, 0.0))
     return _solution(mechanism, math.pi + math.sqrt(distance) * np.linspace(-2.0, 2.0, 21))
 
 
 def _just_sliding(distance):
-    """The block of a slotted lever all but reaches the foot of the pivot on the slot."""
+    """The block of a slotted lever almost reaches the foot of the pivot on the slot."""
     lever, block = Link(3.0, 0.2, 5e-2), Link(1.0)
     mechanism = slotted_lever(0.1, pivot=(0.2, 0.0), offset=0.1 * (1.0 - distance), lever=lever, block=block)
     return _solution(mechanism, math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
 
 
 def _folding(crank, coupler, rocker, frame, *angles):
-    """Scene by distance of a four-bar before its links come to lie in one line at these crank angles, and beyond."""
+    """Four-bar scene by distance, before and after its links are in one line at these crank angles."""
 
     def scene(distance):
         mechanism = _chain_unit(crank, coupler, rocker, (frame, 0.0))
@@ -177,7 +175,7 @@ def _folding(crank, coupler, rocker, frame, *angles):
 
 
 def _equal_links(distance):
-    """Crank as long as the coupler: across the guide they lie in one line, one over the other."""
+    """Crank as long as the coupler: across the guide they are folded onto each other."""
     mechanism = _saw(crank_length=0.3, coupler_length=0.3)
     return _solution(mechanism, 0.5 * math.pi + np.concatenate([_before(0.0, distance), -_before(0.0, distance)]))
 
@@ -203,7 +201,7 @@ def _many_turns(angle):
 
 
 def _nearly_balanced(share):
-    """Spring and slider cancel; what is left is the torque of a coupler that has a small share of its mass."""
+    """Spring and slider cancel; the torque of a coupler with a small share of its mass remains."""
     cam = CosineLaw(0.3, 2.0)
     coupler = Link(150.0 * share, 1.0, 20.5 * share)
     mechanism = cam_crank_slider(cam, cam.coupler_length, coupler=coupler, slider=Link(600.0))
@@ -256,7 +254,7 @@ PLACES = (
 __all__ = ["PLACES", "Place", "study", "summary"]
 
 EXACT_ERROR = 1e-12
-"""Error up to which a result is called exact without mention of the condition."""
+"""Error below which a result is called exact, whatever the condition."""
 METHOD_SETTINGS = {
     "ours, NumPy": None,
     "ours, compiled": None,
@@ -270,7 +268,7 @@ METHOD_SETTINGS = {
     "harmonic series": 6,
     "two-mass coupler": None,
 }
-"""Methods that take any crank angles, each at its best setting."""
+"""Methods that allow any crank angles, each with its best setting."""
 
 
 def study(places=None, methods=None, progress=None):
@@ -279,19 +277,19 @@ def study(places=None, methods=None, progress=None):
     Parameters
     ----------
     places : sequence of Place, optional
-        `PLACES` unless told.
+        `PLACES` by default.
     methods : sequence of Method, optional
-        `ks.precision.METHODS` unless told, as many as take any crank angles.
+        `ks.precision.METHODS` by default, without those that need even crank angles.
     progress : function, optional
-        Called with the name of each place before it is looked at.
+        Called with the name of each place before its study.
 
     Returns
     -------
     pandas.DataFrame
         A row for each place, number and method: largest error over the crank angles, relative to the quantity's
-        largest value; the largest condition; what one rounding of the crank angle makes of it; the largest bound that
-        `Solution.error_bound` proves for the library's own values, infinite where it proves none; how many angles lose
-        digits, flip to the other assembly, are NaN; what was raised; why it is not given.
+        largest value; the largest condition; the change by one rounding of the crank angle; the largest bound that
+        `Solution.error_bound` proves for the library's own values, infinite where it proves none; the numbers of angles
+        that lose digits, flip to the other assembly or are NaN; the exception raised; the reason if not given.
 
     Raises
     ------
@@ -345,14 +343,14 @@ def _study_number(place, number, methods):
 
 
 def _within_a_turn(solution):
-    """The same at crank angles below a turn: the turns before are exact, nothing of them need be lost."""
+    """The solution at crank angles below one turn: whole turns are exact and need not lose digits."""
     return solution.at(np.fmod(solution.crank_angle, 2 * math.pi))
 
 
 def _change_by_one_rounding(solution, quantity, reference):
     """Largest change of the quantity by half a unit in the last place of the crank angle, over its largest value.
 
-    Infinite where the next number is beyond a limit position.
+    Infinite if the next number lies beyond a limit position.
     """
     for way in (-math.inf, math.inf):
         try:
@@ -364,7 +362,7 @@ def _change_by_one_rounding(solution, quantity, reference):
 
 
 def _other_assembly(solution, quantity):
-    """The quantity in the other assembly: what a method that flips would find."""
+    """The quantity in the other assembly, to recognise methods that flip."""
     *inner, last = solution.mechanism.groups
     flipped = replace(solution.mechanism, groups=(*inner, replace(last, assembly=-last.assembly)))
     return np.array(components(replace(solution, mechanism=flipped), quantity))
@@ -390,9 +388,9 @@ def _behaviour(method, solution, quantity, reference, bound, other):
 
 
 def summary(table):
-    """What each method does at each place: worst error, where, and how many angles fail of all, a pandas DataFrame.
+    """Behaviour of each method at each place: worst error, its number, and how many angles fail.
 
-    The worst error is that of the numbers at which the condition leaves a digit; how many do not is told too.
+    The worst error is over the numbers whose condition leaves a digit; the table counts the others.
 
     Parameters
     ----------
@@ -452,9 +450,9 @@ def _verdict(counts, raised, given_up, worst):
 
 
 def write(folder, places=None, progress=None, page=None):
-    """Run the study into a folder: all rows and the summary as CSV, and what ``page(table, path)`` draws of it.
+    """Run the study and write all rows and the summary as CSV to a folder, and charts by ``page(table, path)``.
 
-    Returns the paths of the files; `views.charts.stability_page` draws the chart, as PNG and SVG.
+    Returns the paths of the files. `views.charts.stability_page` draws charts as PNG and SVG.
     """
     from ..numbers.files import folder_write_problem, write_atomically
 

@@ -1,4 +1,4 @@
-"""Many designs: tables of designs, the sweep, its workers and datasets, tolerances.
+"""Many designs: tables of designs, sweeps, workers, datasets, tolerances.
 
-May import all rooms above: numbers to design.
+May import errors, numbers to design.
 """

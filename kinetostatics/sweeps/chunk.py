@@ -1,12 +1,9 @@
-"""What a worker of a sweep does: a chunk of designs built as one batch, and reduced to a row of numbers for each.
+"""The computation of a chunk of designs: one batch, reduced to a row of numbers for each design.
 
-Designs that cannot be built are set apart, each with its reason, and the others go on together.
-
-What a sweep is to do with designs, and its trial: the first that can be built tells engine, angles and units.
-
-Designs of a chunk computed together, as one batch, and reduced to a row of numbers for each.
-
-The loop over designs and crank angles runs block by block, so that values over the turn never leave the cache.
+Designs that cannot be built or solved are separated, each with its reason; the others stay one batch. The loop over
+designs and crank angles runs block by block, so that values over the turn stay in the cache. `dry_run` computes one
+design before the sweep to choose engine and crank angles. Designs whose outputs the crank angles do not resolve are
+computed again with twice as many.
 """
 
 import math
@@ -21,7 +18,7 @@ import pandas as pd
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import STRAIGHT, TURN, refusals
+from ..machine.loads import KINK_TOLERANCE, TURN, refusals
 from ..mechanics import energy_contact
 from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import component_sizes, components, largest_term, quantity
@@ -33,23 +30,32 @@ from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR, repeating_problem
-from ..solution.drive_and_loads import tables_over_angles
-from ..solution.parted import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
+from ..solution.parameters import tables_over_angles
+from ..solution.piecewise_turns import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
 from ..solution.scene import Scene, scene_hints
 
 MAX_SPLIT_DESIGNS = 128
-"""Designs whose turns are parted at a time: so many that the calls count little, and memory is no concern."""
-BLOCK_VALUES = 40_000
-"""Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
+"""Designs whose turns are split at kinks together: enough to hide the cost of a call, few enough for the memory."""
+MAX_LOOP_VALUES = 40_000
+"""Values of all quantities over designs and angles in a block of the compiled loop: a third of a core's cache."""
 PARTS_PER_THREAD = 8
-"""Parts of a chunk that each thread gets, so that none waits long for another."""
+"""Parts of a chunk for each thread, so that threads end at about the same time."""
 
 
 def compute_batch(scene, job, count, outputs):
-    """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
+    """Compute outputs of a batch of designs.
 
-    That is which numbers so many crank angles do not tell (outputs, designs); the crank angle at which a design is
-    nearest to a limit position (designs,), NaN if it is not near; and of which outputs the turn is parted (outputs,).
+    Returns
+    -------
+    numbers : array (outputs, designs)
+    reasons : array (designs,) of str
+        Why a design has no numbers; empty for the others.
+    rough : array (outputs, designs) of bool
+        Numbers that the crank angles do not resolve.
+    nearest : array (designs,)
+        Crank angle, rad, nearest to a limit position; NaN if none is near.
+    parted : array (outputs,) of bool
+        Outputs whose turn is split at kinks.
     """
     solution = unchecked_turn(scene, job.angles)
     checks.require("solve", *refusals(solution), *energy_contact.refusals(solution))
@@ -59,11 +65,9 @@ def compute_batch(scene, job, count, outputs):
             f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
-    if count == solution.shape[-1] > 1 and tables_over_angles(
-        scene
-    ):  # fewer designs at a time tell which of both it is
+    if count == solution.shape[-1] > 1 and tables_over_angles(scene):  # ambiguous; the caller tries fewer designs
         raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
-    parted = np.array([bent(solution, item.quantity, job.straight) for item in outputs])
+    parted = np.array([bent(solution, item.quantity, job.kink_tolerance) for item in outputs])
     even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
     numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
@@ -91,10 +95,7 @@ def compute_batch(scene, job, count, outputs):
 
 
 def _compiled_filler(solution, outputs, count, found, threads):
-    """Function that fills in what is found of some designs, from one on, and how many these are.
-
-    Values are computed and reduced by machine code, block by block in the same memory.
-    """
+    """Function ``fill(start)`` that computes and reduces the designs from `start` by machine code, and their number."""
     state, names = solution.dynamics, quantity_names(outputs)
     program, leaves = program_of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
@@ -106,7 +107,7 @@ def _compiled_filler(solution, outputs, count, found, threads):
     rows = [first[names.index(item.quantity)] for item in outputs]
     passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
     size = len(program.outputs), angle.shape[1]
-    block = max(1, BLOCK_VALUES // math.prod(size))
+    block = max(1, MAX_LOOP_VALUES // math.prod(size))
     step = max(block, -(-count // (PARTS_PER_THREAD * threads)))
 
     def fill(start):
@@ -116,7 +117,7 @@ def _compiled_filler(solution, outputs, count, found, threads):
 
 
 def _numpy_filler(solution, outputs, count, found, threads):
-    """The same by NumPy, all designs at a time."""
+    """The same by NumPy; the values of all designs are computed here."""
     numbers, rough, gaps, nearest = found
     with np.errstate(all="ignore"):
         values = {
@@ -144,13 +145,13 @@ def _numpy_filler(solution, outputs, count, found, threads):
 
 
 def _split_turn(scene, job, outputs):
-    return PiecewiseTurns.of(scene, outputs, job.angles, job.straight, job.engine)
+    return PiecewiseTurns.of(scene, outputs, job.angles, job.kink_tolerance, job.engine)
 
 
 def rounding_noise(scene, job, outputs):
-    """Whether outputs are of what changes over the turn by rounding of its terms only: (outputs, designs or 1)."""
+    """Whether the quantities of outputs are constant over the turn but for rounding, (outputs, designs or 1)."""
     solution = unchecked_turn(scene, job.angles)
-    if any(bent(solution, item.quantity, job.straight) for item in outputs):
+    if any(bent(solution, item.quantity, job.kink_tolerance) for item in outputs):
         solution = unchecked_turn(scene, _split_turn(scene, job, outputs).pieces.angle)
     with np.errstate(all="ignore"):
         found = [_is_noise(solution, item.quantity) for item in outputs]
@@ -164,33 +165,33 @@ def _is_noise(solution, name):
 
 
 MAX_PROBED_DESIGNS = 64
-"""Designs among which one that can be built is looked for, to try a sweep before it begins."""
+"""Designs that a dry run tries, until one can be built."""
 MIN_ANGLES = 12
-"""Crank angles below which a sweep is refused."""
+"""Smallest number of crank angles of a sweep."""
 MIN_ANGLES_PER_TURN = 180
-"""Crank angles a turn that are taken at least: fewer may agree with twice as many, and both be wrong."""
+"""Smallest number of crank angles in a turn: with fewer, doubling them may agree although both are wrong."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """What to do with a chunk of designs; goes to the workers.
+    """Instructions for a chunk of designs, sent to the workers.
 
     Attributes
     ----------
     make, make_reference : function
-        From values in SI by name to a `Scene`, or what has one; the reference's is None without ratios.
+        From values in SI by name to a `Scene`, or an object with one; the reference's is None without ratios.
     columns : tuple of (column, name, factor)
-        Where the values stand in the table of designs.
+        Columns of the parameters in the table of designs.
     threads : int
-        Cores to use for a chunk.
-    wide : bool
-        Whether a compiled loop takes all designs of a chunk, and no table for each of them.
-    bent : bool
-        Whether tables or friction act on an output, so that its turn may be parted.
-    straight : float
-        Share of its largest value by which a table bends where the turn is parted.
+        Cores for a chunk.
+    streams : bool
+        Whether one compiled loop computes all designs of a chunk without a table for each.
+    kinked : bool
+        Whether tables or friction cause kinks in an output, so that its turn may be split.
+    kink_tolerance : float
+        Change of slope of a table, relative to its largest value, from which on the turn is split there.
     hints : tuple of HintWarning
-        What looks like a slip in the design that was tried.
+        Implausible values of the design of the dry run.
     """
 
     make: Callable[[dict], Any]
@@ -200,45 +201,44 @@ class Job:
     angles: int
     engine: str
     threads: int
-    wide: bool = False
-    bent: bool = False
-    straight: float = STRAIGHT
+    streams: bool = False
+    kinked: bool = False
+    kink_tolerance: float = KINK_TOLERANCE
     hints: tuple[HintWarning, ...] = ()
 
     @property
     def ratios(self):
-        """Places of the outputs that are ratios to the reference."""
+        """Indices of the outputs that are ratios to the reference."""
         return [place for place, item in enumerate(self.outputs) if item.ratio]
 
     @property
     def sides(self):
-        """Functions that make scenes, each with the outputs wanted of what it makes."""
+        """Functions that make scenes, each with the outputs to compute."""
         own = [(self.make, self.outputs)]
         return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
 
     def given(self, frame):
-        """Numbers (designs, columns) of designs, in SI."""
+        """Parameters of designs, (designs, columns), in SI."""
         rows = [frame[column].to_numpy(dtype=float) * scale for column, _, scale in self.columns]
         return np.reshape(rows, (len(rows), len(frame))).T
 
     def values(self, given):
-        """What to call the functions with for some designs, in turn: arrays, and plain numbers for a single design."""
+        """Arguments of the functions, to try in turn: arrays, and for a single design plain numbers."""
         names = (name for _, name, _ in self.columns)
-        arrays = dict(zip(names, given.T.copy()[..., None], strict=True))  # which the functions may change
+        arrays = dict(zip(names, given.T.copy()[..., None], strict=True))  # a copy: functions may change it
         return [arrays] if len(given) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
 
 
 class _NoSceneError(ParameterError):
-    """A function makes something else than a scene."""
+    """A function returns no scene."""
 
 
 def dry_run(job, designs, engines):
-    """The job with the first of the engines that takes the mechanism, and units of its outputs.
+    """The job with the first engine that supports the mechanism, and with units of outputs; None if no design is valid.
 
-    Tried on the first design that can be built; None if none can. Raises what would otherwise be the reason of every
-    design: `QuantityError` for a quantity that the mechanism does not have, `ParameterError` for a function that makes
-    something else than a scene, `NotGivenError` if no engine takes it. The same for fewer crank angles than tell
-    anything, and loads that do not repeat after their period.
+    Raises errors that concern every design: `QuantityError` for a quantity that the mechanism does not have,
+    `ParameterError` for a function that returns no scene, too few crank angles, or loads that do not repeat after their
+    period, `NotGivenError` if no engine supports the mechanism.
     """
     few = (
         None
@@ -269,15 +269,15 @@ def dry_run(job, designs, engines):
         hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in scene_hints(solutions[0]))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _first_engine(job, solutions, engines)
-        wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
+        streams = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
         parted = any(bent(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
         angles = max(job.angles, (START_ANGLES if parted else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
-        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles, hints=hints)
+        return replace(job, engine=engine, outputs=outputs, streams=streams, kinked=parted, angles=angles, hints=hints)
     return None
 
 
 def scene_of(make, values):
-    """What a function makes of values, if it is a scene or has one."""
+    """Scene that a function makes from values."""
     found = make(values)
     scene = getattr(found, "scene", found)
     if not isinstance(scene, Scene):
@@ -299,7 +299,7 @@ def _first_engine(job, solutions, engines):
 
 
 def _programs(job, solutions):
-    """What a compiled loop of each side computes."""
+    """Compiled programs of the designs and of the reference."""
     return [
         program_of(solution.dynamics, (*quantity_names(outputs), "closure"), sizes=True)[0]
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True)
@@ -307,22 +307,22 @@ def _programs(job, solutions):
 
 
 NEGLIGIBLE_SHARE = 1e-12
-"""Share of the reference's number below which a design's counts as zero, as in `comparison`."""
+"""Share of the reference's number below which a design's number counts as zero, as in `comparison`."""
 MAX_ANGLES = 5760
-"""Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
+"""Largest number of crank angles, by doubling, for designs whose outputs are not resolved."""
 ANGLES_TOLERANCE = 1e-3
-"""Relative change of an output of even crank angles, when these are doubled, that is none."""
+"""Relative change of an output, when even crank angles are doubled, that counts as none."""
 KINK_REFINEMENT = 16
-"""By how much closer tables are followed when the crank angles are doubled."""
+"""Factor by which `kink_tolerance` falls when the crank angles are doubled."""
 FAILED = "failed"
-"""Column with the reason why a design has no numbers; empty for the others."""
+"""Name of the column with the reason why a design has no numbers."""
 
 
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
     step = max(1, BLOCK_VALUES // job.angles if job.engine == "numpy" else len(frame))
-    step = min(step, MAX_SPLIT_DESIGNS) if job.bent else step
+    step = min(step, MAX_SPLIT_DESIGNS) if job.kinked else step
     given = job.given(frame)
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
@@ -331,19 +331,19 @@ def run_chunk(job, frame) -> pd.DataFrame:
 
 
 def result_table(job, frame, numbers, reasons):
-    """Table of outputs (outputs, designs) and reasons; no numbers where there is a reason."""
+    """Table of outputs (outputs, designs) and reasons; NaN where there is a reason."""
     failing = reasons != ""
     numbers[:, failing] = np.nan
     found = {item.column: row for item, row in zip(job.outputs, numbers, strict=True)}
-    told = reasons if failing.any() else ""  # one text for all takes a third of the time
-    return pd.DataFrame({**found, FAILED: pd.Series(told, frame.index, dtype=str)}, index=frame.index)
+    texts = reasons if failing.any() else ""  # one text for all takes a third of the time
+    return pd.DataFrame({**found, FAILED: pd.Series(texts, frame.index, dtype=str)}, index=frame.index)
 
 
-# Designs set apart
+# Designs that fail are separated
 
 
 def _with_ratios(job, given):
-    """Numbers (outputs, designs), ratios among them, and reasons (designs,), empty for designs that have numbers."""
+    """Numbers (outputs, designs), with ratios to the reference, and reasons (designs,), empty if there are numbers."""
     (own, reasons), *reference = (_compute_designs(make, job, given, outputs) for make, outputs in job.sides)
     numbers, reasons = np.array(own), np.array(reasons)
     for above, failing in reference:
@@ -360,9 +360,9 @@ def _with_ratios(job, given):
 
 
 def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
-    """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
+    """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved.
 
-    `earlier` are the numbers from half as many crank angles; `wrong` tells that arrays of a single design are refused.
+    `earlier` are the numbers from half as many crank angles; `wrong` means that arrays of a single design fail.
     """
     count = len(given)
     if count == 1:
@@ -374,7 +374,7 @@ def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
         wrong = _designs_at_fault(error, count)
         if wrong is None:
             wrong = _find_unbuildable(make, job, given)
-        apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # all that can be built by themselves only
+        apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # if all fail as arrays, each is computed alone
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
@@ -395,7 +395,7 @@ def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
 
 
 def _compute_one(make, job, given, outputs, earlier, wrong):
-    """The same for a single design, as an array of one, so that it does not matter which designs come together."""
+    """The same for a single design, as an array of one, so that results do not depend on the batch."""
     for values in job.values(given)[wrong:]:
         try:
             return _refine_angles(
@@ -409,14 +409,14 @@ def _compute_one(make, job, given, outputs, earlier, wrong):
 
 
 def _refine_angles(make, job, given, outputs, found, earlier):
-    """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
+    """Numbers and reasons; designs that the crank angles do not resolve are computed with twice as many."""
     numbers, reasons, rough, nearest, parted = found
     numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
     near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
     narrow = np.zeros(len(given), dtype=bool)
     if near.size:
         reasons[near], narrow[near] = _check_near_limits(make, job, given[near], nearest[near], outputs)
-    if earlier is not None:  # pieces end up the same from twice as many, so that these agree says nothing
+    if earlier is not None:  # agreement proves nothing for split turns: their pieces stay the same
         with np.errstate(invalid="ignore"):
             rough &= parted[:, None] | (abs(numbers - earlier) > ANGLES_TOLERANCE * abs(numbers))
     rough &= (reasons == "") & ~narrow
@@ -424,8 +424,8 @@ def _refine_angles(make, job, given, outputs, found, earlier):
         rough &= ~_noise_by_design(make, job, given, outputs, rough)
     again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
     if again.size and (earlier is None or 2 * job.angles <= MAX_ANGLES):
-        finer = replace(job, angles=2 * job.angles, straight=job.straight / KINK_REFINEMENT)
-        step = MAX_SPLIT_DESIGNS if job.bent else again.size
+        finer = replace(job, angles=2 * job.angles, kink_tolerance=job.kink_tolerance / KINK_REFINEMENT)
+        step = MAX_SPLIT_DESIGNS if job.kinked else again.size
         for start in range(0, again.size, step):
             some = again[start : start + step]
             numbers[:, some], reasons[some] = _compute_designs(make, finer, given[some], outputs, numbers[:, some])
@@ -441,7 +441,7 @@ def _refine_angles(make, job, given, outputs, found, earlier):
 
 
 def _noise_by_design(make, job, given, outputs, asked):
-    """Which outputs (outputs, designs) of those asked for are of what changes by rounding of its terms only."""
+    """Which of the outputs asked for, (outputs, designs), are constant over the turn but for rounding."""
     found = np.zeros(asked.shape, dtype=bool)
     rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
     wanted = [outputs[row] for row in rows]
@@ -453,9 +453,9 @@ def _noise_by_design(make, job, given, outputs, asked):
 
 
 def _check_near_limits(make, job, given, nearest, outputs):
-    """Reasons of designs that do not close, or lose all digits, between crank angles, and whether peaks hide there.
+    """Reasons of designs that do not close or lose all digits between crank angles, and whether peaks may hide there.
 
-    Looked at anew around the crank angle at which each is nearest to a limit position.
+    Each design is computed again around the crank angle nearest to a limit position.
     """
     scene = scene_of(make, job.values(given)[-1])
     step = scene.period / job.angles
@@ -478,13 +478,13 @@ def _check_near_limits(make, job, given, nearest, outputs):
 
 
 def _designs_at_fault(error, count):
-    """Which designs an error is about, as a mask; None if it does not tell."""
+    """Mask of the designs that an error names; None if it names none."""
     wrong: Any = getattr(error, "designs", None)
     return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 
 
 def _find_unbuildable(make, job, given):
-    """Which designs cannot be made, found by halves."""
+    """Mask of the designs that cannot be made, by bisection."""
     for values in job.values(given):
         try:
             make(values)

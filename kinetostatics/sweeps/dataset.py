@@ -1,4 +1,4 @@
-"""Results of a sweep by chunk: in memory, or as the files of a Parquet dataset that outlive the process."""
+"""Results of a sweep by chunk: in memory, or as files of a Parquet dataset that a stopped sweep continues."""
 
 import hashlib
 import json
@@ -13,13 +13,13 @@ from ..errors import CacheWarning, KinetostaticsError, ParameterError
 from ..numbers.files import write_atomically
 
 MANIFEST = "_sweep.json"
-"""What sweep a folder holds; readers of datasets pass files by whose names begin so."""
+"""File with the identity of the sweep; readers of datasets skip names with a leading underscore."""
 MAX_MANIFEST_BYTES = 10**7
-"""Bytes that it may have."""
+"""Largest size of the manifest."""
 METADATA_KEY = "kinetostatics"
-"""Where a part tells of itself, among the metadata of its schema."""
+"""Key of a part's signature in the metadata of its schema."""
 MAX_LISTED_FILES = 5
-"""Files that a warning names."""
+"""Largest number of files named in a warning."""
 
 
 class ChunkResults:
@@ -35,11 +35,11 @@ class ChunkResults:
         return self._designs.iloc[number * self._chunk : (number + 1) * self._chunk]
 
     def holds(self, number):
-        """Whether the results of a chunk are there."""
+        """Whether the results of a chunk exist."""
         return number in self._kept
 
     def keep(self, number, found):
-        """Keep the results of a chunk, with its designs."""
+        """Store the results of a chunk, with its designs."""
         self._put(number, pd.concat([self.rows(number), found], axis=1))
 
     def table(self):
@@ -56,14 +56,14 @@ class ChunkResults:
 class Dataset(ChunkResults):
     """The same as a folder of Parquet files, each written whole or not at all.
 
-    Each tells of what sweep it is, which chunk, and a digest of what it holds; one that does not is computed anew, with
-    a `CacheWarning`. Equal sweeps may share the folder, also at the same time.
+    Each file has a signature: its sweep, its chunk and a digest of its content. A file without the right signature is
+    computed again, with a `CacheWarning`. Equal sweeps may share the folder at the same time.
 
     Raises
     ------
     ParameterError
-        The folder cannot be used, or holds something else: another sweep, whose identity, a dict of texts and numbers,
-        differs, or files of which no sweep is recorded.
+        The folder cannot be used, or contains another sweep (its identity, a dict of texts and numbers, differs) or
+        files without a manifest.
     """
 
     def __init__(self, designs, chunk, folder, identity):
@@ -92,15 +92,15 @@ class Dataset(ChunkResults):
         return self._path(number) in self._sound
 
     def _claim(self, identity):
-        """Write down what sweep the folder holds, or raise `ParameterError` if it holds another or anything else."""
+        """Write the manifest, or raise `ParameterError` if the folder contains another sweep or other files."""
         self._folder.mkdir(parents=True, exist_ok=True)
         manifest = self._folder / MANIFEST
         if not manifest.exists():
             strange = [path for path in self._folder.glob("part-*.parquet") if self._problem(path)]
             if strange:
                 raise ParameterError(
-                    f"sweep: {self._folder} holds {strange[0].name}, but no {MANIFEST} that tells of what sweep; give "
-                    "another folder"
+                    f"sweep: {self._folder} holds {strange[0].name}, but no {MANIFEST} with the identity of its sweep; "
+                    "give another folder"
                 )
             _write_new(manifest, json.dumps(identity, indent=1))
         before = _read_manifest(manifest)
@@ -118,7 +118,7 @@ class Dataset(ChunkResults):
         import pyarrow as pa
         from pyarrow import parquet
 
-        path, told = self._path(number), {METADATA_KEY: json.dumps(self._told(number, whole))}
+        path, told = self._path(number), {METADATA_KEY: json.dumps(self._signature(number, whole))}
         try:
             table = pa.Table.from_pandas(whole)
             with write_atomically(path) as temporary:
@@ -135,7 +135,7 @@ class Dataset(ChunkResults):
             raise KinetostaticsError(f"sweep: {self._path(number)} was changed while the sweep ran: {error}") from error
 
     def _problem(self, path):
-        """Why a file is no part of this sweep as it was written, or None."""
+        """Why a file is not an undamaged part of this sweep, or None."""
         if not path.is_file():
             raise ParameterError(f"sweep: {path} is no file; remove it, or give another folder")
         number = path.stem.removeprefix("part-")
@@ -148,7 +148,7 @@ class Dataset(ChunkResults):
         return None
 
     def _read(self, number):
-        """Designs and results of a chunk, if they are what was written."""
+        """Designs and results of a chunk; an error if the file was changed."""
         from pyarrow import parquet
 
         try:
@@ -157,16 +157,16 @@ class Dataset(ChunkResults):
                 file.seek(0)
                 frame = pd.read_parquet(file)
         except KeyError as error:
-            raise _DamagedPartError("it does not tell of what sweep it is") from error
+            raise _DamagedPartError("it does not name its sweep") from error
         except Exception as error:  # whatever a damaged file leads to
             raise _DamagedPartError(f"it cannot be read: {error}") from error
-        for name, value in self._told(number, frame).items():
+        for name, value in self._signature(number, frame).items():
             if not isinstance(told, dict) or told.get(name) != value:
                 raise _DamagedPartError(f"another {name} than was written")
         return frame
 
-    def _told(self, number, frame):
-        """What a part tells of itself."""
+    def _signature(self, number, frame):
+        """Signature of a part: sweep, chunk and digest of the content."""
         rows = pd.util.hash_pandas_object(frame, index=True).to_numpy().tobytes()
         heads = [*zip(map(str, frame.columns), (kind.kind for kind in frame.dtypes), strict=True), *frame.index.names]
         content = hashlib.sha256(repr(heads).encode() + rows).hexdigest()
@@ -174,11 +174,11 @@ class Dataset(ChunkResults):
 
 
 class _DamagedPartError(Exception):
-    """A file is not as the sweep wrote it."""
+    """A file was changed after the sweep wrote it."""
 
 
 def _write_new(path, text):
-    """Write a file whole that is not there, unless another process has just done so."""
+    """Write a new file whole, unless another process creates it first."""
     temporary = path.with_name(f".{path.name}-{uuid4().hex}")
     try:
         temporary.write_text(text, encoding="utf-8")
@@ -193,7 +193,7 @@ def _write_new(path, text):
 
 
 def _read_manifest(manifest):
-    """Identity that a manifest tells."""
+    """Identity of a sweep from its manifest."""
     try:
         if not manifest.is_file() or manifest.stat().st_size > MAX_MANIFEST_BYTES:
             raise ValueError("it is no such file")
@@ -202,6 +202,6 @@ def _read_manifest(manifest):
             raise ValueError(f"it holds no table but {str(found)[:40]!r}")
     except (ValueError, RecursionError) as error:
         raise ParameterError(
-            f"sweep: {manifest} does not tell of what sweep the folder is: {error}; give another folder, or delete it"
+            f"sweep: {manifest} does not name the sweep of the folder: {error}; give another folder, or delete it"
         ) from error
     return found

@@ -1,8 +1,8 @@
-"""Tables of designs to sweep: grids and samples of parameters, spread as texts say.
+"""Tables of designs to sweep: grids and samples of parameters from texts.
 
-A spread is a text: "600..900 kN/m" (evenly between, with ":40" behind it how many values of a grid), or for samples
+A spread is a text: "600..900 kN/m" (uniform; ":40" at the end gives the number of values of a grid), or for samples
 also "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 690..710..740 kN/m" (low, likeliest,
-high). The unit of a plain number is 1. Quantities of pint will do too: the values of a grid, and for samples
+high). The unit of a plain number is 1. Pint quantities are accepted too: the values of a grid, and for samples
 ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low, likeliest, high)``.
 """
 
@@ -38,8 +38,8 @@ def grid(spreads) -> pd.DataFrame:
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
-        Such as ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``; of quantities of pint
-        all values.
+        Such as ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``; of pint quantities all
+        values.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
-        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"; of quantities of pint
+        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"; of pint quantities
         ``(low, high)``, ``("normal", mean, deviation)``, ``("triangular", low, likeliest, high)``.
     uniform : array (designs, parameters) or function
         The numbers, a column for each parameter; a function gives them for a number of parameters.
@@ -225,7 +225,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
 
 
 def _range_problem(wrong, count):
-    """What is said of numbers that are no shares."""
+    """Text of the error for numbers outside 0 to 1."""
     return (
         f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of {count} "
         f"are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
@@ -233,13 +233,13 @@ def _range_problem(wrong, count):
 
 
 def _require_table_size(count, parameters, *problems):
-    """Raise an error unless a table of so many designs can be held, with what else is wrong."""
+    """Raise an error with all problems if a table is too large."""
     whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
     checks.require(
         "designs",
         None if whole and count > 0 else f"how many must be a whole number of at least 1, got {count!r}",
-        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} values; sweep "
-        "them in parts"
+        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} "
+        "values; sweep them in parts"
         if whole and count * parameters > MAX_TABLE_VALUES
         else None,
         *problems,
@@ -247,7 +247,7 @@ def _require_table_size(count, parameters, *problems):
 
 
 def _design_table(values, found):
-    """Table of designs; refused if a number that every machine's parts call so is told in what measures another."""
+    """Table of designs; an error if the unit of a known parameter has the wrong dimension."""
     checks.require(
         "designs",
         *(f"a parameter must be a name, got {checks.shown(name)}" for name in found if not isinstance(name, str)),
@@ -265,7 +265,7 @@ def _design_table(values, found):
 
 @cache
 def _known_units():
-    """SI unit of each number of everyday machines, by path without the label of its group."""
+    """SI units of the parameters of common machines, by path without the label of the group."""
     loads = Gravity(), Spring(1.0, 0.0), TorsionSpring(1.0, 0.0, on="crank"), TorsionDamper(1.0, on="crank")
     machines = (
         crank_slider(1.0, 3.0),
@@ -277,7 +277,7 @@ def _known_units():
 
 
 def headings(found):
-    """Headings of parameters with units, from pairs that end with the unit, by parameter."""
+    """Column headings with units, from pairs (distribution, unit) by parameter."""
     return [heading(name, unit) for name, (_, unit) in found.items()]
 
 

@@ -1,8 +1,8 @@
 """Design sweeps: a row of numbers for each of many designs, on one core or many machines.
 
-A request is checked, all faults at once, and tried on one design. The sweep then runs chunk by chunk (`chunk`) through
-any `concurrent.futures.Executor` (`workers`). With a folder the results stream to a Parquet dataset (`dataset`), from
-which a stopped sweep resumes.
+A sweep first checks all arguments and makes a `Job`, and tries it on one design. Then chunks of designs run through any
+`concurrent.futures.Executor` (`workers`). With a folder the results go to a Parquet dataset (`dataset`), from which a
+stopped sweep continues.
 """
 
 import inspect
@@ -33,7 +33,7 @@ from .workers import MAX_CHUNK_RUNS, Workers, run_chunks
 
 
 def job_of(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
-    """The job, the engines to try, and what is compared: what is varied, or a function, and what ratios refer to."""
+    """The checked job, the engines to try, and the source and reference (only the source without ratios)."""
     _require_kinds(source, designs)
     if not is_case(source):
         checks.require("sweep", *_case_option_problems(source, variant, reference))
@@ -72,7 +72,7 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
 
 
 def _require_kinds(source, designs):
-    """Refuse what no sweep is made of, before anything is asked of it."""
+    """Raise an error for a source or designs of the wrong type."""
     if not isinstance(designs, pd.DataFrame):
         raise ParameterError(
             f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
@@ -85,7 +85,7 @@ def _require_kinds(source, designs):
 
 
 def _case_option_problems(source, variant, reference):
-    """What is wrong with names of variants where the source has none."""
+    """Problems with `variant` and `reference` of a source without variants."""
     kind = "a Scene" if can_vary(source) else "a function"
     if variant is not None:
         yield (
@@ -97,7 +97,7 @@ def _case_option_problems(source, variant, reference):
 
 
 def _engines(engine, values):
-    """Engines to try for so many values, in turn."""
+    """Engines to try in turn for a number of values."""
     if engine == "compiled":
         numba_backend.require_numba()
     if engine:
@@ -106,23 +106,23 @@ def _engines(engine, values):
 
 
 def is_case(source):
-    """Whether it offers variants by name, as a `Case` does."""
+    """Whether a source has variants by name, as a `Case` does."""
     return hasattr(source, "variants") and hasattr(source, "reference")
 
 
 def can_vary(source):
-    """Whether it can be varied by path, as a `Scene` and a case's variant can."""
+    """Whether a source can be varied by path, as a `Scene` and a case's variant can."""
     return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
 
 def names_of(case, variant=None, reference=None):
-    """Names of the variant that designs vary, and of the one that ratios refer to."""
+    """Names of the variant that designs vary, and of the reference of ratios."""
     reference = reference or case.reference
     return variant or next((name for name in case.variants if name != reference), reference), reference
 
 
 def variant_and_reference(case, variant=None, reference=None):
-    """These variants."""
+    """The variants of these names."""
     return tuple(map(case.variant, names_of(case, variant, reference)))
 
 
@@ -131,14 +131,14 @@ def _is_scene(item):
 
 
 def _makers(known, source, reference):
-    """Functions from values to what is varied, and to what ratios refer to."""
+    """Functions that make the varied source and the reference of ratios from values."""
     if known is None:
         return partial(_call, source), partial(_return_fixed, reference)
     return partial(_vary, source), partial(_vary, reference)
 
 
 def _vary(item, values):
-    """The item with those of the values that it has a place for."""
+    """The item with those values that are among its parameters."""
     known = item.units
     return item.varied({path: value for path, value in values.items() if path in known})
 
@@ -152,7 +152,7 @@ def _return_fixed(item, values):
 
 
 def output_list(outputs):
-    """Outputs asked for, one or several."""
+    """Outputs as a list; a single one may be given alone."""
     if isinstance(outputs, str | Output):
         return [outputs]
     if not isinstance(outputs, Iterable):
@@ -161,7 +161,7 @@ def output_list(outputs):
 
 
 def _outputs(outputs):
-    """The outputs asked for, and what is wrong with them."""
+    """The parsed outputs, and problems with them."""
     wanted, problems = [], []
     for text in output_list(outputs):
         try:
@@ -172,7 +172,7 @@ def _outputs(outputs):
 
 
 def _name_problems(columns, wanted):
-    """Columns of the designs that would stand in the table twice."""
+    """Problems with columns of the designs that have the name of an output."""
     taken = {*map(str, wanted), FAILED}
     for name in columns:
         if parse_heading(name)[0] in taken:
@@ -192,7 +192,7 @@ def _signature_problem(function, names):
         inspect.signature(function).bind(**dict.fromkeys(names))
     except TypeError as error:
         return f"the function does not take the columns of the designs: {error}"
-    except ValueError:  # it does not say what it takes
+    except ValueError:  # a function without a signature
         return None
     return None
 
@@ -205,7 +205,7 @@ def _executor_problem(executor):
 
 
 def _workers_problem(workers, executor):
-    """What is wrong with the number of workers; many more than cores only cost memory, some 100 MB each."""
+    """Problem with the number of workers; each costs 100 MB, so many more than cores are an error."""
     most = max(64, 4 * numba_backend.core_count())
     if workers is None:
         return None
@@ -221,7 +221,7 @@ def _order_problems(wanted, angles):
 
 
 def _require_portable(job, executor, workers):
-    """Refuse functions that cannot go to other processes, by the way in which they would."""
+    """Raise an error for functions that cannot be pickled for other processes."""
     if workers:
         from cloudpickle import dumps
 
@@ -238,10 +238,8 @@ def _require_portable(job, executor, workers):
         ) from error
 
 
-__all__ = ["FAILED", "sweep"]
-
 CHUNK_DESIGNS, STREAMED_CHUNK_DESIGNS = 10_000, 50_000
-"""Designs computed together, unless told, and where they take little time and memory and nobody waits for them."""
+"""Default numbers of designs in a chunk: in general, and for a compiled loop in this process without a folder."""
 
 
 def sweep(
@@ -264,10 +262,10 @@ def sweep(
     Parameters
     ----------
     source : Case, Scene or function
-        Of a case what its file derives from other numbers follows (`Variant.varied`); of a scene all numbers stay but
-        those that vary. Or a function that takes the parameters as keywords, arrays (designs, 1) in SI, and returns a
-        `Scene`. A function of plain numbers will do, but then each design is solved by itself, which takes some
-        milliseconds; so it is with variants that are balanced by counterweights.
+        In a case, numbers that its file derives from others follow (`Variant.varied`); in a scene all numbers stay but
+        those that vary. A function has the parameters as keywords, arrays (designs, 1) in SI, and returns a `Scene`. A
+        function of plain numbers works too, but each design is then solved alone, in some milliseconds; the same holds
+        for variants balanced by counterweights.
     designs : pandas.DataFrame
         A column for each parameter: of a case or scene its path with a unit, "spring.stiffness [kN/m]" (see
         `designs.grid`, `.latin_hypercube` ...); of a function its keyword. Without a unit in SI.
@@ -276,41 +274,41 @@ def sweep(
         contact_pressure" (of a cam with a `Roller`), "swing balancing_torque" (the energy of its flywheel, J) ...; with
         "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
     variant, reference : str
-        Of a case: which variant the designs vary (the only one, or the first besides the reference), and which one
-        ratios refer to (the case's reference). Of a scene or function `reference` is a `Scene`. It takes those
-        parameters that it has too, but stays as it is for a function.
+        Of a case: the variant that the designs vary (by default the first besides the reference), and the reference of
+        ratios (by default the case's). For a scene or function `reference` is a `Scene`. The reference varies in those
+        parameters that it has too, but not for a function.
     angles : int
-        Crank angles over the period of the loads, at least 12, but 180 a turn are taken where these are fewer, 192
-        with tables or friction; extremes are refined between them. Where they do not resolve an output of a design,
-        they are doubled for it, up to 5760. Where tables or friction bend forces, the turn of each design is parted
-        there, so that neither peaks nor means miss what lies between two angles. Rows within 1e-5 of the largest value
-        of a smooth curve bend nothing, unless they keep an output from being resolved.
+        Crank angles over the period of the loads, at least 12; a turn has at least 180, and 192 with tables or
+        friction. Extremes are refined between them. If they do not resolve an output of a design, they are doubled for
+        it, up to 5760. Where tables or friction cause kinks, the turn of each design is split, so that peaks and means
+        are exact there. Table rows within 1e-5 of the largest value of a smooth curve cause no split, unless an output
+        is not resolved otherwise.
     engine : "compiled" or "numpy"
-        Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
-        takes the mechanism.
+        By default compiled for a million crank angles or more, over all designs, if numba is installed and supports
+        the mechanism.
     executor : concurrent.futures.Executor
-        Where chunks run; this process, on all its cores, unless told. A Dask cluster: ``client.get_executor()``. One
-        that breaks ends the sweep.
+        Runs the chunks; by default this process does, on all its cores. For a Dask cluster:
+        ``client.get_executor()``. An executor that breaks ends the sweep.
     workers : int
-        In place of an executor: so many processes of the sweep's own (by loky), which take any function and end with
-        this process. When one dies, only the chunks under way are run again, and only designs that kill their worker by
-        themselves have no numbers.
+        In place of an executor: number of own processes (by loky), which accept any function and end with this
+        process. When one dies, only its chunks run again, and only designs that kill their worker alone have no
+        numbers.
     chunk : int
-        Designs computed together: what bounds the memory. Unless told 10 000, or 50 000 where this process computes
-        them compiled and writes no folder.
+        Designs computed together, which bounds the memory. By default 10 000, or 50 000 if this process computes them
+        compiled and writes no folder.
     folder : path
-        Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
-        and the rest computed, also what was damaged since. A function is the same if its code is, with what it holds
-        and what it names of its own module (`numbers.fingerprint`).
+        Parquet dataset for the finished chunks. If it contains part of the same sweep, only the rest and damaged files
+        are computed. Functions are the same if their code, their closures and the names they use from their own module
+        are (`numbers.fingerprint`).
     progress : bool
-        Whether a bar is shown.
+        Show a progress bar.
 
     Returns
     -------
     pandas.DataFrame
-        The designs with a column for each output, in SI, and a column "failed": why a design has none, else empty.
-        Last bits may differ with the chunk: where a design comes near a singular place, all of its chunk are computed
-        by formulas made for that.
+        The designs with a column for each output, in SI, and a column "failed": the reason if a design has none, else
+        empty. Last bits may differ with the chunk: if a design comes near a singular position, its whole chunk is
+        computed by special formulas.
 
     Raises
     ------
@@ -319,12 +317,12 @@ def sweep(
     QuantityError
         The mechanism, or the reference of a ratio, has no such quantity.
     NotGivenError
-        ``engine="compiled"`` does not take the mechanism.
+        ``engine="compiled"`` does not support the mechanism.
 
     Warns
     -----
     HintWarning
-        Numbers of the first design that can be made look like slips; told before the sweep begins.
+        Implausible numbers of the first valid design, before the sweep begins.
 
     Examples
     --------
@@ -337,21 +335,26 @@ def sweep(
     >>> table.iloc[:, 1].round(1).tolist()
     [3.9, 7.6, 50.6]
     """
+    from tqdm import tqdm
+
     checks.require("sweep", None if folder is None else folder_problem(folder), checks.truth("progress", progress))
     job, engines, compared = job_of(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )
-    with Workers(executor, workers) as hands:
-        job = _dry_run(job, designs, engines, hands)
+    with Workers(executor, workers) as pool:
+        job = _dry_run(job, designs, engines, pool)
         for hint in job.hints:
             warnings.warn(hint, stacklevel=2)
         here = executor is None and workers is None and folder is None
-        chunk = chunk or (STREAMED_CHUNK_DESIGNS if here and job.wide else CHUNK_DESIGNS)
+        chunk = chunk or (STREAMED_CHUNK_DESIGNS if here and job.streams else CHUNK_DESIGNS)
         parts = ChunkResults(designs, chunk)
         if folder is not None:
             parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
         todo = [number for number in parts.numbers if not parts.holds(number)]
-        with _bar(progress, len(designs)) as bar, closing(run_chunks(job, parts.rows, todo, hands)) as found:
+        with (
+            tqdm(total=len(designs), unit=" designs", disable=not progress) as bar,
+            closing(run_chunks(job, parts.rows, todo, pool)) as found,
+        ):
             bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
             for number, rows in found:
                 parts.keep(number, rows)
@@ -359,28 +362,22 @@ def sweep(
     return parts.table()
 
 
-def _dry_run(job, designs, engines, hands):
-    """The job made ready by a trial; designs with which workers die are passed over, some of them."""
+def _dry_run(job, designs, engines, pool):
+    """The job after a dry run, which skips a few chunks of designs that kill their worker."""
     for first in range(min(MAX_CHUNK_RUNS, len(designs))):
-        for ready in hands.survived(dry_run, job, designs[first : first + MAX_PROBED_DESIGNS], engines):
+        for ready in pool.result_unless_killed(dry_run, job, designs[first : first + MAX_PROBED_DESIGNS], engines):
             return ready or job
     return job
 
 
-def _bar(shown, total):
-    from tqdm import tqdm
-
-    return tqdm(total=total, unit=" designs", disable=not shown)
-
-
 def _identity(job, designs, compared, chunk):
-    """What the results of a sweep depend on, by name: a folder takes up a sweep only if all of it is the same."""
+    """All that the results of a sweep depend on, by name; a folder continues a sweep only if all of it is the same."""
     hashed = pd.util.hash_pandas_object(designs, index=True).to_numpy()
     of_case = hasattr(compared[0], "content")
     varied = "variant" if of_case else "scene" if hasattr(compared[0], "mechanism") else "function"
     return {
         "version": __version__,
-        **({} if of_case else {"python": sys.implementation.cache_tag}),  # whose code differs from release to release
+        **({} if of_case else {"python": sys.implementation.cache_tag}),  # bytecode differs between releases
         **{name: digest(item) for name, item in zip((varied, "reference"), compared, strict=False)},
         "outputs": [str(item) for item in job.outputs],
         "angles": int(job.angles),

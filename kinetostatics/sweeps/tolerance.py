@@ -1,4 +1,4 @@
-"""Tolerances: what the spread of parameters does to outputs, and whose spread matters most."""
+"""Tolerances: the effect of the spread of parameters on outputs, with Sobol indices of the parameters."""
 
 import itertools
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ class Tolerances:
         Columns of the outputs.
     sensitivity : pandas.DataFrame
         By output and parameter: first-order and total Sobol index, the shares of the output's variance that the
-        parameter's spread causes by itself, and together with others (Saltelli 2010).
+        parameter's spread causes alone, and together with others (Saltelli 2010).
 
     Examples
     --------
@@ -56,7 +56,7 @@ class Tolerances:
         return self.table[list(self.outputs)].quantile(list(levels)).rename_axis("quantile")
 
     def share(self, output, *, above=-np.inf, below=np.inf):
-        """Share of all designs whose output lies between."""
+        """Share of designs whose output lies above and below the limits."""
         named = {parse_heading(column)[0]: column for column in self.outputs}
         name = str(parsed(output))
         checks.require("tolerances", checks.choice("output", name, tuple(named)))
@@ -69,7 +69,7 @@ class Tolerances:
 
 
 def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, **options) -> Tolerances:
-    """Monte Carlo study of the spread of parameters, on the path of `sweep`.
+    """Monte Carlo study of the spread of parameters, by `sweep`.
 
     Parameters
     ----------
@@ -78,14 +78,14 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     outputs : sequence of str
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
     spreads : dict of parameter to text or quantities, optional
-        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m", or quantities of pint
-        as for `designs.sample`; unless given those of the case file's [tolerances] that the variant has.
+        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m", or pint quantities as
+        for `designs.sample`; by default those of the case file's [tolerances] that the variant has.
     count : int
-        Designs, a power of two; the Sobol indices take as many again for every parameter, and twice more.
+        Designs, a power of two; the Sobol indices need as many again for every parameter, and twice more.
     seed : int
         Of the scrambled Sobol sequences.
     folder : path
-        Holds a Parquet dataset for each of the sweeps behind a study, from which one that was stopped goes on.
+        For a Parquet dataset of each sweep of the study, from which a stopped study continues.
     options
         As for `sweep`: variant, reference, angles, engine, executor, workers, chunk, progress.
 
@@ -169,7 +169,7 @@ def _sensitivity(values, found, names, count, seed):
     from scipy.stats import sobol_indices
 
     shape = len(names), len(found)
-    first = total = np.ones(shape)  # what a single parameter causes
+    first = total = np.ones(shape)  # a single parameter causes all variance
     if len(found) > 1:
         distributions = [distribution for distribution, _ in found.values()]
         indices: Any = sobol_indices(func=values, n=count, dists=distributions, rng=np.random.default_rng(seed))

@@ -1,4 +1,4 @@
-"""Chunks of a sweep handed to workers or an executor, and run again when a worker dies."""
+"""Chunks of a sweep run by workers or an executor; chunks whose worker dies run again."""
 
 import os
 import signal
@@ -16,17 +16,17 @@ from ..errors import KinetostaticsError
 from .chunk import result_table, run_chunk
 
 MAX_CHUNK_RUNS = 3
-"""How often a chunk is run whose worker dies, before the designs that do it are looked for."""
+"""Runs of a chunk whose worker dies, before the designs at fault are isolated."""
 MAX_DESIGN_RUNS = 2
-"""How often a design by itself is run whose worker dies, before it has no numbers."""
+"""Runs of a single design whose worker dies, before it fails."""
 MAX_PENDING_CHUNKS = 256
-"""Chunks handed to an executor at a time; to workers of our own two for each."""
+"""Chunks submitted to an executor at a time; own workers get two each."""
 
 
 class Workers:
-    """Where chunks run: processes of its own, which are replaced when one dies, an executor, or this process.
+    """Runs chunks in own processes, which are replaced when one dies, in an executor, or in this process.
 
-    Processes of its own leave Ctrl-C and SIGTERM to this one, and end with it however it ends.
+    Own processes ignore Ctrl-C and SIGTERM, and end when this process ends.
     """
 
     def __init__(self, executor=None, count=None):
@@ -44,37 +44,36 @@ class Workers:
     def submit(self, *call) -> Future:
         """Future of a call, as from any executor."""
         try:
-            return self._submitted(call)
+            return self._submit_once(call)
         except BrokenExecutor as error:
-            self.deaths(error)
+            self.count_deaths(error)
             self._stop(at_once=True)
-            return self._submitted(call)
+            return self._submit_once(call)
 
-    def one_at_a_time(self):
-        """From now on: processes that must be started anew are one."""
+    def use_one_process(self):
+        """Start only one process from now on."""
         self._count = self._count and 1
 
-    def give_up(self, futures):
-        """Nobody waits for these calls any longer: an executor that was given leaves out those not yet begun.
+    def cancel(self, futures):
+        """Cancel pending calls of a user's executor.
 
-        Processes of our own are stopped with all that they have: to cancel calls under them as well breaks the thread
-        that serves them, which tells of it.
+        Own processes are stopped instead: cancelling their calls would break the thread that serves them.
         """
         if self._count is None:
             for future in futures:
                 future.cancel()
 
-    def survived(self, *call):
-        """Result of a call in a tuple; an empty one if the worker died."""
+    def result_unless_killed(self, *call):
+        """Result of a call as a tuple of one; empty if the worker died."""
         try:
             return (self.submit(*call).result(),)
         except Exception as error:
-            self.deaths(error)
+            self.count_deaths(error)
             return ()
 
-    def deaths(self, error):
-        """How many deaths of workers an error of a call tells of; raises it if none."""
-        if type(error).__name__ == "KilledWorker":  # of Dask, which has tried several workers
+    def count_deaths(self, error):
+        """Number of dead workers behind an error; raises the error if there is none."""
+        if type(error).__name__ == "KilledWorker":  # Dask has tried several workers
             return MAX_CHUNK_RUNS
         if not isinstance(error, BrokenExecutor):
             raise error
@@ -85,12 +84,12 @@ class Workers:
             ) from error
         return 1
 
-    def _submitted(self, call):
+    def _submit_once(self, call):
         if not self._count:
             return self._given.submit(*call)
         if self._pool is None:
             self._pool = _pool(self._count)
-        with _signals_blocked():  # what starts here inherits it
+        with _signals_blocked():  # new processes inherit the mask
             return self._pool.submit(*call)
 
     def _stop(self, at_once):
@@ -100,7 +99,7 @@ class Workers:
 
 
 class _SameProcess(Executor):
-    """The process and thread that submits, at once."""
+    """Runs calls at once in this process and thread."""
 
     def submit(self, function, /, *arguments, **options):
         future: Future = Future()
@@ -115,9 +114,9 @@ def _pool(count):
 
 
 def _start_worker(parent):
-    """Start of a worker: signals to all processes are left to the parent, and nothing is done that nobody waits for.
+    """Let a worker ignore signals, which the parent handles, and end with the parent.
 
-    A worker that ends while it hands over a result leaves half of it, for whose rest the parent waits for ever.
+    A worker that ended on a signal while it sends a result would block the parent, which waits for the rest.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
@@ -132,7 +131,7 @@ def _exit_with_parent(parent):
 
 @contextmanager
 def _signals_blocked():
-    """Ctrl-C and SIGTERM wait, where there are signal masks."""
+    """Block Ctrl-C and SIGTERM on systems with signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -144,13 +143,13 @@ def _signals_blocked():
 
 
 def run_chunks(job, rows_of, numbers, workers):
-    """Number and result of each chunk, in the order in which they are done.
+    """Yield number and result of each chunk, in order of completion.
 
     Parameters
     ----------
     job : Job
     rows_of : function
-        From the number of a chunk to its designs.
+        Designs of a chunk by its number.
     numbers : sequence of int
     workers : Workers
     """
@@ -168,27 +167,27 @@ def run_chunks(job, rows_of, numbers, workers):
                 try:
                     found = future.result()
                 except Exception as error:
-                    deaths[number] += workers.deaths(error)
+                    deaths[number] += workers.count_deaths(error)
                     (waiting.appendleft if deaths[number] < MAX_CHUNK_RUNS else suspects.append)(number)
                 else:
                     yield number, found
-        workers.one_at_a_time()
-        if suspects and not workers.survived(run_chunk, job, rows_of(suspects[0])[:0]):
+        workers.use_one_process()
+        if suspects and not workers.result_unless_killed(run_chunk, job, rows_of(suspects[0])[:0]):
             raise KinetostaticsError("sweep: the workers die before they compute anything")
         for number in suspects:
             yield number, _isolate_deaths(job, rows_of(number), workers)
     finally:
-        workers.give_up(running)
+        workers.cancel(running)
 
 
 def _isolate_deaths(job, frame, workers):
-    """Outputs of designs that may kill their worker, run by themselves: half by half, down to those that do it.
+    """Outputs of designs that may kill their worker, by bisection down to the designs at fault.
 
-    One alone is tried again: a worker may die of something else.
+    A single design runs again, as its worker may have died for another reason.
     """
     alone = len(frame) == 1
     for _ in range(MAX_DESIGN_RUNS if alone else 1):
-        for found in workers.survived(run_chunk, job, frame):
+        for found in workers.result_unless_killed(run_chunk, job, frame):
             return found
     if alone:
         return result_table(

@@ -1,4 +1,4 @@
-"""Pictures: plots of solutions, charts of studies, drawings, figures of cases.
+"""Pictures: plots of solutions, charts, drawings, figures of cases, reports.
 
-May import all rooms above: numbers to casefile.
+May import errors, numbers to casefile.
 """

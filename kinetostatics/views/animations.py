@@ -1,4 +1,4 @@
-"""The mechanism in motion, with arrows for the reactions at its joints."""
+"""Animation of the mechanism, with arrows for the reactions at its joints."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, se
 from .strokes import set_points, stroke_artist
 
 UNCLIPPED_SHARE = 0.9
-"""Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
+"""Share of the poses in which an unbounded reaction has its arrow in full length."""
 
 
 def animation(solution, joints=None, frames=72, interval=50, ax=None):
@@ -26,12 +26,11 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     ----------
     solution : Solution
     joints : sequence of str, optional
-        Reactions drawn as arrows from the joints that they act at ("guide" at B), of those at O, A and B the ones that
-        it has unless told; the largest of all is as long as the crank. NaN where the mechanism does not close draws
-        nothing.
+        Reactions drawn as arrows from their joints ("guide" at B); by default those of O, A and B that exist. The
+        largest of all is as long as the crank. Nothing is drawn where the mechanism does not close.
     frames : int
-        Poses shown, of the solution's crank angles; where these are less than a period, over the whole of it, unless
-        the solution holds tables over its crank angles.
+        Poses shown, at crank angles of the solution; if these cover less than a period, the whole period is solved,
+        unless the solution contains tables over its crank angles.
     interval : float
         Time between them, ms.
     ax : Axes, optional
@@ -79,7 +78,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
 
 
 class _MovingParts(NamedTuple):
-    """What moves in an animation: its artists, how they come to a step, and the points (2, K) that they pass."""
+    """Moving parts of an animation: artists, a function that moves them to a step, and their points (2, K)."""
 
     artists: list
     move: Callable[[int], None]
@@ -114,7 +113,7 @@ def _moving_marks(ax, shape, solution):
 
 
 def _moving_arrows(ax, solution, joints):
-    """Reactions, the largest as long as the crank; the title tells it."""
+    """Reactions as arrows, the largest as long as the crank, with its size in the title."""
     made = solution.mechanism
     forces = [_clipped_reaction(solution, joint) for joint in joints]
     largest = max(_largest_finite(magnitude(force)) for force in forces)
@@ -151,7 +150,7 @@ def _moving_caption(ax, solution):
 
 
 def _over_period(solution, frames):
-    """The solution over its whole period, at its own crank angles if they are enough of it."""
+    """The solution over its whole period, at its own crank angles if they cover it."""
     angle, period = np.sort(solution.crank_angle), solution.period
     step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
     if angle[-1] - angle[0] + 1.5 * step >= period:
@@ -168,7 +167,7 @@ def _largest_finite(values):
 
 
 def _clipped_reaction(solution, joint):
-    """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
+    """Reaction at a joint; near change points, where it grows without bound, no longer than most others."""
     force = solution.reaction(joint)
     if not solution.mechanism.grows(joint):
         return force

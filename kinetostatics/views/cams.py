@@ -1,4 +1,4 @@
-"""Cams: their curves with the roller, pressure angle and curvature over the turn, pressure of the contact."""
+"""Figures of cams: curves with the roller, pressure angle, curvature, contact pressure, and laws of motion."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,10 +10,10 @@ from ..numbers import checks
 from .canvas import ACCENT, FROM_X, INK, STEEL, axes, close_curve, with_line_styles
 
 POINTS_PER_TURN = 1440
+"""Crank angles of drawn curves."""
 ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 RADIUS_RULE = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
 LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
-"""Crank angles a turn at which curves are drawn."""
 
 
 def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
@@ -76,7 +76,7 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
 
 
 def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
-    """Curvature of pitch curves over the crank angle, and what a roller may be fitted to.
+    """Curvature of pitch curves over the crank angle, and the limit for a roller.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
 
 
 def contact_pressure(contacts, ax=None):
-    """Hertz pressure of the roller on its cam over the crank angle; lines mark where the roller changes sides.
+    """Hertz pressure of the roller on its cam over the crank angle; lines mark changes of the contact side.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def contact_pressure(contacts, ax=None):
 
 
 def law_motion(laws, ax=None):
-    """Position of laws over the turn, with velocity, acceleration and jerk by the crank angle below each other.
+    """Position, velocity, acceleration and jerk of laws over the turn, per radian of crank angle, in four axes.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def _label_turn(ax, text, legend):
 
 
 def _items_by_label(items, owner, problem):
-    """What is drawn by label, each looked at."""
+    """Checked items by label; a single one has the label ""."""
     named = dict(items) if isinstance(items, Mapping) else {"": items}
     wrong = [f"{name or 'it'} {text}" for name, item in named.items() if (text := problem(item))]
     checks.require(owner, *wrong, None if named else "there is nothing to draw")
@@ -243,7 +243,7 @@ def _items_by_label(items, owner, problem):
 
 
 def _cam_problem(cam):
-    """What is wrong with what must be a cam, or None."""
+    """Problem with an object that must be a cam, or None."""
     if not isinstance(cam, type) and all(hasattr(cam, name) for name in ("radius", "profile", "curvature_radius")):
         return None
     return f"must be one of ks.cams, got {checks.shown(cam)}"

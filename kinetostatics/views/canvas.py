@@ -1,8 +1,7 @@
-"""What every figure shares: colours, axes, labels, units that read well.
+"""Common parts of all figures: axes, labels, units, line styles, legends, and curves with their peaks and gaps.
 
-Crank angles that a curve must not miss: extremes between those solved, kinks, and both sides of jumps.
-
-Crank angles without a value, shaded and named, and axes that what grows without bound beside them does not set.
+Curves go over the crank angle. `with_peaks` adds crank angles of extremes, kinks and jumps between those solved.
+`shade_gaps` marks crank angles without a value, and `limit_axis` keeps values that grow without bound off the scale.
 """
 
 import textwrap
@@ -19,14 +18,14 @@ from ..numbers import checks
 from ..numbers.formatting import parse_heading
 from ..results.extremes import extrema
 from ..results.rounding import PLACED
-from ..solution.drive_and_loads import tables_over_angles
+from ..solution.parameters import tables_over_angles
 
 
 @dataclass(frozen=True)
 class AngleConvention:
-    """How crank angles are counted: the text of an axis, the angle from +x at 0, degrees, and the sense.
+    """Convention for crank angles: text of the axis, direction of angle 0, degrees from +x, and sense.
 
-    All figures of one folder count in one way; `FROM_X` is that of the library.
+    The library's own is `FROM_X`.
     """
 
     text: str
@@ -38,11 +37,11 @@ class AngleConvention:
         return f"crank angle {self.text} [deg]"
 
     def __call__(self, degrees, period=360.0):
-        """Crank angles from +x, counter-clockwise, counted so."""
+        """Convert crank angles from the library's convention, degrees."""
         return degrees if self == FROM_X else np.mod(self.sense * (degrees - self.zero), period)
 
     def from_x(self, degrees):
-        """Crank angles counted so, from +x, counter-clockwise."""
+        """Convert crank angles to the library's convention, degrees."""
         return self.zero + self.sense * np.asarray(degrees)
 
 
@@ -50,7 +49,7 @@ FROM_X = AngleConvention("from +x, counter-clockwise")
 FROM_Y_CLOCKWISE = AngleConvention("from +y, clockwise", 90.0, -1)
 INK, STEEL, ACCENT, LOAD = "0.15", "slategray", "tab:red", "tab:green"
 STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-"""Line styles, so that curves differ in print too."""
+"""Line styles; they distinguish curves in print without colour."""
 
 
 def axes(ax):
@@ -60,7 +59,7 @@ def axes(ax):
 
 
 def solutions_by_label(solutions, name):
-    """Solutions by label; a single one is labelled by the quantity shown."""
+    """Solutions by label; a single solution has the label of the quantity."""
     checks.require("plots", checks.quantity(name))
     several = isinstance(solutions, Mapping)
     named = dict(solutions) if several else {"solution": solutions}
@@ -80,12 +79,12 @@ def solutions_by_label(solutions, name):
 
 
 def single_solution(solution):
-    """The solution given, if it is one of one design."""
+    """The solution; an error unless it is of one design."""
     return next(iter(solutions_by_label({"solution": solution}, "").values()))
 
 
 def require_columns(name, table, columns):
-    """A table of a study has the columns that a chart shows."""
+    """Raise an error if a table lacks columns that a chart shows."""
     found = list(getattr(table, "columns", ()))
     missing = [column for column in columns if column not in found]
     problem = None
@@ -99,25 +98,25 @@ def require_columns(name, table, columns):
 
 
 def with_line_styles(named):
-    """Name, solution and line style of each."""
+    """Tuples of name, solution and line style."""
     return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
 LONG_LABEL = 20
-"""Letters of a label from which on a legend has one column."""
+"""Letters of a label from which on the legend has one column."""
 LEGEND_COLUMNS = (3, 2, 1)
-"""Of a legend above curves: as many as fit into the axes."""
+"""Numbers of legend columns to try, until the legend fits into the axes."""
 SAME_CURVE_TOLERANCE = 2e-3
-"""Distance of curves, beside the extent of all, up to which one covers the other."""
+"""Distance of two curves, relative to the extent of all, up to which they count as one."""
 ZERO_TOLERANCE = 1e-9
-"""Size of a curve, beside the largest, below which it is rounding."""
+"""Size of a curve, relative to the largest, below which it counts as zero."""
 
 
 def distinct_curves(curves, apart=False):
-    """Labels of curves (N,) or (2, N) for a legend, each with the name of the curve: one for all that cover each other.
+    """Legend labels of curves (N,) or (2, N), each with the name of the curve; curves that coincide have one label.
 
-    The label of a curve that is zero but for rounding says so. Curves that are drawn apart, each to a scale of its own,
-    are compared by their own extents.
+    The label of a zero curve ends in "(0)". With `apart`, curves with scales of their own are compared by their own
+    extents.
     """
     arrays = {name: np.asarray(curve, dtype=float) for name, curve in curves.items()}
     finite = {name: np.where(np.isfinite(array), array, 0.0) for name, array in arrays.items()}
@@ -140,7 +139,7 @@ def distinct_curves(curves, apart=False):
 
 
 def period_curve(solution, value, counted=FROM_X):
-    """Crank angles and values (2, N) over one period, by growing angle as it is counted."""
+    """Crank angles, degrees, and values (2, N) over one period, by rising angle in the convention."""
     degrees = np.degrees(solution.crank_angle)
     angle = counted(degrees, np.degrees(solution.period))
     order = slice(None) if counted == FROM_X else np.argsort(angle)
@@ -148,7 +147,7 @@ def period_curve(solution, value, counted=FROM_X):
 
 
 def draw_curves(ax, curves):
-    """Draw curves (2, N) by label, each in its own style, those that cover each other as one."""
+    """Draw curves (2, N) by label, each in its own style; curves that coincide are drawn once."""
     for text, name, style in with_line_styles(distinct_curves({name: value for name, (_, value) in curves.items()})):
         ax.plot(*curves[name], linestyle=style, label=text)
 
@@ -163,19 +162,19 @@ def axis_words(column):
 
 
 ORDINARY_SHARE = 0.9
-"""Share of values that are ordinary where a few grow without bound."""
+"""Share of values that count as ordinary where a few grow without bound."""
 UNBOUNDED_RATIO = 1e4
-"""Times the ordinary values from which on others grow without bound."""
+"""Ratio to the ordinary values above which others grow without bound."""
 DRAWN_RATIO = 3.0
-"""Times the ordinary values up to which those that grow without bound are drawn."""
+"""Ratio to the ordinary values up to which unbounded values are drawn."""
 GAP_REACH = 36
-"""Share of the crank angles, 1 / `BESIDE`, on each side of a gap where values may grow without bound."""
+"""Share of the crank angles, 1 / `GAP_REACH`, on each side of a gap where values may grow without bound."""
 
 
 def ordinary_size(arrays):
-    """Largest size of all values, unless some grow without bound: then of the others.
+    """Largest magnitude of all values that do not grow without bound.
 
-    That are those far beyond most others, as forces near change points, and those beside a gap.
+    Values grow without bound if they are far beyond most others, as forces near change points, or beside a gap.
     """
     rows = [np.abs(np.atleast_1d(np.asarray(array, dtype=float))) for array in arrays]
     sizes, away = (np.concatenate([np.ravel(row) for row in part]) for part in (rows, map(_away_from_gaps, rows)))
@@ -190,7 +189,7 @@ def ordinary_size(arrays):
 
 
 def _away_from_gaps(values):
-    """Values over the crank angles without those beside a gap, where there is one."""
+    """Values over the crank angles, with NaN beside gaps."""
     missing = np.isnan(values)
     if not missing.any():
         return values
@@ -200,14 +199,14 @@ def _away_from_gaps(values):
 
 
 def drawn_limit(arrays):
-    """Size up to which values are drawn, so that a few far beyond all others do not flatten these; infinite if none."""
+    """Magnitude up to which values are drawn, so that a few unbounded ones do not flatten the rest; or infinity."""
     most = ordinary_size(arrays)
     beyond = any(np.any(np.abs(array) > most) for array in arrays)
     return DRAWN_RATIO * most if beyond else np.inf
 
 
 def display_unit(name, arrays):
-    """Factor and unit in which numbers of this size read well."""
+    """Factor and unit for readable numbers."""
     if name == "rad":
         return 180 / np.pi, "deg"
     largest = ordinary_size(list(arrays))
@@ -222,7 +221,7 @@ def close_curve(curve):
 
 
 def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
-    """The axes of curves over the crank angle, degrees, with labels, grid and legend."""
+    """Add labels, grid and legend to the axes of curves over the crank angle, degrees."""
     ax.set_xlabel(counted.axis)
     ax.set_ylabel(ylabel)
     low, high = ax.dataLim.intervalx
@@ -250,10 +249,10 @@ KINK_TOLERANCE = 1e-12
 
 
 def with_peaks(named, *quantities):
-    """Solutions by label with more crank angles: those of extremes of quantities, and of kinks of tables and friction.
+    """Solutions by label with added crank angles: extremes of quantities, and kinks of tables and friction.
 
-    All have those of all, so that curves that cover each other still do. A solution stays as it is where there is
-    nothing between its crank angles, or these do not rise.
+    All solutions get the angles of all, so curves that coincide still do. A solution stays unchanged if nothing is
+    known between its crank angles, or these do not rise.
 
     Parameters
     ----------
@@ -269,18 +268,18 @@ def with_peaks(named, *quantities):
 
 
 def _peak_angles(solution, quantity):
-    """Crank angles in a period that a curve of a quantity must not miss; none where its extremes cannot be told."""
+    """Crank angles of peaks, kinks and jumps of a quantity in a period; none if its extremes are not defined."""
     if not _is_known_between(solution):
         return np.empty(0)
     try:
         found = extrema(solution, quantity)
-    except KinetostaticsError:  # a force that does not repeat, for one, can still be drawn where it is solved
+    except KinetostaticsError:  # such as a force that does not repeat; it can still be drawn
         return np.empty(0)
     return angles_between(solution, found.angle[np.isfinite(found.value)])
 
 
 def angles_between(solution, extremes):
-    """Crank angles of extremes where the solution has none, and of kinks and both sides of jumps, rising."""
+    """Rising crank angles of extremes that the solution lacks, of kinks, and of both sides of jumps."""
     there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
     return np.unique(np.concatenate([extremes[~there], _kink_samples(solution.sampled)]))
 
@@ -303,7 +302,7 @@ def _is_known_between(solution):
 
 
 def _with_angles(solution, more):
-    """The solution with such crank angles of its period besides its own, as far as these go round."""
+    """The solution with added crank angles, in every period that its own angles cover."""
     if not more.size or not _is_known_between(solution):
         return solution
     own, period = solution.crank_angle, solution.period
@@ -319,11 +318,11 @@ def _with_angles(solution, more):
 GAP_STYLE = {"color": "0.9", "lw": 0.0, "zorder": 0.5}
 NOTE_STYLE = {"color": "0.35", "fontsize": "x-small"}
 MIN_NAMED_GAP = 0.01
-"""Breadth of a gap, beside that of the axes, down to which its name stands in it."""
+"""Smallest width of a gap with a name, relative to the axes."""
 
 
 def shade_gaps(ax, named, curves, counted):
-    """Shade where curves (2, N) of solutions have no value, and say why."""
+    """Shade crank angles where curves (2, N) have no value, with the reason."""
     found: dict[tuple[float, float, str], list[str]] = {}
     for name, solution in named.items():
         _, closed = period_curve(solution, solution.closed, counted)
@@ -340,7 +339,7 @@ def shade_gaps(ax, named, curves, counted):
 
 
 def _missing_runs(angle, value):
-    """Runs of rows without a value: from the last angle before that has one to the next behind, and the rows."""
+    """Gaps of a curve: last angle with a value before, first after, and the rows between."""
     missing = np.flatnonzero(np.isnan(value))
     for rows in np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1):
         if rows.size:
@@ -354,7 +353,7 @@ def _reason_missing(closed, solution):
 
 
 def limit_axis(ax, arrays, unit):
-    """Limit the axis to what is ordinary of values (N,), as they are drawn, if some grow far beyond it."""
+    """Limit the axis to ordinary values if some of the arrays (N,) grow without bound."""
     sight = drawn_limit(arrays)
     if np.isfinite(sight):
         values = np.concatenate(arrays)
@@ -366,7 +365,7 @@ def limit_axis(ax, arrays, unit):
 
 
 def size_text(arrays, unit):
-    """Up to what size values (N,) go, in words."""
+    """Text of the largest magnitude of values (N,)."""
     largest = float(np.nanmax(np.abs(np.concatenate(arrays))))
     return f"up to {largest:.3g} {unit}" if np.isfinite(largest) else "without bound"
 
@@ -378,15 +377,15 @@ def write_notes(ax, lines):
 
 
 class CurveEnd(NamedTuple):
-    """Where a curve ends that is closed but for gaps, and for what is beyond the frame.
+    """End of a curve at a gap or at the frame.
 
     Attributes
     ----------
     row : int
     angle : float
-        Direction in which it goes on, degrees.
+        Direction of the curve there, degrees.
     why : str
-        What it ends for; "" where it goes on beyond the frame.
+        Reason of the gap; "" where the curve continues beyond the frame.
     """
 
     row: int
@@ -406,7 +405,7 @@ def curve_ends(solution, curve, drawn):
 
 
 def mark_ends(ax, found, points, color):
-    """Mark ends of a curve (2, N): a cross where it stops, a head of an arrow where it goes on."""
+    """Mark ends of a curve (2, N): a cross at a gap, an arrow head at the frame."""
     for end in found:
         style = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
         ax.plot(*points[:, end.row], ls="", color=color, zorder=4, **style)

@@ -1,4 +1,4 @@
-"""Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
+"""Charts of studies: error over time, over distance from a critical place, over the cost of a model; maps of sweeps."""
 
 import textwrap
 from functools import partial
@@ -15,16 +15,16 @@ from ..numbers.files import write_atomically
 from .canvas import ACCENT, axes, axis_words, require_columns
 
 MIN_DRAWN_ERROR = 1e-17
-"""Where an error of zero is drawn: below the rounding of the largest value."""
+"""Smallest error drawn, below the rounding of the largest value; zero errors lie there."""
 MAX_DRAWN_ERROR = 1e3
-"""Where larger errors, and NaN, are drawn."""
+"""Largest error drawn; larger ones and NaN lie there."""
 COLOURS = [plt.get_cmap("tab20")(number) for number in (0, 2, 4, 8, 10, 12, 14, 16, 18, 1, 3, 5, 9, 11, 13, 17, 19)]
-"""Without reds, which are ours."""
+"""Colours of methods without reds, which mark the library's own."""
 MARKERS = "osD^v<>PX*phd"
 
 
 def _method_styles(table):
-    """How each method of a study is drawn, by name."""
+    """Plot style of each method of a study, by name."""
     styles = {}
     for number, (name, ours) in enumerate(table.groupby("method", sort=False)["ours"].first().items()):
         styles[name] = {
@@ -41,15 +41,15 @@ def _method_styles(table):
 def work_precision(table, ax=None, like=None):
     """Error over time, both logarithmic: a curve for each method with a setting, else a point.
 
-    Where a method proves a bound on its error a line leads from the error up to it.
+    If a method proves a bound on its error, a line connects the two.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        One quantity of one scene, from `precision.study`; or running and motions, from `studies.driving`.
+        One quantity of one scene, from `precision.study`; or from `precision.study_running` or `study_motion`.
     ax : Axes, optional
     like : pandas.DataFrame, optional
-        A study of more methods, whose colours and marks are taken.
+        A study of more methods, which sets the colours and marks.
 
     Returns
     -------
@@ -99,10 +99,9 @@ def work_precision(table, ax=None, like=None):
 def error_by_distance(table, ax=None):
     """Error of every method over the number that leads to a place, logarithmic.
 
-    Dashed is the condition times rounding, dashed and dotted what one rounding of the crank angle makes, dotted the
-    bound that the library proves for its own values.
-
-    Errors of a thousand times the largest value and more, and NaN, lie on the upper edge.
+    Dashed: condition times rounding unit; dash-dotted: change by one rounding of the angle; dotted: the bound that
+    the library proves for its own values. Errors above a thousand times the largest value, and NaN, lie on the upper
+    edge.
 
     Parameters
     ----------
@@ -220,7 +219,7 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
         Column of the output.
     ax : Axes, optional
     labels : mapping of column to text, optional
-        What axes say, with units; the headings as words unless told.
+        Texts of axes, with units; by default the headings as words.
 
     Returns
     -------
@@ -260,7 +259,7 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
 
 
 def _axis_text(labels, column, width=40):
-    """What an axis says, in lines that are no longer than it."""
+    """Text of an axis in lines of at most `width` letters."""
     return textwrap.fill(labels.get(column) or axis_words(column), width)
 
 
@@ -338,7 +337,7 @@ def _draw_page(draw, panels, path):
 
 
 def _save_page(figure, path):
-    """Figure as PNG and SVG beside each other; returns the paths."""
+    """Save a figure as PNG and SVG; returns the paths."""
     paths = []
     for kind in ("png", "svg"):
         target = Path(f"{path}.{kind}")

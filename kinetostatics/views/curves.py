@@ -1,7 +1,4 @@
-"""Curves of solutions over the crank angle, and hodographs of their reactions.
-
-Figures of the studies' own kinds: relative motion of the chain unit, polar hodograph of the shaking force.
-"""
+"""Curves of solutions over the crank angle, hodographs of reactions and shaking force, motion of the chain unit."""
 
 from collections.abc import Mapping
 
@@ -12,7 +9,7 @@ from ..design.linkage import four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
-from ..numbers.checks import choice, require, singles
+from ..numbers.checks import choice, require, single_numbers
 from ..results.extremes import extremes
 from . import canvas
 from .canvas import (
@@ -45,7 +42,7 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     ----------
     solutions : Solution or mapping of label to Solution
     link : "coupler" or "rocker"
-        Which link of the four-bar, whatever it is called.
+        Link of the four-bar, whatever its name.
     order : 1 or 2
         Velocity or acceleration.
     ax : Axes, optional
@@ -129,7 +126,7 @@ def shaking_force(solutions, by="direction", ax=None):
 
 
 def require_turning(named):
-    """Refuse solutions of a crank at rest."""
+    """Raise an error for solutions with the crank at rest."""
     still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
     require(
         "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
@@ -137,13 +134,13 @@ def require_turning(named):
 
 
 MIN_MARK_STEP = 0.01
-"""Least step of the crank-angle marks, degrees."""
+"""Smallest step of the crank-angle marks, degrees."""
 
 
 def over_turn(solutions, quantity, ax=None, counted=FROM_X):
-    """One quantity over the crank angle; curves that cover each other are one, under all their labels.
+    """One quantity over the crank angle; curves that coincide are drawn once, with all their labels.
 
-    Extremes between the crank angles solved, kinks and jumps are on the curve.
+    The curve includes extremes between the crank angles solved, kinks and jumps.
 
     Parameters
     ----------
@@ -151,8 +148,8 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     quantity : str
         As for `extremes`; of a reaction or a vector the magnitude is drawn.
     ax : matplotlib Axes, optional
-    counted : Counted, optional
-        How crank angles are counted, from +x and counter-clockwise unless told.
+    counted : AngleConvention, optional
+        Convention for crank angles; by default from +x, counter-clockwise.
 
     Returns
     -------
@@ -187,7 +184,7 @@ def torque(solutions, ax=None, counted=FROM_X):
     ----------
     solutions : Solution or mapping of label to Solution
     ax : Axes, optional
-    counted : Counted, optional
+    counted : AngleConvention, optional
         As for `over_turn`.
 
     Returns
@@ -256,8 +253,8 @@ def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
-    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The only slider, or that without a
-    label, is meant unless told.
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The default is the only slider, or
+    the one without a label.
 
     Parameters
     ----------
@@ -300,8 +297,8 @@ def acceleration_error(solutions, ax=None, slider=None):
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
 
-    Extremes of the magnitude between the crank angles solved, kinks and jumps are on it. Where it has no value it ends
-    at a cross, where it grows far beyond the rest at the head of an arrow.
+    The curve includes extremes of the magnitude between the crank angles solved, kinks and jumps. It ends with a cross
+    where it has no value, and with an arrow head where it grows far beyond the rest.
 
     Parameters
     ----------
@@ -310,9 +307,9 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
         Joint, or the vector attribute "shaking_force".
     ax : Axes, optional
     marks : float
-        Step of the crank-angle marks, degrees; marks stand where the solution has that angle, to half a degree.
-    counted : Counted, optional
-        How the marks count crank angles, from +x and counter-clockwise unless told.
+        Step of the crank-angle marks, degrees; a mark appears if the solution has that angle, to half a degree.
+    counted : AngleConvention, optional
+        Convention for the marks; by default from +x, counter-clockwise.
 
     Returns
     -------
@@ -327,7 +324,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     >>> ax.get_aspect()
     1.0
     """
-    marks = singles("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
+    marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
     ax = axes(ax)
     named = with_peaks(solutions_by_label(solutions, joint), joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
@@ -370,7 +367,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
 
 
 def _extent(curve):
-    """Largest extent of a curve (2, N) in x or y, where it has values."""
+    """Largest extent of a curve (2, N) in x or y."""
     found = curve[:, np.isfinite(curve).all(axis=0)]
     return float(np.max(np.ptp(found, axis=1))) if found.size else 0.0
 
@@ -405,7 +402,7 @@ def _rows_at_marks(solution, step):
 
 
 def _merge_labels(degrees, points, near):
-    """Labels of points (2, M) by their crank angles, with their places: one for points nearer to each other than so."""
+    """Crank-angle labels of points (2, M) with their places; points nearer than `near` share a label."""
     labels: dict[int, list[str]] = {}
     for row, point in enumerate(points.T):
         first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)

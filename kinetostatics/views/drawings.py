@@ -1,4 +1,4 @@
-"""The mechanism itself: drawn at given crank angles, with the paths of its mass centre."""
+"""Drawings of the mechanism at given crank angles, with paths of its mass centre."""
 
 from typing import Any
 
@@ -20,9 +20,9 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": strokes.MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
-"""Kinds of strokes that counterweights are drawn by."""
+"""Kinds of strokes in counterweights."""
 GROUND_DEPTH = 3.0
-"""Room for the ground below a fixed pivot, half lengths of a block."""
+"""Depth of the ground below a fixed pivot, in half lengths of a block."""
 
 
 def mass_centres(solutions, angle=60, ax=None):
@@ -69,18 +69,18 @@ def mass_centres(solutions, angle=60, ax=None):
 def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
-    Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the
-    force or torque acts there; where it is zero or not known, as at its largest, and as positive ones of functions.
+    Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the force or torque
+    acts there; where it is zero or unknown, as at its largest magnitude; for functions, as a positive one.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        Of several, machines that move alike, the first is drawn, with the counterweights and loads of each.
+        Several must be machines that move alike: the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
-    counted : Counted
-        How the labels of the crank angles count them; the angles given are from +x.
+    counted : AngleConvention
+        Convention for the labels of crank angles; `angles` are from +x.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
     once = [stroke for stroke, owners in strokes_by_owner(named, angles[:1]) if len(owners) == len(named)]
-    moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
+    moving = [name for name, point in shape.mechanism.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
             set_points(stroke_artist(ax, stroke, shade), stroke.points[..., row])
@@ -125,7 +125,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
 
 
 def _draw_own(ax, strokes):
-    """What only some machines have, each machine's in a colour of its own, and whose it is in the legend."""
+    """Draw strokes that only some machines have, in colours by machine, with a legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
         text = f"{'counterweight' if stroke.kind in COUNTERWEIGHT_KINDS else 'load'}: {', '.join(owners)}"
@@ -140,7 +140,7 @@ def _draw_own(ax, strokes):
 
 
 def draw_fixed_parts(ax, solution):
-    """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
+    """Draw fixed pivots, guides over the stroke, the pitch curve of the cam and the crank circle; return the shape."""
     made = solution.mechanism
     turn = whole_turn(solution)
     shape = Shape(turn)
@@ -161,14 +161,14 @@ def draw_fixed_parts(ax, solution):
 
 
 def first_moving_joint(made):
-    """First joint that moves, from the crank outwards; O where none does."""
+    """Name of the first moving joint, from the crank outwards; O if there is none."""
     return next((name for name, point in made.joints.items() if point.link != FRAME), "O")
 
 
 def _names_by_place(poses, shape):
-    """Names of joints with their place in the first pose, those that coincide together."""
+    """Names of joints with their place in the first pose; joints that coincide share an entry."""
     found: list[tuple[list[str], Any]] = []
-    for name in shape.made.joints:
+    for name in shape.mechanism.joints:
         place = poses.position(name)[:, 0]
         near = (names for names, other in found if np.hypot(*(place - other)) < 1e-6 * shape.size)
         names = next(near, None)
@@ -180,7 +180,7 @@ def _names_by_place(poses, shape):
 
 
 def set_equal_scales(ax, moving=()):
-    """Equal scales, for what is drawn and for what moves, places (N, 2)."""
+    """Set equal scales that show all drawn parts and moving points (N, 2)."""
     ax.relim()
     if len(moving):
         ax.update_datalim(moving)

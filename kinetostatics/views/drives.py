@@ -1,7 +1,4 @@
-"""Figures of machines in periodic running: speed, torque of the motor against that of the loads, where energy goes.
-
-Figures of friction: power lost by joint over the crank angle, and as bars of its means.
-"""
+"""Figures of drives and friction: crank speed, torques and energy flow in periodic running; power lost by joint."""
 
 from collections.abc import Mapping
 
@@ -56,7 +53,7 @@ def crank_speed(runs, ax=None):
 
 
 def drive_torques(run, ax=None):
-    """Torques at the crank over the crank angle: of the motor, of the machine with its inertia, of the loads alone.
+    """Torques at the crank over the crank angle: motor, machine with its inertia, loads alone.
 
     Parameters
     ----------
@@ -94,7 +91,7 @@ def drive_torques(run, ax=None):
 
 
 def energy_flow(runs, ax=None):
-    """Energy per turn of machines in periodic running, a bar for each part that gives or takes any.
+    """Energy per turn of machines in periodic running, a bar for each part that supplies or absorbs energy.
 
     Parameters
     ----------
@@ -141,14 +138,14 @@ def energy_flow(runs, ax=None):
 
 
 def energy_parts(runs):
-    """Names of the parts that give or take energy in a turn of any of the runs, in order."""
+    """Names of the parts that supply or absorb energy in any of the runs, in order."""
     parts = {part.name: None for run in runs.values() for part in run.energy_flow.parts}
     moving = {part.name for run in runs.values() for part in run.energy_flow.parts if part.energy}
     return [name for name in parts if name in moving]
 
 
 def _require_running(runs):
-    """Refuse what is no mapping of label to Running."""
+    """Raise an error unless `runs` is a mapping of label to Running."""
     wanted = 'runs must be a dict of label to Running, as {"saw": ks.drive.steady(scene, motor)}'
     several = isinstance(runs, Mapping) and runs
     wrong = [name for name, run in runs.items() if not isinstance(run, Running)] if several else []
@@ -157,7 +154,7 @@ def _require_running(runs):
 
 
 def _closed_curve(run, values):
-    """Crank angles in degrees and values, the first again at the end of the period."""
+    """Crank angles in degrees and values, with the first value repeated at the end of the period."""
     return np.degrees(np.append(run.crank_angle, run.period)), np.append(values, values[0])
 
 
@@ -254,10 +251,12 @@ def losses(solutions, ax=None):
 
 
 def _reversed_legend(ax):
-    """Legend in the order in which parts are stacked."""
+    """Legend entries in the order of the stack, from the top."""
     return tuple(item[::-1] for item in ax.get_legend_handles_labels())
 
 
 def _require_friction(named):
     without = [name for name, solution in named.items() if not solution.friction]
-    require("plots", f"{', '.join(without)}: nothing rubs; give friction to solve or scene" if without else None)
+    require(
+        "plots", f"{', '.join(without)}: no friction is given; give friction to solve or scene" if without else None
+    )

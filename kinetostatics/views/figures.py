@@ -1,8 +1,6 @@
-"""The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files.
+"""Figures saved to files: of a case (`kinetostatics plot`), of its drive, and of designs before and after a search.
 
-Figures of what a search found: cam, torque and support reaction before and after, and fronts.
-
-Figures of designs: fronts of two outputs.
+`FIGURES` lists the figures of a case by name, with the condition for each.
 """
 
 from functools import partial
@@ -47,12 +45,12 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     ----------
     case : Case
     folder : path
-        Made if missing; each file is written whole or not at all.
+        Created if missing; each file is written whole or not at all.
     file_format : "png" or "svg"
     only : str, optional
-        Name of the one figure wanted.
+        Name of a single figure.
     progress : function, optional
-        Goes through the names of the figures while they are drawn.
+        Iterates over the names of the figures while they are drawn.
 
     Returns
     -------
@@ -83,7 +81,7 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
 
 
 def _with_figure_number(draw, number, counted, solutions) -> Figure:
-    """A figure, with the number that it has in the study it is from, if it is from one."""
+    """A figure, with its number in the published study if it has one."""
     figure = draw(solutions, counted)
     if number:
         text = f"figure{'s' * (',' in number)} {number} of the study"
@@ -128,7 +126,7 @@ def _has(quantity):
 
 
 def _compares_with_cosine_law(case):
-    """Whether the slider of a variant is to follow a cosine law, and each variant has one slider to compare with it."""
+    """Whether a variant has a cosine-law cam, and each variant has one slider to compare."""
     kinds = {getattr(getattr(item.table, "cam", None), "kind", None) for item in case.variants.values()}
     return "cosine-law" in kinds and all(item.mechanism.slider is not None for item in case.variants.values())
 
@@ -150,7 +148,7 @@ def _is_balanced(case):
 
 
 def _one_axes(plot, width=6.4, height=4.0, **axes):
-    """How a plot fills a page; crank angles are counted as the plot does."""
+    """Function that draws a plot as a page, with the plot's own convention for crank angles."""
 
     def draw(solutions, _=FROM_X) -> Figure:
         figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
@@ -170,14 +168,14 @@ def _over_turn(quantity):
 
 
 def _hodographs(solutions, counted=FROM_X) -> Figure:
-    """Hodographs of the support reaction, those that cover each other in one panel."""
+    """Hodographs of the support reaction; those that coincide share a panel."""
     reactions = {name: solution.reaction("O") for name, solution in solutions.items()}
     shown = {text: solutions[name] for text, name in distinct_curves(reactions, apart=True).items()}
     return _one_each(partial(curves.hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 
 def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
-    """Axes for each variant, so many in a row."""
+    """A figure with axes for each variant."""
     columns = min(columns, len(solutions))
     rows = -(-len(solutions) // columns)
     figure, axes = plt.subplots(
@@ -198,7 +196,7 @@ def _proportion(solution):
 
 
 def _mechanisms(solutions, counted=FROM_X) -> Figure:
-    """The mechanisms of all variants, those that move alike as one: wide ones stacked, others side by side."""
+    """Mechanisms of all variants; equal ones are drawn once. Wide ones are stacked, others side by side."""
     alike: list[dict[str, Any]] = []
     for name, solution in solutions.items():
         same = next((group for group in alike if moves_alike(next(iter(group.values())), solution)), None)
@@ -216,21 +214,21 @@ def _mechanisms(solutions, counted=FROM_X) -> Figure:
 DRAWN_ANGLES = (40.0, 160.0, 280.0)
 """Crank angles at which mechanisms are drawn, degrees."""
 WIDE_RATIO = 1.7
-"""Width over height of a mechanism from which on it is drawn across a page."""
+"""Width over height above which a mechanism is drawn across the page."""
 TITLE_HEIGHT = 0.8
 """Height of title and labels of axes, inches."""
 
 
 def _most_loaded(solutions):
-    """Name of the variant of whose loads a drawing shows most, the last of several."""
+    """Name of the variant with most loads in its drawing, the last of several."""
     strokes = {name: len(load_strokes(solution, DRAWN_ANGLES[:1])) for name, solution in solutions.items()}
     return max(reversed(strokes), key=strokes.__getitem__)
 
 
 def _overview(solutions, counted=FROM_X) -> Figure:
-    """The variant with most loads, torques of all, and the support reaction of the first and the last.
+    """The variant with most loads, the torques of all, and the support reactions of the first and the last.
 
-    A wide mechanism is drawn across the page, others beside the torque, tall ones over the whole height.
+    A wide mechanism is drawn across the page, a tall one over the whole height, others beside the torque.
     """
     shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
     drawn = _most_loaded(solutions)
@@ -282,11 +280,11 @@ FIGURES = {
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },
 }
-"""Figure by name: how it is drawn, and the cases it applies to."""
+"""By name: the function that draws a figure, and the condition that a case must meet."""
 
 
 def front(found, ax=None):
-    """Designs of which none is better in both outputs, as `ks.design.pareto` finds them, and the source.
+    """Pareto front of two outputs by `ks.design.pareto`, and the design before.
 
     Parameters
     ----------
@@ -329,7 +327,7 @@ ANGLES_PER_TURN = 720
 
 
 def draw_designs(case, found, folder, file_format="png"):
-    """Draw what designs of a case found, by name, into a folder, a page for each; returns the paths."""
+    """Draw results of a case's designs by name into a folder, a page each; returns the paths."""
     paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in found}
     checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
     pages = {

@@ -1,4 +1,4 @@
-"""Labels that keep clear of each other and of what is drawn, placed anew whenever a figure is drawn."""
+"""Labels that avoid each other and everything drawn; they are placed again whenever a figure is drawn."""
 
 from typing import Any, NamedTuple
 
@@ -9,19 +9,19 @@ from matplotlib.path import Path
 from matplotlib.transforms import Bbox, IdentityTransform
 
 DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
-"""Ways from a point to its label, the first of them preferred."""
+"""Directions from a point to its label, in order of preference."""
 DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0)
-"""Between a point and the nearest side of its label, points of print."""
+"""Distances between a point and the nearest side of its label, in typographic points."""
 LEADER_DISTANCE = 14.0
-"""Distance from which on a line leads from the label to its point."""
+"""Distance from which on a leader line connects label and point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
-"""What it costs a label to lie there; a farther place costs up to 1."""
+"""Costs of a label on another label, a point, a curve, and outside the axes; a greater distance costs up to 1."""
 PLACEMENT_ROUNDS = 3
-"""How often each label is placed: first beside those before it, then beside all others."""
+"""Rounds of placement: in the first, labels avoid earlier ones, then all others."""
 
 
 class Labels(Artist):
-    """Places annotations clear of each other: it is drawn before them, and draws the lines that lead to far ones."""
+    """Artist that places annotations without overlap before they are drawn, and draws their leader lines."""
 
     def __init__(self):
         super().__init__()
@@ -30,14 +30,14 @@ class Labels(Artist):
         self.texts = []
 
     def draw(self, renderer):
-        """Move each label to the best place left."""
+        """Move each label to its best place."""
         ax: Any = self.axes
         lines, scale = ax.lines, renderer.points_to_pixels(1.0)
         paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
         marks = [_boxes_of_markers(line, scale) for line in lines if isinstance(line.get_marker(), Path)]
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
-        frees = []  # the places of each label, and what each costs beside all that is not a label
+        frees = []  # the places of each label, and their costs without other labels
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = _Places.around(point, size.width, size.height, scale)
@@ -56,7 +56,7 @@ class Labels(Artist):
                 Line2D(*leader.vertices.T, color="0.5", lw=0.5, transform=IdentityTransform()).draw(renderer)
 
     def _costs(self, boxes, points, marks, paths):
-        """What it costs a label to lie in each of some boxes, (P,)."""
+        """Costs of a label in each of some boxes, (P,)."""
         frame: Any = self.axes
         outside = ~_contain(np.array([frame.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
         crossed = [
@@ -74,7 +74,7 @@ NO_BOX = np.empty((0, 4))
 
 
 def _overlap(boxes, others):
-    """Whether boxes, of rows (x0, y0, x1, y1), meet others, (boxes, others)."""
+    """Whether boxes, rows (x0, y0, x1, y1), overlap others, (boxes, others)."""
     low, high = np.maximum(boxes[:, None, :2], others[:, :2]), np.minimum(boxes[:, None, 2:], others[:, 2:])
     return (low <= high).all(axis=-1)
 
@@ -89,7 +89,7 @@ def _in_pixels(item):
 
 
 def _boxes_of_markers(line, scale):
-    """Boxes of markers that have a shape of their own, in pixels, (N, 4)."""
+    """Boxes of markers with path shapes, in pixels, (N, 4)."""
     corners = line.get_marker().get_extents().get_points()
     corners = corners * 0.5 * scale * line.get_markersize() / np.abs(line.get_marker().vertices).max()
     return (corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4)
@@ -99,7 +99,7 @@ DISTANCE_COSTS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
 
 
 class _Places(NamedTuple):
-    """Places where a label may lie, in pixels.
+    """Possible places of a label, in pixels.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class _Places(NamedTuple):
         Of the lower left corner from the point.
     boxes : array (P, 4)
     leaders : list of Path or None
-        Line from the point to the nearest place of the label, of labels that are far from it.
+        Line from the point to the nearest point of the label, if the label is far away.
     """
 
     offsets: np.ndarray
@@ -129,7 +129,7 @@ class _Places(NamedTuple):
         return cls(offsets, boxes, leaders)
 
     def met(self, others):
-        """What it costs each place that it, or its leader, meets other labels and their leaders, (P,)."""
+        """Costs of each place for overlap with other labels and their leaders, (P,)."""
         others_boxes = np.array([box for _, box, _ in others]).reshape(-1, 4)
         count = _overlap(self.boxes, others_boxes).sum(axis=1)
         bounds = [Bbox.from_extents(box) for box in self.boxes]
@@ -145,7 +145,7 @@ class _Places(NamedTuple):
 
 
 def label(ax, text, point, **style):
-    """Annotation at a point that keeps clear of the others and of what is drawn on the axes."""
+    """Annotation at a point that avoids other labels and everything drawn on the axes."""
     keeper = next((item for item in ax.artists if isinstance(item, Labels)), None)
     if keeper is None:
         keeper = ax.add_artist(Labels())

@@ -1,9 +1,8 @@
-"""Figures. Nothing is shown, and nothing is set globally.
+"""Figures by matplotlib; none is shown, and no global setting changes.
 
-Every function draws on `ax` (a new one if not given) and returns it; `animation` returns the film.
-
-Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together. A
-quantity that the mechanism has not is a `QuantityError`, a batch of designs a `ParameterError`.
+Every function draws on `ax` (new axes by default) and returns it; `animation` returns the film. `solutions` is one
+`Solution` or a mapping of label to `Solution`. A quantity that the mechanism does not have raises `QuantityError`, a
+batch of designs `ParameterError`.
 """
 
 from .animations import animation

@@ -1,12 +1,6 @@
-"""Signs of drawings as points to be joined: springs, dampers, arrows, blocks, hatches; NaN lifts the pen.
+"""The shape of a mechanism as strokes: lines and plates of links, counterweights and loads in each pose.
 
-Points are arrays (2, K, N): K corners of a sign in each of N poses; places and unit vectors are (2, N).
-
-How each kind of stroke of a shape is drawn.
-
-What a mechanism looks like, read off what its groups and loads declare: lines and plates in each pose.
-
-Machines that look alike: which move so, and what of counterweights and loads each has of its own.
+Points are arrays (2, K, N): K corners in each of N poses; places and unit vectors are (2, N). NaN lifts the pen.
 """
 
 from dataclasses import dataclass
@@ -56,18 +50,18 @@ PIVOT = Path.make_compound_path(
 
 
 def left(direction):
-    """Vectors a quarter turn counter-clockwise from those given."""
+    """Vectors after a quarter turn counter-clockwise."""
     return np.array([-direction[1], direction[0]])
 
 
 def place_sign(shape, origin, direction, size=1.0, sense=1.0):
-    """A shape (K, 2) in axes with origin and direction (2, N), as points (2, K, N); mirrored where the sense is -1."""
+    """Points (2, K, N) of a shape (K, 2) in axes with origin and direction (2, N); mirrored where the sense is -1."""
     along, across = size * np.asarray(shape, dtype=float).T[..., None]
     return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * (sense * across)
 
 
 def span_sign(shape, start, end, width):
-    """A shape (K, 2) from start to end, across which it has a width."""
+    """Points (2, K, N) of a shape (K, 2) stretched from start to end, with a width across."""
     apart = end - start
     length = np.hypot(*apart)
     direction = apart / np.where(length > 0, length, 1.0)
@@ -96,25 +90,25 @@ LINES: dict[str, dict[str, Any]] = {
     "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
     "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
 }
-"""How each kind of stroke is drawn as a line."""
+"""Styles of strokes drawn as lines, by kind."""
 PLATES: dict[str, dict[str, Any]] = {
     "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
     "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
     "block": {"fc": STEEL, "ec": "none", "zorder": 3},
     "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
 }
-"""How each kind of stroke is drawn as a filled shape."""
+"""Styles of strokes drawn as filled shapes, by kind."""
 
 
 def stroke_artist(ax, stroke, shade):
-    """What a stroke is drawn by, still empty."""
+    """Empty matplotlib artist of a stroke."""
     if stroke.kind in PLATES:
         return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
     return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
 
 
 def set_points(drawn, points):
-    """Give what a stroke is drawn by its points (2, K)."""
+    """Set the points (2, K) of a stroke's artist."""
     if isinstance(drawn, Line2D):
         drawn.set_data(points)
     else:
@@ -122,13 +116,13 @@ def set_points(drawn, points):
 
 
 THIN_RATIO = 1e-3
-"""Breadth of a link, beside its length, up to which it is a straight bar."""
+"""Width of a link, relative to its length, up to which it is a straight bar."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
 
 class Stroke(NamedTuple):
-    """Points (2, K, N) to be joined in each of N poses, and what they are."""
+    """Points (2, K, N) of a line in each of N poses, and its kind."""
 
     kind: str
     points: Any
@@ -136,7 +130,7 @@ class Stroke(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape:
-    """What of a drawing is the same in all poses, from the mechanism all over its turns.
+    """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns.
 
     Attributes
     ----------
@@ -146,7 +140,7 @@ class Shape:
     turn: Any
 
     @property
-    def made(self):
+    def mechanism(self):
         return self.turn.mechanism
 
     @cached_property
@@ -162,28 +156,28 @@ class Shape:
 
     @cached_property
     def slots(self):
-        """Slots, each with both ends of the way of its joint, (2, 2), in the axes of its link, the nearer end first."""
-        found = [(slot, _ends(self._seen(slot.link, self.turn.position(slot.joint)))) for slot in self.made.slots]
+        """Slots with both ends of the joint's travel, (2, 2), in the axes of the link, the nearer end first."""
+        found = [(slot, _ends(self._seen(slot.link, self.turn.position(slot.joint)))) for slot in self.mechanism.slots]
         return [(slot, ends if slot.rod else _lengthen(ends, self.unit)) for slot, ends in found]
 
     @cached_property
     def ways(self):
-        """By slider: both ends of its way, (2, 2), along its guide."""
+        """By slider: both ends of its travel, (2, 2), along its guide."""
         found = {}
-        for slider, guide in self.made.guides.items():
-            path = self.turn.position(self.made.references[slider])
+        for slider, guide in self.mechanism.guides.items():
+            path = self.turn.position(self.mechanism.references[slider])
             along = path.T @ np.asarray(guide.direction, dtype=float)
             found[slider] = path[:, [np.nanargmin(along), np.nanargmax(along)]]
         return found
 
     @cached_property
     def corners(self):
-        """By link: what it joins, (2, K), in its own axes, its reference joint first."""
-        found = {link: [(0.0, 0.0)] for link in self.made.links}
-        for point in self.made.joints.values():
+        """By link: its joints, (2, K), in its own axes, the reference joint first."""
+        found = {link: [(0.0, 0.0)] for link in self.mechanism.links}
+        for point in self.mechanism.joints.values():
             if point.link != FRAME:
                 found[point.link].append((point.along, point.across))
-        for bar in self.made.bars:
+        for bar in self.mechanism.bars:
             found[bar.link].append((bar.length, 0.0))
         for slot, ends in self.slots:
             found[slot.link] += [] if slot.rod else [tuple(end) for end in ends.T]
@@ -205,11 +199,11 @@ class Shape:
     @cached_property
     def rods(self):
         """Links that slide in others as pistons."""
-        return {slot.rod for slot in self.made.slots}
+        return {slot.rod for slot in self.mechanism.slots}
 
     def strokes(self, pose):
-        """Lines and plates of all links in the poses of a motion, the hindmost first."""
-        for group in self.made.groups:
+        """Lines and plates of all links in the poses of a motion, from back to front."""
+        for group in self.mechanism.groups:
             for link, points in group.outlines.items():
                 yield Stroke("outline", _link_points(pose, link, points))
         for link, corners in self.corners.items():
@@ -221,17 +215,17 @@ class Shape:
         for slot, ends in self.slots:
             yield from self._piston(pose, slot, ends) if slot.rod else self._slot(pose, slot, ends)
         for link, corners in self.corners.items():
-            if link in self.made.guides or (corners.shape[1] == 1 and link not in self.rods):
+            if link in self.mechanism.guides or (corners.shape[1] == 1 and link not in self.rods):
                 turn, place = self._axes(pose, link)
-                size = self.unit if link in self.made.guides else 0.8 * self.unit
+                size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
                 yield Stroke("block", place_sign(RECTANGLE, place, turn, size))
-        for joint, radius in self.made.rollers.items():
+        for joint, radius in self.mechanism.rollers.items():
             size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
             yield Stroke("roller", self._ring(pose.position(joint), size))
 
     def _axes(self, pose, link):
         """Direction and reference joint of a link, (2, N)."""
-        return pose.as_vector(pose.placement.links[link].direction), pose.position(self.made.references[link])
+        return pose.as_vector(pose.placement.links[link].direction), pose.position(self.mechanism.references[link])
 
     def _slot(self, pose, slot, ends):
         line = _link_points(pose, slot.link, ends)
@@ -239,9 +233,9 @@ class Shape:
         yield Stroke("slot", line)
 
     def _piston(self, pose, slot, ends):
-        """Cylinder from the reference joint to the nearer end of the way, and a rod into it."""
+        """Cylinder from the reference joint to the nearer end of the travel, and a rod in it."""
         near, far = np.hypot(*ends)
-        origin, joint = pose.position(self.made.references[slot.link]), pose.position(slot.joint)
+        origin, joint = pose.position(self.mechanism.references[slot.link]), pose.position(slot.joint)
         axis = (joint - origin) / np.hypot(*(joint - origin))
         bottom = joint - axis * max(0.8 * near, far - 0.6 * near)
         yield Stroke("bar", np.stack([joint, bottom], axis=1))
@@ -254,14 +248,14 @@ class Shape:
         return place_sign(RING, place, level, radius)
 
     def counterweights(self, pose):
-        """Weights of turning links whose mass centres lie beyond what they join, with the same mass centres.
+        """Counterweights of turning links whose mass centres lie beyond their joints.
 
-        A sector about the reference joint for one that lies behind it, else a disk on the link drawn out to it.
+        A sector about the reference joint for a mass centre behind it, else a disk at the end of the extended link.
         """
-        for name, link in self.made.links.items():
+        for name, link in self.mechanism.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
             arm, reach = np.hypot(along, across), self.corners[name][0].max()
-            turns = np.any(link.mass) and name not in self.made.guides and arm > 0.3 * self.unit
+            turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.unit
             if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
                 yield Stroke("bar", _link_points(pose, name, np.array([[reach, along], [0.0, across]])))
                 yield Stroke("counterweight", self._ring(pose.position(name), 2.0 * self.unit))
@@ -274,7 +268,7 @@ class Shape:
     @property
     def heavy(self):
         """Links with mass."""
-        return [name for name, link in self.made.links.items() if np.any(link.mass)]
+        return [name for name, link in self.mechanism.links.items() if np.any(link.mass)]
 
     def signs(self, loads, pose):
         """Lines of all loads in the poses of a motion."""
@@ -285,7 +279,7 @@ class Shape:
     def _sign(self, sign):
         unit = self.unit
         if sign.slider:
-            ahead = np.asarray(self.made.guides[sign.slider].direction, dtype=float)
+            ahead = np.asarray(self.mechanism.guides[sign.slider].direction, dtype=float)
             end = (self.ways[sign.slider][:, 1] + 6.0 * unit * ahead)[:, None] + 0.0 * sign.start
             start = sign.start + unit * ahead[:, None]
             yield Stroke("spring", span_sign(SPRING, start, end, 0.5 * unit))
@@ -303,8 +297,8 @@ class Shape:
             yield Stroke(kind, place_sign(shape, sign.start, level, 1.6 * unit, sign.sense))
 
     def grounds(self, loads):
-        """Fixed points that something turns about or is fastened to, (2,) each."""
-        for name, point in self.made.joints.items():
+        """Fixed pivots and fixed ends of loads, (2,) each."""
+        for name, point in self.mechanism.joints.items():
             if point.link == FRAME:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
@@ -314,12 +308,12 @@ class Shape:
 
 
 def _signs(item, pose):
-    """How a load is drawn; one of the user's own need not say."""
+    """Signs of a load; a user's own load may have none."""
     return item.signs(pose) if hasattr(item, "signs") else ()
 
 
 def _link_points(pose, link, points):
-    """Points (2, K) of a link in the poses, (2, K, N)."""
+    """Points (2, K) of a link in all poses, (2, K, N)."""
     return np.stack([pose.position((link, along, across)) for along, across in points.T], axis=1)
 
 
@@ -333,14 +327,14 @@ def _ends(points):
 
 
 def _lengthen(ends, more):
-    """A line with both ends so much farther out."""
+    """A line extended at both ends by a length."""
     apart = ends[:, 1] - ends[:, 0]
     step = apart * more / (np.hypot(*apart) or 1.0)
     return ends + np.column_stack([-step, step])
 
 
 def _line_order(points):
-    """Order of points along a straight line, the reference joint first if it is an end; None for no such line."""
+    """Order of points on a straight line, the reference joint first if it is an end; None if they are not on one."""
     far = points[:, np.argmax(np.hypot(*points))]
     length = np.hypot(*far)
     if not length:
@@ -359,19 +353,19 @@ def _polygon_order(points):
 
 
 def whole_turn(solution):
-    """The mechanism at many crank angles of the turns after which it repeats."""
+    """The mechanism over its whole turns, at steps of half a degree."""
     turns = solution.mechanism.turns
     return at_angles(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
 
 
 def at_angles(solution, degrees):
-    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
+    """Motion of the mechanism at other crank angles, degrees, without loads; the crank speed is 1, -1 or 0."""
     ways = np.unique(np.sign(solution.crank_speed))
     return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
 
 
 def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, but for counterweights and loads."""
+    """Whether two machines look the same in every pose, apart from counterweights and loads."""
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False
@@ -390,7 +384,7 @@ def load_strokes(solution, angle):
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each stroke with the labels of those that have it, in order."""
+    """Counterweights and signs of loads in a pose, each with the labels of the machines that have it."""
     found: list[tuple[Any, list[str]]] = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
@@ -405,7 +399,7 @@ def strokes_by_owner(named, angle):
 
 
 def _looks_same(stroke, other):
-    """Whether two strokes are the same to the eye."""
+    """Whether two strokes look the same."""
     if stroke.kind != other.kind or stroke.points.shape != other.points.shape:
         return False
     return np.allclose(stroke.points, other.points, rtol=1e-6, equal_nan=True)

@@ -40,7 +40,7 @@ class Rivals:
 
     def __init__(self):
         self.driven = DrivenMachine("benchmark", SCENE, MOTOR, 1000.0, "compiled")
-        self.here = self.driven.here(0.0, SPEED)[0]
+        self.here = self.driven.balance(0.0, SPEED)[0]
 
     def turn(self, speed):
         """Speed after one turn."""

@@ -13,9 +13,8 @@ from typing import Any
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods import METHODS
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
-from kinetostatics.studies.precision import FRONT_ACCURACY
+from kinetostatics.studies.precision import FRONT_ACCURACY, METHODS
 
 ANGLES = 360
 NOISE = 1.15

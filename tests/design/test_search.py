@@ -164,7 +164,7 @@ def test_ends_are_the_best_of_each_output_alone():
 
 @pytest.mark.parametrize("wanted", [True, False])
 def test_searches_find_the_same_with_a_bar(capsys, monkeypatch, wanted):
-    monkeypatch.setattr(problem, "SHOWN_AFTER", 0.0)
+    monkeypatch.setattr(problem, "BAR_DELAY", 0.0)
     found = ks.design.optimise(
         ks.load_case("sawframe_2r63"), {"spring.stiffness": (6e5, 9e5)}, "mean_absolute balancing_torque",
         variant="cam-circle", angles=72, progress=wanted,

@@ -138,7 +138,7 @@ def test_declared_kinks_may_depend_on_speed():
     found = driven(DISC, ks.Torque(Speedy(), on="crank"))
     assert found.kinks.tolist() == [2.0]
     assert found.loads_by_speed
-    left = [found.here(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
+    left = [found.balance(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
     assert left == pytest.approx([-0.5, -1.0], rel=1e-12)
     assert not driven(DISC, ks.Torque(ks.Table([0.0, 2.0, 4.0], [-1.0, -2.0, -1.5]), on="crank")).loads_by_speed
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.friction import driven_machine
+from kinetostatics.drive.one_dof import driven_machine
 from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
@@ -246,7 +246,7 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
     driven = driven_machine("start", scene, SMALL, 3.0)
     senses = {"sense": 1.0, "friction.O.sense": 1.0}
-    one = driven.rubbed(1.0, 12.0, 0.0, senses)
-    several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)
+    one = driven.friction_outputs(1.0, 12.0, 0.0, senses)
+    several = driven.friction_outputs(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)
     for name, value in several.items():
         assert one[name] == pytest.approx(value[0], rel=1e-14), name

@@ -253,7 +253,7 @@ def test_programs_read_a_table_with_their_numbers():
 
 def test_values_alone_need_no_errors_of_tables(monkeypatch):
     s = pump().solve(36)
-    monkeypatch.setattr(table_pieces, "kinks_within", None)
+    monkeypatch.setattr(table_pieces, "kink_bounds", None)
     assert np.isfinite(s.reaction("B")).all()
     with pytest.raises(TypeError):
         s.error_bound("B")

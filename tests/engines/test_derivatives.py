@@ -139,15 +139,15 @@ def test_derivatives_of_operations_match_sympy(name):
     assert slopes[:, 0] == pytest.approx([slope, 2.0 * slope], rel=1e-13)
 
 
-@pytest.mark.parametrize("name", ["held", "sign", "rest"])
-def test_signs_and_numbers_that_are_held_have_no_slope(name):
-    functions = {"rest": lambda x: arithmetic.length_error(x, 0.3 * x, 0.4)}
+@pytest.mark.parametrize("name", ["stop_gradient", "sign", "length_error"])
+def test_signs_and_stopped_gradients_are_flat(name):
+    functions = {"length_error": lambda x: arithmetic.length_error(x, 0.3 * x, 0.4)}
     value, slope = along_two_directions(functions.get(name, getattr(Elementary(), name)))
     assert np.isfinite(value[0])
     assert slope == 0.0
 
 
-def test_a_total_has_the_slopes_of_a_sum():
+def test_a_compensated_sum_has_the_slopes_of_a_sum():
     value, slopes = along_two_directions(lambda x: arithmetic.compensated_sum(x, 0.2, -(x * x)))
     assert value[0] == pytest.approx(0.36, rel=1e-15)
     assert slopes[:, 0] == pytest.approx([-0.6, -1.2], rel=1e-15)

@@ -174,7 +174,7 @@ def test_a_group_that_branches_on_values_is_refused(interpreted):
 @pytest.fixture
 def threshold(interpreted, monkeypatch):
     """Many are 30 angles and more."""
-    monkeypatch.setattr(scenes, "WORTH_COMPILING", SAMPLES.size)
+    monkeypatch.setattr(scenes, "MIN_VALUES_COMPILED", SAMPLES.size)
 
 
 def test_many_angles_are_compiled_by_default(threshold):

@@ -12,9 +12,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.reading import shipped_cases
-from kinetostatics.explain.pages import STYLE
+from kinetostatics.explain.explanation import STYLE
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.solution.drive_and_loads import tables_over_angles
+from kinetostatics.solution.parameters import tables_over_angles
 from support.chains import chain
 from support.every import every
 from support.followers import KINDS as FOLLOWERS

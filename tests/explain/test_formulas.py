@@ -7,11 +7,21 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines.graph import Graph, Node
-from kinetostatics.explain.formats import GREEK, LATEX, MATHML, TEXT, format_number, write_formula
+from kinetostatics.explain.formats import (
+    GREEK,
+    LATEX,
+    MATHML,
+    TEXT,
+    Symbol,
+    format_number,
+    load_keys,
+    path_symbol,
+    quantity_symbol,
+    write_formula,
+)
 from kinetostatics.explain.formulas import formula, names_in
 from kinetostatics.explain.named_recording import name_result, node_of, record_with_names
 from kinetostatics.explain.steps import MAX_FORMULA_SIZE, lines
-from kinetostatics.explain.symbols import Symbol, load_keys, path_symbol, quantity_symbol
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.every import every
 from tests.support.scenes import SCENES, solve
@@ -100,7 +110,7 @@ def test_formulas_are_short_and_name_lines_before_them(name):
 
 def test_an_unexplained_line_joins_its_only_user():
     _, told_lines = found(solve(SCENES["plain"], np.array(0.7)), "balancing_torque")
-    assert {line.named.kind for line in told_lines} == {"given", "told", "term"}
+    assert {line.named.kind for line in told_lines} == {"given", "protocol", "term"}
 
 
 def test_units_follow_from_those_given():

@@ -11,8 +11,8 @@ from kinetostatics import machine
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
+from kinetostatics.explain.formats import Symbol
 from kinetostatics.explain.named_recording import Names, name_result, node_of, record_with_names
-from kinetostatics.explain.symbols import Symbol
 from kinetostatics.mechanics.quantities import of_scene
 from tests.support.scenes import SCENES, everything, solve
 
@@ -52,7 +52,7 @@ def test_a_mechanism_s_name_precedes_a_line():
     x, y = names.vector(pair, Symbol("R", owner="B"), "reaction", "N")
     assert (x, y) == tuple(pair) or (x is pair[0] and y is pair[1])
     assert names.of[pair[0]].symbol.text == "Rx_B"
-    assert names.is_told(pair[0])
+    assert names.has_own_name(pair[0])
 
 
 def test_a_second_name_makes_another_number():
@@ -151,7 +151,7 @@ def test_every_quantity_is_computed_to_the_same_bits():
 def test_names_are_those_of_joints_links_and_loads():
     solution = solve(SCENES["plain, everything"], np.array(0.7))
     made, _, _ = named(solution, "balancing_torque")
-    names = {found.symbol.text for found in made.names.of.values() if found.kind == "told"}
+    names = {found.symbol.text for found in made.names.of.values() if found.kind == "protocol"}
     assert {"x_A", "y_A'", "ux_coupler", "theta_coupler''", "s_slider", "L_spring"} <= names
     assert {"rx_slider", "Px_coupler", "K_slider", "Fs_slider", "Rx_B", "F_guide", "M_guide", "M_crank", "T"} <= names
 

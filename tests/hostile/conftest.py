@@ -64,5 +64,5 @@ def idle(monkeypatch):
         raise AssertionError("work began")
 
     monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", lambda case, name, *_: work(case.variant(name)))
-    monkeypatch.setattr("kinetostatics.sweeps.sweeps.tried", work)
+    monkeypatch.setattr("kinetostatics.sweeps.sweeps.dry_run", work)
     monkeypatch.setattr("kinetostatics.studies.stability.study", work)

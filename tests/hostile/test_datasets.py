@@ -183,7 +183,7 @@ MANIFESTS = {
 @pytest.mark.parametrize("name", MANIFESTS)
 def test_a_manifest_that_tells_nothing_is_refused(folder, name):
     (folder / MANIFEST).write_bytes(MANIFESTS[name])
-    with pytest.raises(ks.ParameterError, match=r"does not tell of what sweep the folder is: .*; give another"):
+    with pytest.raises(ks.ParameterError, match=r"does not name the sweep of the folder: .*; give another"):
         sweep(folder)
 
 
@@ -247,9 +247,9 @@ def below_a_file(folder):
 
 
 PLACES = {
-    "manifest is a folder": (manifest_folder, "does not tell of what sweep"),
-    "manifest is a pipe": (manifest_pipe, "does not tell of what sweep"),
-    "manifest is a link to nowhere": (manifest_link, "does not tell of what sweep"),
+    "manifest is a folder": (manifest_folder, "does not name the sweep"),
+    "manifest is a pipe": (manifest_pipe, "does not name the sweep"),
+    "manifest is a link to nowhere": (manifest_link, "does not name the sweep"),
     "a part is a folder": (part_folder, "part-000001.parquet is no file; remove it"),
     "a part is a pipe": (part_pipe, "part-000001.parquet is no file; remove it"),
     "a part is a link to nowhere": (part_link, "part-000001.parquet is no file; remove it"),
@@ -307,11 +307,11 @@ def together(monkeypatch, other):
     create = dataset._write_new
 
     def late(path, text):
-        monkeypatch.setattr(dataset, "_create", create)
+        monkeypatch.setattr(dataset, "_write_new", create)
         other()
         create(path, text)
 
-    monkeypatch.setattr(dataset, "_create", late)
+    monkeypatch.setattr(dataset, "_write_new", late)
 
 
 def test_second_of_two_simultaneous_sweeps_is_refused(tmp_path, monkeypatch, expected):

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import kinetostatics as ks
 from kinetostatics.machine.group import Group, Resolved
 from kinetostatics.mechanics.quantities import components
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.precision import METHODS
 from kinetostatics.views.figures import draw_case
 from support.case_files import shipped
 from support.every import every

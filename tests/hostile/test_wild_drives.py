@@ -311,7 +311,7 @@ def test_what_cannot_be_driven_says_why(call, kind, words):
 
 
 def test_endless_motion_is_given_up_with_progress(monkeypatch):
-    monkeypatch.setattr(stick_slip, "MOST_EVALUATIONS", 2000)
+    monkeypatch.setattr(stick_slip, "MAX_EVALUATIONS", 2000)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))
     with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
         coast(damped, 1.0, 0.0, 10.0, 1e9)

@@ -13,7 +13,7 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.machine.group import FRAME, Group, Output, Point, Resolved
+from kinetostatics.machine.group import FRAME, Declaration, Group, Output, Point
 from kinetostatics.machine.links import Joint, LinkMotion, Sliding, Slot, Turning, Wrench
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.mechanics.quantities import components
@@ -54,19 +54,21 @@ class Yoke(Group):
     label: str = ""
 
     PATHS: ClassVar = {"guide": ""}
-    links = property(lambda self: {"block" + self.label: self.block, "slider" + self.label: self.slider})
-    references = property(lambda self: {"block" + self.label: self.on, "slider" + self.label: self.pin})
-    joints = property(lambda self: {self.pin: Point("slider" + self.label)})
-    guides = property(lambda self: {"slider" + self.label: self.guide})
-    slots = property(lambda self: (Slot("slider" + self.label, self.on, angle=self.slot_angle),))
-    lengths = property(lambda self: (self.guide.guide_offset, *self.slider.centre, *self.block.centre))
+    LINKS: ClassVar = {"block": "on", "slider": "pin"}
+
+    @property
+    def declaration(self):
+        """Parts, without the label."""
+        slot = Slot("slider", self.on, angle=self.slot_angle)
+        lengths = (self.guide.guide_offset,)
+        return Declaration({self.pin: Point("slider")}, guides={"slider": self.guide}, slots=(slot,), lengths=lengths)
 
     @property
     def outputs(self):
         """Pin force, and what slot and guide bear."""
         units = {"slot_force": "N", "slot_moment": "N m", "guide_force": "N", "guide_moment": "N m"}
         pin = Output("N", True, f"on the block at {self.on}", self.on)
-        return {self.on + self.label: pin} | {name + self.label: Output(unit) for name, unit in units.items()}
+        return {self.called(self.on): pin} | {self.called(name): Output(unit) for name, unit in units.items()}
 
     def place(self, placement):
         """Slider where the slot's line meets the guide."""
@@ -80,12 +82,11 @@ class Yoke(Group):
 
     def follow(self, placement, joints):
         """Block and slider at joints that are known."""
-        slider, u = "slider" + self.label, self.guide.direction
+        u, pin = self.guide.direction, joints[self.pin]
         slot = rotate((cos(self.slot_angle), sin(self.slot_angle)), u)
-        placement.joints[self.pin] = joints[self.pin]
-        placement.travels[slider] = Joint(*(dot(u, part) for part in joints[self.pin]))
-        placement.links[slider] = LinkMotion(joints[self.pin], u, None, None)
-        placement.links["block" + self.label] = LinkMotion(placement.joints[self.on], slot, None, None)
+        block, slider = LinkMotion(placement.joints[self.on], slot, None, None), LinkMotion(pin, u, None, None)
+        travel = Joint(*(dot(u, part) for part in pin))
+        self.enter(placement, slot, {self.pin: pin}, {"block": block, "slider": slider}, {"slider": travel})
 
     def closure(self, placement):
         """Squared sine of the slot's angle."""
@@ -97,23 +98,15 @@ class Yoke(Group):
 
     def resolve(self, placement, loads, along):
         """Slider along the guide, block, slider across it."""
-        label, on, block = self.label, loads["slider" + self.label], loads["block" + self.label]
+        (block, on), (_, applied) = self.of_links(loads), self.of_links(along)
         pin, base = (placement.joints[name].position for name in (self.on, self.pin))
         push = rotate_back(vector_or_zero(on.force), self.guide.direction)
-        slot = -plus(push[0], along.get("slider" + label)) / sin(self.slot_angle)
-        way = placement.links["block" + label].direction
+        slot, way = -plus(push[0], applied) / sin(self.slot_angle), self.placed(placement)
         guide = cos(self.slot_angle) * slot - push[1]
         couple = minus(None, block.moment)
         moment = plus(minus(couple, on.moment), dot(subtract_vectors(pin, base), way) * slot)
         force = vector_or_zero(subtract_vectors(scale_vector(-slot, rotate(way, (0.0, 1.0))), block.force))
-        found = {
-            "slot_force": slot,
-            "slot_moment": number_or_zero(couple),
-            "guide_force": guide,
-            "guide_moment": moment,
-        }
-        scalars = {name + label: part for name, part in found.items()}
-        return Resolved({self.on + label: force}, scalars, {self.on: Wrench(force, None)})
+        return self.resolved((force,), (slot, number_or_zero(couple), guide, moment), {self.on: Wrench(force, None)})
 
 
 LINKS = {

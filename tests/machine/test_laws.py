@@ -125,15 +125,15 @@ def test_laws_are_silent_and_leave_plain_arrays():
 # What a law of motion is
 
 
-RISING = ks.laws.joined(
+SEGMENT_MAKERS = ks.laws.joined(
     ks.laws.cycloidal(1.7, 2.3, 2.0), ks.laws.dwell(2.3, 0.5), ks.laws.cycloidal(2.3, 1.7, 2 * np.pi - 2.5)
 )
 
 
 def test_a_law_comes_later_by_a_phase():
-    assert_allclose(RISING.shifted(0.4)(1.3), RISING(0.9), rtol=0, atol=1e-15)
-    assert_allclose(RISING.shifted(0.4).knots, np.add(RISING.knots, 0.4))
-    assert_allclose(RISING.shifted(0.4).shifted(-0.4)(1.3), RISING(1.3), rtol=1e-14)
+    assert_allclose(SEGMENT_MAKERS.shifted(0.4)(1.3), SEGMENT_MAKERS(0.9), rtol=0, atol=1e-15)
+    assert_allclose(SEGMENT_MAKERS.shifted(0.4).knots, np.add(SEGMENT_MAKERS.knots, 0.4))
+    assert_allclose(SEGMENT_MAKERS.shifted(0.4).shifted(-0.4)(1.3), SEGMENT_MAKERS(1.3), rtol=1e-14)
 
 
 def test_what_is_only_called_has_no_knots_and_no_error():

@@ -76,7 +76,7 @@ def test_needs_simplifies_links_of_a_kind_together():
         "massless coupler",
     ]
     (massless,) = parts["slider"]
-    bare = massless.simplified(ks.solve(chain("2"), TURN, crank_speed=20.0))
+    bare = massless.simplify(ks.solve(chain("2"), TURN, crank_speed=20.0))
     assert bare.mechanism.links["slider2"].mass == 0
 
 

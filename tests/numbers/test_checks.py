@@ -10,7 +10,7 @@ import pint
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.checks import DimensionError, is_quantity, plain
+from kinetostatics.numbers.checks import DimensionError, is_quantity, to_plain
 from kinetostatics.numbers.checks.messages import SYNONYMS, nearest
 from kinetostatics.numbers.units import to_si
 from kinetostatics.results.reductions import FOUND
@@ -316,7 +316,7 @@ RIGHT = {
 
 @every(("value", "unit", "wanted"), RIGHT.values(), ids=RIGHT)
 def test_quantities_become_numbers_in_the_unit_wanted(value, unit, wanted):
-    assert float(plain(value, unit)) == pytest.approx(wanted, rel=4e-16)
+    assert float(to_plain(value, unit)) == pytest.approx(wanted, rel=4e-16)
 
 
 WRONG = {
@@ -343,7 +343,7 @@ WRONG = {
 @every(("value", "unit", "words"), WRONG.values(), ids=WRONG)
 def test_another_dimension_is_told_with_what_is_wanted(value, unit, words):
     with pytest.raises(DimensionError, match=words):
-        plain(value, unit)
+        to_plain(value, unit)
 
 
 def test_a_registry_that_lacks_the_unit_is_said_so():
@@ -355,16 +355,16 @@ def test_a_registry_that_lacks_the_unit_is_said_so():
 
 def test_lists_and_arrays_of_quantities_convert():
     parts = [UNITS.Quantity(250.0, "mm"), UNITS.Quantity(2.0, "span"), 0.75]
-    assert plain(parts, "m") == [0.25, 0.5, 0.75]
-    assert plain(tuple(parts), "m") == (0.25, 0.5, 0.75)
-    assert plain(np.array(parts, dtype=object), "m").tolist() == [0.25, 0.5, 0.75]
-    assert plain(UNITS.Quantity([[250.0], [500.0]], "mm"), "m").tolist() == [[0.25], [0.5]]
-    assert plain(Labelled(), "m").tolist() == [0.25, 0.5]
+    assert to_plain(parts, "m") == [0.25, 0.5, 0.75]
+    assert to_plain(tuple(parts), "m") == (0.25, 0.5, 0.75)
+    assert to_plain(np.array(parts, dtype=object), "m").tolist() == [0.25, 0.5, 0.75]
+    assert to_plain(UNITS.Quantity([[250.0], [500.0]], "mm"), "m").tolist() == [[0.25], [0.5]]
+    assert to_plain(Labelled(), "m").tolist() == [0.25, 0.5]
 
 
 def test_what_is_no_quantity_comes_back_itself():
     for value in (1.0, 3, None, "300 mm", (1.0, 2.0), [1.0], np.ones(3), np.array([None, 1.0]), {}, True):
-        assert plain(value, "m") is value
+        assert to_plain(value, "m") is value
         assert not is_quantity(value)
 
 
@@ -380,13 +380,13 @@ def test_wrong_magnitudes_are_refused():
 
 def test_quantities_agree_with_the_texts_of_case_files():
     for text, unit in (("300 mm", "m"), ("320 rpm", "rad/s"), ("712 kN/m", "N/m"), ("12 deg", "rad"), ("5 lb", "kg")):
-        assert plain(UNITS.Quantity(text), unit) == pytest.approx(to_si(text, unit), rel=4e-16)
+        assert to_plain(UNITS.Quantity(text), unit) == pytest.approx(to_si(text, unit), rel=4e-16)
 
 
 @every("kind", [np.float16, np.float32, np.uint8])
 def test_few_digits_are_converted_in_double_precision(kind):
-    assert plain(UNITS.Quantity(kind(100), "mm"), "m") == 0.1
-    assert plain(UNITS.Quantity(np.array([100], dtype=kind), "mm"), "m")[0] == 0.1
+    assert to_plain(UNITS.Quantity(kind(100), "mm"), "m") == 0.1
+    assert to_plain(UNITS.Quantity(np.array([100], dtype=kind), "mm"), "m")[0] == 0.1
     with pytest.raises(ks.ParameterError, match="masked array"):
         ks.Link(UNITS.Quantity(np.ma.array([[1]], mask=[[True]], dtype=kind), "g"))
 

@@ -11,7 +11,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.results.reductions import parsed
-from kinetostatics.solution.parted import PiecewiseTurns
+from kinetostatics.solution.piecewise_turns import PiecewiseTurns
 
 ANGLES = np.linspace(0.0, 6.0, 25)
 QUANTITIES = ("balancing_torque", "O", "guide_force", "slider_acceleration", "coupler_rate", "shaking_force")

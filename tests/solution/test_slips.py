@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
-from kinetostatics.solution import slips
+from kinetostatics.solution import parameters
 from support.every import every
 from support.scenes import SCENES, solve
 
@@ -137,9 +137,9 @@ def test_one_number_is_told_once():
 @pytest.mark.parametrize("name", SCENES)
 def test_far_off_lengths_and_angles_are_reported(name):
     s = solve(SCENES[name], SCENES[name].mechanism.turns * [0.3])
-    look, (_, leaves) = s.kind.answer(slips.scene_plausibility_test), s.apart
+    look, (_, leaves) = s.kind.answer(parameters.scene_plausibility_test), s.apart
     bars = [bar.length for bar in s.mechanism.bars]
-    judged = [item for item in s.kind.answer(slips.plausible_numbers) if item.usual.unit in ("m", "rad")]
+    judged = [item for item in s.kind.answer(parameters.plausible_numbers) if item.usual.unit in ("m", "rad")]
     judged = [item for item in judged if leaves.numbers[item.leaf] not in bars]
     assert judged or name == "plain, weightless"
     for item, sign in product(judged, (1.0, -1.0)):
@@ -155,7 +155,7 @@ def test_shipped_cases_have_no_slips():
             warnings.simplefilter("error", ks.HintWarning)
             case = ks.load_case(name)
         for variant in case.variants.values():
-            assert slips.plausibility_hints(variant.scene.unsolved(np.zeros(1))) == (), (name, variant)
+            assert parameters.plausibility_hints(variant.scene.unsolved(np.zeros(1))) == (), (name, variant)
 
 
 @every(

@@ -25,7 +25,7 @@ def operations(solution, quantity):
 @pytest.fixture
 def few_models(monkeypatch):
     """Of combinations, for tests of simplifications alone."""
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 10)
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_no_cheaper_combination_fits(mower, quantity):
     for choices in itertools.product(*((None, *choices) for choices in offered)):
         made = mower
         for choice in filter(None, choices):
-            made = made and choice.simplified(made)
+            made = made and choice.simplify(made)
         if made is not None:
             found.append((operations(made, quantity), change(made, mower, quantity)))
     assert len(found) == needs.tried
@@ -139,7 +139,7 @@ def test_ladder_falls_in_operations(saw):
 
 def test_too_many_models_drop_what_changes_most(saw, monkeypatch):
     everything = ks.needs(saw["plain"], "balancing_torque")
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 10)
     few = ks.needs(saw["plain"], "balancing_torque")
     assert everything.tried == 48
     assert few.tried <= 10
@@ -165,7 +165,7 @@ def test_six_bar_runs_a_limited_number_of_models(monkeypatch):
     )
     s = solved(ks.Mechanism("six-bar", bar.crank, (*bar.groups, ram)), loads, angle=TURN[::3])
     assert ingredients.MAX_MODELS <= 2000
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 40)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 40)
     found = ks.needs(s, "balancing_torque")
     assert found.tried <= 40
     assert found.smallest.error <= 0.01
@@ -180,7 +180,7 @@ def test_six_bar_runs_a_limited_number_of_models(monkeypatch):
 
 @pytest.mark.parametrize("progress", [True, False])
 def test_progress_bar_is_optional(mower, monkeypatch, capsys, progress):
-    monkeypatch.setattr(ingredients, "SHOWN_AFTER", 0.0)
+    monkeypatch.setattr(ingredients, "PROGRESS_DELAY", 0.0)
     tried = ks.needs(mower, "balancing_torque", progress=progress).tried
     assert (f"/{tried} " in capsys.readouterr().err) == progress
 
@@ -262,7 +262,7 @@ def test_quantity_that_is_zero_throughout_is_refused(saw):
 
 
 def test_left_out_simplifications_are_named(monkeypatch):
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 2)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 2)
     found = ks.needs(solved(cranked()), "O")
     assert found.tried <= 2
     assert "massless slider" in found.left_out

@@ -8,7 +8,7 @@ import pytest
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies import stability
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.precision import METHODS
 from kinetostatics.studies.stability import PLACES
 from support.bounded import errors
 from support.every import every

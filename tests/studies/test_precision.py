@@ -14,10 +14,12 @@ import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS, Method, structures
+from kinetostatics.studies.methods import structures
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from kinetostatics.studies.methods.kane import equations
+from kinetostatics.studies.methods.method import Method
+from kinetostatics.studies.precision import METHODS
 from kinetostatics.views import charts
 from support.studied import FEW, torque_study
 

@@ -16,7 +16,7 @@ from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 @pytest.fixture
 def few_models(monkeypatch):
     """Of combinations, for tests of simplifications alone."""
-    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+    monkeypatch.setattr(ingredients, "MAX_MODELS", 10)
 
 
 def by_series(solution, order):
@@ -92,7 +92,7 @@ def test_massless_link_carries_its_coupler_share(name, output):
     for choices in simplifications.ingredients(made.mechanism).values():
         for choice in choices:
             if choice.name in (f"massless {output}", "two-mass coupler"):
-                made = choice.simplified(made)
+                made = choice.simplify(made)
     assert made.mechanism.links[output].mass == pytest.approx(4.0 * 0.5 / 1.3)
 
 

@@ -14,7 +14,8 @@ from kinetostatics import cli
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies import stability
-from kinetostatics.studies.methods import METHODS, Method
+from kinetostatics.studies.methods.method import Method
+from kinetostatics.studies.precision import METHODS
 from kinetostatics.views import charts
 from support.every import every
 

@@ -7,7 +7,7 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.precision import METHODS
 
 FEW = [
     method

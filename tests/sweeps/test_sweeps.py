@@ -113,8 +113,8 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     found = sweep(SAW, rising(30), engine="compiled", **options)
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
     monkeypatch.setattr(numba_backend, "core_count", lambda: 2)
-    monkeypatch.setattr(chunk, "VALUES", 50)
-    monkeypatch.setattr(chunk, "BLOCK", 50)
+    monkeypatch.setattr(chunk, "BLOCK_VALUES", 50)
+    monkeypatch.setattr(chunk, "MAX_LOOP_VALUES", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
@@ -257,14 +257,14 @@ def test_column_named_like_an_output_is_refused(name):
 
 def engines_taken(monkeypatch):
     taken = []
-    monkeypatch.setattr(sweeps, "tried", lambda *call: taken.append(call[2]))
+    monkeypatch.setattr(sweeps, "dry_run", lambda *call: taken.append(call[2]))
     return taken
 
 
 def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     taken = engines_taken(monkeypatch)
-    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 200)
+    monkeypatch.setattr(sweeps, "MIN_VALUES_COMPILED", 41 * 200)
     for options in ({}, {"engine": "numpy"}, {"angles": 199}):
         sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 200} | options)
     monkeypatch.setitem(sys.modules, "numba", None)
@@ -307,7 +307,7 @@ def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
     designs = pd.DataFrame(index=range(2))
     with pytest.raises(ks.errors.NotGivenError, match=r'must not branch on values.*use engine="numpy"'):
         sweep(made, designs, ["rms O"], engine="compiled")
-    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(sweeps, "MIN_VALUES_COMPILED", 1)
     assert sweep(made, designs, ["rms O"])[FAILED].tolist() == ["", ""]
 
 

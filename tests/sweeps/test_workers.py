@@ -69,7 +69,7 @@ def test_dask_gives_the_same_table(cluster, expected):
 def test_each_worker_computes_on_one_core(monkeypatch):
     taken = []
     monkeypatch.setattr(numba_backend, "core_count", lambda: 5)
-    monkeypatch.setattr(sweeps, "computed", lambda job, *rest: taken.append(job.threads) or (_ for _ in ()))
+    monkeypatch.setattr(sweeps, "run_chunks", lambda job, *rest: taken.append(job.threads) or (_ for _ in ()))
     with ThreadPoolExecutor(2) as executor, pytest.raises(KeyError):
         sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)
     with pytest.raises(KeyError):
@@ -119,7 +119,7 @@ def assert_only_lost(found, expected, rows):
 @pytest.fixture
 def impatient(monkeypatch):
     """Chunks are run once before the designs that kill their worker are looked for: each death costs a second."""
-    monkeypatch.setattr(dispatch, "ATTEMPTS", 1)
+    monkeypatch.setattr(dispatch, "MAX_CHUNK_RUNS", 1)
 
 
 def test_only_killing_designs_are_given_up(tidy, impatient, expected):
@@ -249,7 +249,7 @@ def test_errors_of_the_library_end_the_sweep(monkeypatch):
     monkeypatch.setattr(chunk, "run_chunk", None)
     with ThreadPoolExecutor(1) as executor:
         for error in (ks.errors.MissingLibraryError("no numba here"), OSError("disk full")):
-            monkeypatch.setattr(chunk, "run", partial(raising, error))
+            monkeypatch.setattr(chunk, "compute_batch", partial(raising, error))
             with pytest.raises(type(error), match=str(error)):
                 sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)
 
@@ -273,7 +273,7 @@ class Mortal:
 
 def test_harmless_design_is_tried_again(monkeypatch):
     """Design 2 kills its worker each time; that of design 3 dies once, of something else."""
-    monkeypatch.setattr(dispatch, "rows", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
+    monkeypatch.setattr(dispatch, "result_table", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
     monkeypatch.setattr(dispatch.pd, "concat", list)
     hands = Mortal(lambda names, times: 2 in names or (names == (3,) and times == 1))
     found = dispatch._isolate_deaths(SimpleNamespace(outputs=()), pd.DataFrame({"x": [0.0] * 4}), hands)

@@ -1,4 +1,4 @@
-"""Figures of lost power: stacks that add up, labels with units, words where nothing rubs."""
+"""Figures of lost power: stacks that add up, labels with units, an error without friction."""
 
 import math
 
@@ -51,7 +51,7 @@ def test_single_solution_is_one_bar_in_watts(axes):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (lambda s: ks.solve(s.mechanism, [0.0], crank_speed=1.0), "nothing rubs; give friction"),
+        (lambda s: ks.solve(s.mechanism, [0.0], crank_speed=1.0), "no friction is given; give friction"),
         (lambda s: s.at(np.zeros((1,))).losses, "must be a Solution"),
         (lambda s: None, "must be a Solution"),
         (lambda s: ks.solve(s.mechanism, [0.0], crank_speed=np.ones((3, 1)), friction=s.friction), "one design"),

@@ -104,7 +104,9 @@ def read_by(extra):
             words = words_of(said.func)
             if words:
                 return words
-    return next((by_rule(said) for said in extra if isinstance(said, checks.Pair | parts.Place | parts.Between)), "")
+    return next(
+        (by_rule(said) for said in extra if isinstance(said, checks.Pair | parts.PlaceRule | parts.PlacePairRule)), ""
+    )
 
 
 def words_of(function):
@@ -128,7 +130,7 @@ def words_of(function):
         texts._two_points: "two points, pairs of length [m]",
         texts.point: "pair of length [m]",
         variants._coefficient: "number, not negative",
-        tables._ratio: f"number, {', '.join(f'`{json.dumps(word)}`' for word in tables.RATIOS)}",
+        tables._ratio: f"number, {', '.join(f'`{json.dumps(word)}`' for word in tables.NAMED_RATIOS)}",
         parts._read_point: "point: joint, place on a link, or fixed",
         parts._read_two_points: "two points",
     }.get(function, "")

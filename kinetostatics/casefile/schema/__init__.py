@@ -1,12 +1,6 @@
-"""What a case file may hold, as pydantic models: keys, units, allowed values. `build` turns them into mechanisms.
+"""Schema of case files as pydantic models: keys, units, allowed values.
 
-texts       numbers with units, and words in their place
-tables      links, cams, counterweights, files of values
-parts       groups and loads, by the rules of their classes
-drives      motors and flywheels
-designs     what is to be found: what varies, what must hold
-variants    mechanisms, and the head of a file
-validation  what is wrong with a table, in sentences
+May import numbers, and the classes of `machine`, `drive` and `design` that its tables describe.
 """
 
 from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
@@ -58,5 +52,5 @@ __all__ = [
     "TorqueTable",
     "ValuesTable",
     "key_path",
-    "validated",
+    "validate",
 ]

@@ -1,6 +1,6 @@
-"""Tables of designs: what is to be found, what varies, and what must hold.
+"""Tables of designs: goal, numbers that vary, limits.
 
-Outputs, limits and bounds stay texts here: what they name depends on the variant, so `designs` reads them.
+Outputs, limits and bounds stay texts here, for their names depend on the variant; `casefile.designs` reads them.
 """
 
 from typing import Annotated, Literal

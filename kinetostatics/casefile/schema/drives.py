@@ -1,6 +1,6 @@
-"""Tables of drives: motors by their kinds, and flywheels; keys are the arguments of `Motor`.
+"""Tables of drives: motors by kind, and flywheels; keys are the arguments of `Motor`.
 
-Their numbers carry no unit by which `parameters` would find them: what designs vary is looked at at constant speed.
+Their types carry no SI unit, so designs do not vary them: a variant is solved at constant speed.
 """
 
 from typing import Annotated, Any, Literal

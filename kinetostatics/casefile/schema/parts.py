@@ -31,11 +31,11 @@ GUIDE_FIELDS = {
 }
 """Keys of a guide."""
 MADE_OF: dict[type[Table], Any] = {}
-"""Class of the group or load by its table."""
+"""Class of a group or load by its table."""
 
 
 def field_of(rule) -> Any:
-    """Type of what a rule allows, as a case file has it."""
+    """Type of a field of a case file with this rule."""
     if isinstance(rule, checks.Optional):
         return field_of(rule.rule)
     if isinstance(rule, checks.OrFunction):
@@ -49,15 +49,15 @@ def field_of(rule) -> Any:
 
 
 def _case_unit(unit):
-    """A unit as case files have it."""
+    """A unit in the spelling of case files."""
     return unit.replace("**", "^").replace("*", " ")
 
 
 def value_reader(rule):
-    """Function that takes a value by a rule."""
+    """Function that returns the value to keep by a rule, or raises `ValueError`."""
 
     def take(value):
-        found, problem = rule.taken(value)
+        found, problem = rule.check(value)
         if problem and isinstance(rule, checks.Sign):
             others = f", or one of {', '.join(map(repr, rule.words))}" if rule.words else ""
             raise ValueError(f"must be 1 or -1{others}, found {quoted(value)}")
@@ -69,14 +69,14 @@ def value_reader(rule):
 
 
 def _numbers_reader(rule):
-    """Function that takes a pair, a point or two of them, numbers as text."""
+    """Function that reads a pair, a point or two points, with numbers as text."""
     if isinstance(rule, PlacePairRule):
         return _read_two_points
     return _read_point if isinstance(rule, PlaceRule) else pair_of(_case_unit(rule.unit))
 
 
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")
-"""What begins as a number does, so that it names no link."""
+"""Begin of a number, which is no name of a link."""
 POINT_FORMS = f'{PLACE_FORMS}, such as "B", ["coupler", "0.5 m", "0.1 m"] or ["1 m", "0 m"]'
 
 
@@ -96,7 +96,7 @@ def _read_two_points(value):
 
 
 def _table_model(word, kind, **other) -> Any:
-    """Table of a kind, with other types of some fields; None leaves a field out."""
+    """Pydantic model of a group or load, with other types for some fields; None omits a field."""
     defaults = {field.name: field.default for field in fields(kind)}
     found: dict[str, Any] = {"kind": (Literal[word], ...)}
     for name, rule in kind.RULES.rules.items():
@@ -111,7 +111,7 @@ def _table_model(word, kind, **other) -> Any:
             found[name] = (other.get(name) or field_of(rule), default)
     made = pydantic.create_model(f"{kind.__name__}Table", __base__=Table, __module__=__name__, **found)
     MADE_OF[made] = kind
-    globals()[made.__name__] = made  # where pickle, on its way to workers, looks for it
+    globals()[made.__name__] = made  # pickle looks for it here
     return made
 
 
@@ -130,7 +130,7 @@ SPECIAL_FIELDS: dict[Any, dict[str, Any]] = {
     Spring: {"stiffness": Stiffness},
     ProcessForce: {"period": None},  # a table has one, a constant none
 }
-"""Fields that a case file has in another way than their rules say."""
+"""Fields whose type in a case file differs from their rule."""
 LOADS = {kind.PATH.replace("_", " "): kind for kind in KINDS if kind is not Gravity}
 
 
@@ -206,4 +206,4 @@ MEANINGS = {
     "torsion damper.coefficient": "Of the damper.",
     "torsion damper.on": "Link that it acts on.",
 }
-"""What keys of groups and loads mean, by the kind's word and the key, or by the key alone."""
+"""Meaning of the keys of groups and loads, by kind and key, or by key alone."""

@@ -1,6 +1,6 @@
-"""Tables within a variant: links, cams, counterweights, files of values, and how one of several kinds is told.
+"""Tables within a variant: links, cams, rollers, counterweights, files of values; validation of tables in sentences.
 
-Tables of a case file checked against their models: one sentence for each problem, with the key it stands at.
+`one_of` is a table of one of several kinds, chosen by its key `kind`. `validate` returns one sentence per fault.
 """
 
 import math
@@ -41,17 +41,17 @@ class Table(BaseModel):
 
 
 TAGS: dict[str, Any] = {}
-"""By the tag that stands among the keys of a problem: the table, of several kinds, that was chosen there."""
+"""Table by the tag that pydantic puts among the keys of a fault in a table of several kinds."""
 
 
 def kinds(tag):
-    """Words for the kinds that might stand in place of a tagged one."""
+    """Words for the kinds of the family of a tag."""
     family = tag.partition(":")[0]
     return [other.partition(":")[2] for other in TAGS if other.startswith(f"{family}:")]
 
 
 def one_of(family, models: dict[str, Any]) -> Any:
-    """Type of a table of one of several kinds, told by its key `kind`; a word like an allowed one is taken for it."""
+    """Type of a table of one of several kinds by its key `kind`; a near word selects the nearest kind."""
     TAGS.update({f"{family}:{word}": model for word, model in models.items()})
 
     def tag(raw):
@@ -68,7 +68,7 @@ def one_of(family, models: dict[str, Any]) -> Any:
 
 
 def list_of(kind, name, least=0) -> Any:
-    """Type of a list of so many tables or more."""
+    """Type of a list of at least `least` tables."""
 
     def read(value):
         if not isinstance(value, list) or len(value) < least:
@@ -118,7 +118,7 @@ TAGS |= {"value:text": Table, "value:file": ValuesTable}
 
 
 def value_in(unit) -> Any:
-    """Type of what is a text with a unit, or a table that names a file."""
+    """Type of a text with a unit, or a table that names a file."""
     text = BeforeValidator(with_alternative(reader(unit), 'a table, { file = "values.csv" }'))
     choices = Annotated[float, text, Tag("value:text")] | Annotated[ValuesTable, Tag("value:file")]
     by_type = Discriminator(lambda raw: "value:file" if isinstance(raw, dict | ValuesTable) else "value:text")
@@ -238,7 +238,7 @@ class BalancingTable(Table):
 
 
 def validate(model, raw, place):
-    """The model or None, and a line for each problem; `place` tells where in the file a key stands."""
+    """The model or None, and a sentence per fault; ``place(keys)`` gives the keys in the file."""
     try:
         return model.model_validate(raw), []
     except pydantic.ValidationError as error:
@@ -246,7 +246,7 @@ def validate(model, raw, place):
 
 
 NOT_A_TABLE = ("model_type", "dict_type")
-"""What is wrong, as pydantic calls it, where a table should stand."""
+"""Pydantic's names of the fault of a value in place of a table."""
 
 
 def _sentence(model, item, place):
@@ -275,7 +275,7 @@ def _sentence(model, item, place):
 
 
 def key_path(keys):
-    """Keys as a file has them: "variants.plain.cam.centre[1]"."""
+    """Keys as text: "variants.plain.cam.centre[1]"."""
     text = ""
     for key in keys:
         text += f"[{key + 1}]" if isinstance(key, int) else f".{key}" if text else str(key)
@@ -288,7 +288,7 @@ def _allowed(model, keys):
 
 
 def _tables_at(model, keys):
-    """Tables that may stand at a path of the model."""
+    """Tables allowed at a path of the model."""
     candidates = [model]
     for key in keys:
         if key in TAGS:

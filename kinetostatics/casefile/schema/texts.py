@@ -1,4 +1,7 @@
-"""What stands in a case file as text: numbers with units, and words in their place."""
+"""Texts of a case file: numbers with units, and words in their place, as pydantic types.
+
+Each type ends with its SI unit, by which `build.places_by_path` finds the numbers that designs may vary.
+"""
 
 import math
 from typing import Annotated
@@ -24,7 +27,6 @@ def reader(unit, *, low=None, strict=False):
     return read
 
 
-# each type ends with its SI unit, by which `parameters` finds what a design may vary
 Length = Annotated[float, BeforeValidator(reader("m", low=0.0, strict=True)), "m"]
 Coordinate = Annotated[float, BeforeValidator(reader("m")), "m"]
 CubicStiffness = Annotated[float, BeforeValidator(reader("N/m^3")), "N/m^3"]
@@ -41,7 +43,7 @@ _COORDINATE = reader("m")
 
 
 def with_alternative(read, words):
-    """Function that reads a text, and says what else might be written."""
+    """Function that reads a text; its error names the alternative in `words`."""
 
     def read_or_say(text):
         try:
@@ -101,7 +103,7 @@ def _two_points(value):
 
 
 def _period(text):
-    period, problem = WholeTurns().taken(to_si(text, "rad"))
+    period, problem = WholeTurns().check(to_si(text, "rad"))
     if problem:
         raise ValueError(f'must be a whole number of turns, such as "720 deg", found {text!r}')
     return period

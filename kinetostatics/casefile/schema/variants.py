@@ -1,4 +1,4 @@
-"""Variants by their mechanism, and the head of a case file."""
+"""Variants by mechanism, and the head of a case file."""
 
 from typing import Annotated, Any, Literal
 
@@ -63,7 +63,7 @@ class ProcessForceTable(Table):
 
 def _coefficient(value):
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    found, problem = COEFFICIENT.taken(float(value) if number else value, "")
+    found, problem = COEFFICIENT.check(float(value) if number else value, "")
     if problem or not number:
         raise ValueError(f"must be a number of at least 0, such as 0.1, found {quoted(value)}")
     return found

@@ -1,6 +1,7 @@
-"""What every cam has: pressure angle and curvature of the pitch curve, from its radius and derivatives.
+"""Cams: radius, pressure angle and curvature of the pitch curve; and the cam whose radius is a Fourier series.
 
-A cam as a Fourier series: each harmonic a number of its own, so that designs may vary it.
+With r(phi) the radius of the pitch curve, the pressure angle is atan(r' / r), and the curvature
+(r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2). Lengths in m, derivatives by the crank angle phi in rad.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from ..links import present
 
 
 class Cam:
-    """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``.
+    """Base of all cams. A cam is one method: ``polar(angle, ray) -> r, r', r''``.
 
     Examples
     --------
@@ -36,7 +37,7 @@ class Cam:
 
     @property
     def knots(self) -> tuple:
-        """Where its second derivative bends or jumps, each a `Knot`."""
+        """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
         return ()
 
     def polar(self, angle, ray):
@@ -55,16 +56,17 @@ class Cam:
         r, r', r'' : tuple of arrays
             In m, m/rad, m/rad2.
         """
-        phi = _angle_array(phi)
+        phi = checks.to_plain_named("cam", "crank angle", phi, "rad")
+        phi = np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi
         return self.polar(phi, ray_at(phi))
 
     def pressure_angle(self, phi):
-        """Angle between the cam normal and the crank ray, atan(r'/r), rad; positive where the radius grows."""
+        """Pressure angle atan(r'/r) between cam normal and crank ray, rad; positive where the radius grows."""
         r, slope, _ = self.radius(phi)
         return atan(slope / r)
 
     def curvature_radius(self, phi):
-        """Signed radius of curvature of the pitch curve, m; negative where it is hollow."""
+        """Signed radius of curvature of the pitch curve, m; negative where the curve is hollow."""
         return 1.0 / polar_curvature(*self.radius(phi))
 
     def profile(self, roller_radius, angle, side="disk"):
@@ -75,9 +77,9 @@ class Cam:
         roller_radius : float
             m.
         angle : int or array
-            Crank angles, rad; a whole number is a count of them over the turn.
+            Crank angles, rad; an int is their count over the turn.
         side : "disk" or "ring"
-            Whether the cam lies inside the pitch curve, so that the roller runs around it, or outside.
+            A disk lies inside the pitch curve, and the roller runs around it; a ring lies outside.
 
         Returns
         -------
@@ -103,10 +105,10 @@ class Cam:
         return profile(self, roller_radius, angle, side)
 
     def base_radius(self, pressure_angle):
-        """Smallest base circle with which the same rise keeps to a largest pressure angle, rad; m.
+        """Radius of the smallest base circle that limits the pressure angle (rad) for the same rise, m.
 
-        That of r + c, with c = max(abs(r') / tan(pressure_angle) - r): a follower on the crank ray. The mechanism of
-        such a cam has another stroke and another coupler.
+        It is the smallest radius of r + c with c = max(abs(r') / tan(pressure_angle) - r), for a follower on the crank
+        ray. With such a cam the mechanism has another stroke and coupler.
 
         Examples
         --------
@@ -120,34 +122,34 @@ class Cam:
         return base_radius(self, pressure_angle)
 
     def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
-        """Write the cam for the workshop: by the path's ending a drawing 1:1 (.svg), a table (.csv) or a .dxf.
+        """Write the cam for the workshop; the suffix of the path selects a 1:1 drawing (.svg), a table (.csv) or .dxf.
 
         Parameters
         ----------
         path : path
-            Its file is written whole or not at all.
+            The file is written whole or not at all.
         roller_radius : float
             m.
         cutter_radius : float, optional
-            m; of a cutter other than the roller, whose path is then given too.
+            Radius of a cutter other than the roller, m; its path is then written too.
         points : int
-            So many, evenly over the crank angle, from its zero mark on.
+            Number of points, evenly over the crank angle from the zero mark.
         units : "mm", "cm", "m" or "in"
-            Of what is written.
+            Unit of lengths in the file.
         side : "disk" or "ring"
             As for `profile`.
         clockwise : bool
-            The sense in which the roller goes around the cam, shown on drawings; crank angles are counted counter-
-            clockwise all the same.
+            Sense in which the roller goes around the cam, shown on drawings; crank angles count counter-clockwise
+            either way.
 
         Raises
         ------
         ParameterError
             The roller undercuts the cam, or the cutter does not fit into a hollow of it.
         FileError
-            The ending is another, or the file cannot be written.
+            The suffix is another, or the file cannot be written.
         MissingLibraryError
-            A .dxf without ezdxf (extra `workshop`).
+            .dxf needs ezdxf (extra `workshop`).
 
         Examples
         --------
@@ -163,13 +165,8 @@ class Cam:
         export(self, path, roller_radius, cutter_radius, points, units, side, clockwise)
 
 
-def _angle_array(phi):
-    phi = checks.to_plain_named("cam", "crank angle", phi, "rad")
-    return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi
-
-
 RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
-"""Crank angles at which the smallest radius is looked for, rad."""
+"""Crank angles among which the smallest radius is sought, rad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +175,7 @@ class Harmonic(checks.Checked, Cam):
 
     r = a0 + a1 cos(psi) + a2 cos(2 psi) + ... + b1 sin(psi) + b2 sin(2 psi) + ...,  psi = phi - guide_angle
 
-    Harmonics that are zero cost nothing; a scene calls the others "cam.cosine.2", "cam.sine.1".
+    Harmonics that are zero cost nothing; parameter paths of the others are "cam.cosine.2", "cam.sine.1".
 
     Parameters
     ----------
@@ -187,7 +184,7 @@ class Harmonic(checks.Checked, Cam):
     sine : sequence of float or array
         b1, b2, ... in m.
     guide_angle : float
-        Direction from which the angle counts, rad from +x.
+        Direction from +x at which psi is zero, rad.
 
     Raises
     ------
@@ -216,7 +213,7 @@ class Harmonic(checks.Checked, Cam):
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m."""
+        """Lengths that define the pitch curve, m."""
         return (*self.cosine, *self.sine)
 
     @property
@@ -229,9 +226,10 @@ class Harmonic(checks.Checked, Cam):
         return mean + farther, slope, second
 
     def about_mean(self, angle, ray):
-        """The mean radius, what r has besides, r' and r'': sums over the harmonics, from the highest down.
+        """Mean radius, r less the mean radius, r' and r'', m.
 
-        Their sines and cosines follow from each other; they mostly grow smaller, so that little is lost by rounding.
+        Sines and cosines of the harmonics follow by recursion. The sums start at the highest harmonics, mostly the
+        smallest, so that little is lost by rounding.
         """
         psi = ray if present(self.guide_angle) is None else rotate_back(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine

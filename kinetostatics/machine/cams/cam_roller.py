@@ -1,8 +1,8 @@
 """Cam roller: a block slides in the slotted crank and carries a roller at A that runs on a fixed cam.
 
 The cam gives the radius r(phi) of the roller centre A along the crank ray (the pitch curve in polar form). The cam
-pushes along the normal of the pitch curve, which leans from the ray by the pressure angle, tan = r'/r; the slot
-pushes across the ray. Equilibrium of the block gives both, and what the slot gives the crank must bear.
+force acts along the normal of the pitch curve, at the pressure angle tau from the ray, tan(tau) = r'/r; the slot force
+acts across the ray. Equilibrium of the block gives both forces. The crank bears the slot force.
 """
 
 from dataclasses import dataclass
@@ -22,9 +22,9 @@ from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding,
 from .roller import LineContact, Roller
 
 CURVATURE_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
-"""Crank angles at which the curvature of cams is looked at, rad."""
+"""Crank angles at which the sharpest curvature of a cam is sought, rad."""
 RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-"""Crank angles at which cams of the user's own are looked at, rad."""
+"""Crank angles at which the smallest radius of a user's own cam is sought, rad."""
 OUTPUTS = {
     "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
     "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
@@ -47,12 +47,14 @@ TERMS = {
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 class RollerForces(NamedTuple):
-    """`cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle;
-    `on_crank`: wrench about O that the crank must supply to the block.
+    """Forces of a cam roller, N.
+
+    `cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle; `on_crank`:
+    wrench about O that the crank supplies to the block.
     """
 
     cam: Any
@@ -61,7 +63,7 @@ class RollerForces(NamedTuple):
 
 
 def place(ray, radius, slope, curvature):
-    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
+    """Motion of the roller centre A on the ray, a `Joint`, from r, r' and r'' (kernel)."""
     x, y = ray
     along, across = radius * x, radius * y
     return Joint(
@@ -72,7 +74,7 @@ def place(ray, radius, slope, curvature):
 
 
 def departure(ray, slope, curvature):
-    """Second derivative of the roller centre plus its place, r'' along the ray and 2 r' across it (kernel)."""
+    """Second derivative of the roller centre plus its position: r'' along the ray, 2 r' across it (kernel)."""
     x, y = ray
     sideways = 2.0 * slope
     departing = (curvature * x - sideways * y, curvature * y + sideways * x)
@@ -82,7 +84,7 @@ def departure(ray, slope, curvature):
 def resolve(ray, radius, slope, load):
     """Cam and slot force on the block (kernel).
 
-    `load` is what acts on the block, its own and what hangs on it, a wrench about A.
+    `load` is the wrench about A on the block, from its own loads and the groups that it carries.
     """
     force = vector_or_zero(load.force)
     lean = slope / radius
@@ -100,11 +102,11 @@ class CamRoller(checks.Checked, Group):
     Parameters
     ----------
     cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or alike
-        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
+        Any object with ``polar(angle, ray)`` that returns r, r', r'' in m.
     block : Link
-        Block with roller; reference joint A, along the crank ray.
+        Block with roller; reference joint A, axis along the crank ray.
     roller : Roller, optional
-        Size and material of the roller, for its contact pressure.
+        Size and material of the roller, for the contact pressure.
 
     Raises
     ------
@@ -151,13 +153,13 @@ class CamRoller(checks.Checked, Group):
 
     @property
     def reaches(self):
-        """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
+        """Smallest radius of the pitch curve, m; on a grid if the cam has no `smallest_radius`."""
         found = getattr(self.cam, "smallest_radius", None)
         return (np.min(self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))[0]) if found is None else found,)
 
     @cached_property
     def tightest(self):
-        """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
+        """Smallest radius of curvature of the pitch curve, on a grid, m; None if it is not plain numbers."""
         with np.errstate(divide="ignore"):
             curved = abs(1.0 / polar_curvature(*self.cam.polar(CURVATURE_ANGLES, ray(CURVATURE_ANGLES))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
@@ -223,7 +225,7 @@ class CamRoller(checks.Checked, Group):
         placement.courses["A"] = Course(orbit=orbit, departure=departure(placement.ray, *polar[1:]))
 
     def closure(self, placement):
-        """Squared cosine of the pressure angle, negative where the radius is."""
+        """Squared cosine of the pressure angle, with the sign of the radius."""
         radius, slope, _ = placement.details["cam"]
         lean = slope / radius
         return sign(radius) / (1.0 + lean * lean)
@@ -238,7 +240,7 @@ class CamRoller(checks.Checked, Group):
         return Resolved({}, forces, {"crank": found.on_crank})
 
     def follow(self, placement, joints):
-        """Place the block at joints found in another way."""
+        """Place the block at joints computed in another way."""
         joint = joints["A"]
         radius, slope, outward = (dot(vector_or_zero(part), placement.ray) for part in joint)
         self._set(placement, joint, (radius, slope, outward + radius))

@@ -1,8 +1,7 @@
-"""Fixed cams, described by the pitch curve of the roller centre in polar form about O.
+"""Fixed cams: the circle and the cosine law in closed form; all other public names of `ks.cams` stand here too.
 
-Every cam gives r(phi) with its first two derivatives, the pressure angle (between the cam normal and the crank ray)
-and the curvature radius of the pitch curve. Each r is a smooth closed form or spline; none loses digits anywhere on
-the turn.
+A cam is the pitch curve of the roller centre in polar form about O: r(phi) and two derivatives, m. Closed forms and
+splines are smooth and keep their digits all round the turn.
 """
 
 import math
@@ -31,22 +30,22 @@ TERMS = {
     "excess": ("d", "that root less the coordinate of the slider"),
     "share": ("f", "amplitude times the cosine of the singular angle"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Circle(Cam):
     """Circular pitch curve around O.
 
-    Where O lies close to the circle, other formulas keep all digits; of designs together, those of all if it does in
-    any. So what one has may change in its last bits with those beside it.
+    Where O lies close to the circle, other formulas keep all digits. A batch uses them if O is close in any design, so
+    the last bits of a design may depend on the others.
 
     Parameters
     ----------
     radius : float or array
-        Radius of the circle on which the roller centre runs, m.
+        Radius of the circle of roller centres, m.
     centre : (x, y)
-        Centre relative to O, m; O lies inside.
+        Centre relative to O, m; O lies inside the circle.
 
     Raises
     ------
@@ -76,9 +75,9 @@ class Circle(Cam):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        object.__setattr__(self, "is_close", self._comes_close())
+        object.__setattr__(self, "is_close", self._is_near_circle())
 
-    def _comes_close(self):
+    def _is_near_circle(self):
         """Whether O lies close to the circle, in any design."""
         (x, y), radius = self.centre, self.pitch_radius
         if type(x) is type(y) is type(radius) is float:
@@ -86,8 +85,8 @@ class Circle(Cam):
         smallest = self.smallest_radius
         return checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
 
-    def _around_origin(self):
-        """Say where O lies outside the circle, or on it."""
+    def _outside_problems(self):
+        """Problem of designs with O outside the circle, or on it."""
         (x, y), radius = self.centre, self.pitch_radius
         distance = sqrt(x * x + y * y)
         if checks.has_known_values(distance - radius) and np.any(distance >= radius):
@@ -99,14 +98,14 @@ class Circle(Cam):
 
     RULES = checks.Rules(
         "circle cam",
-        _around_origin,
+        _outside_problems,
         pitch_radius=checks.Number("m", "radius", low=0.0, strict=True),
         centre=checks.Pair("m"),
     )
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m."""
+        """Lengths that define the pitch curve, m."""
         return (self.pitch_radius, *self.centre)
 
     @property
@@ -120,17 +119,18 @@ class Circle(Cam):
         along = x * ray[0] + y * ray[1]
         across = y * ray[0] - x * ray[1]
         if self.is_close:
-            return self._close(along, across, ray)
+            return self._polar_near_circle(along, across, ray)
         root = sqrt((self.pitch_radius - across) * (self.pitch_radius + across))
         r = along + root
         lean = across / root
         slope = lean * r
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
 
-    def _close(self, along, across, ray):
-        """The same with O close to the circle: margins by the smallest radius and parts that are positive.
+    def _polar_near_circle(self, along, across, ray):
+        """The same with O close to the circle, without differences of nearly equal lengths.
 
-        There r, along and the root are such that r (root - along) is the product of the smallest and largest radius.
+        All follow from the smallest radius and positive terms; r (root - along) is the product of the smallest and
+        largest radius.
         """
         (x, y), radius = self.centre, self.pitch_radius
         (away, rest), (direction, reach) = length_with_error(self.centre), direction_and_length((y, -x))
@@ -152,12 +152,12 @@ class CosineLaw(checks.Checked, Cam):
 
         w = (c - c*) sqrt(a^2 c^2 + p c + q),   p = 2 a (b + a c*),   q = b^2 - a^2 + 2 c* p - c*^2 a^2
 
-    Nor do x_B cos(phi) and w, both much larger than r, have to be subtracted: with b c* = a - 2 a c*^2
+    The difference of x_B cos(phi) and w, both much larger than r, cancels out in closed form: with b c* = a - 2 a c*^2
 
         r = c* root - c d,   d = root - x_B = g + a c*
         g = (a^2 (2 + c* c - 3 c*^2) - a c* root) / (root + x_B)
 
-    of which only a half cancels in g. So do the derivatives by c, with k = a / root and w = k (c - c*):
+    where g loses one bit at most. The derivatives by c follow with k = a / root and w = k (c - c*):
 
         dr/dc = (w - 1) g,   d2r/dc2 = k g (2 - w (2 - g / root))
 
@@ -194,8 +194,8 @@ class CosineLaw(checks.Checked, Cam):
 
     ELEMENTWISE = True
 
-    def _clear_of_origin(self):
-        """Say where the slider would run over O."""
+    def _origin_problems(self):
+        """Problem of designs whose slider would run over O."""
         mean, amplitude = self.mean, self.amplitude
         if checks.has_known_values(mean - amplitude) and np.any(mean <= amplitude):
             text = (
@@ -206,7 +206,7 @@ class CosineLaw(checks.Checked, Cam):
 
     RULES = checks.Rules(
         "cosine-law cam",
-        _clear_of_origin,
+        _origin_problems,
         amplitude=checks.Number("m", low=0.0, strict=True),
         mean=checks.Number("m", low=0.0, strict=True),
         guide_angle=checks.Number("rad"),
@@ -214,7 +214,7 @@ class CosineLaw(checks.Checked, Cam):
 
     @cached_property
     def _cosine(self):
-        """c* by the root of 2 a c^2 + b c - a = 0 that does not cancel."""
+        """c*, the positive root of 2 a c^2 + b c - a = 0, free of cancellation."""
         a, b = self.amplitude, self.mean
         return 2.0 * a / (b + sqrt(b * b + 8.0 * a * a))
 
@@ -226,12 +226,12 @@ class CosineLaw(checks.Checked, Cam):
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m."""
+        """Lengths that define the pitch curve, m."""
         return (self.amplitude, self.mean)
 
     @property
     def smallest_radius(self):
-        """A bound of the distance of the roller centre from O, m: 0.70 amplitudes, where the mean is as small as it."""
+        """Lower bound of the radius, m: 0.70 amplitudes, reached as the mean approaches the amplitude."""
         return 0.7 * self.amplitude
 
     @property
@@ -241,7 +241,7 @@ class CosineLaw(checks.Checked, Cam):
 
     @property
     def coupler_length(self):
-        """The one coupler length for which the law can be met, m."""
+        """The only coupler length for which the cam is smooth, m."""
         c = self._cosine
         return (self.mean + self.amplitude * c) * sqrt((1.0 - c) * (1.0 + c))
 

@@ -1,6 +1,6 @@
-"""A cam for the workshop: table (.csv), drawing 1:1 (.svg) and .dxf of its curves, each written whole or not at all.
+"""Files of a cam for the workshop: table (.csv), drawing 1:1 (.svg) and .dxf, each written whole or not at all.
 
-Drawing of a cam as SVG, one to one: curves, roller, zero mark, sense of rotation, dimensions.
+All three hold the pitch curve, the working curve, the path of a cutter and the notes of a `Sheet`.
 """
 
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ from ...numbers.lazy import cached_property
 from .profile import POSITIVE, SIDE_SIGNS, Profile, profile
 
 MM_PER_M = 1000.0
-"""Millimetres in a metre: what the drawing is measured in, so that it prints one to one."""
+"""Millimetres in a metre; the drawing is in mm, so that it prints one to one."""
 CURVE_CLASSES = {"surface": "cam", "pitch": "pitch", "cutter": "cutter"}
-"""How each curve is drawn."""
+"""CSS class of each curve."""
 SVG_STYLE = (
     "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
     ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"
@@ -29,24 +29,20 @@ SVG_STYLE = (
 )
 
 
-def drawn(sheet):
-    """Text of the drawing."""
-    return SvgDrawing(sheet).text()
-
-
 class SvgDrawing:
-    """Collects what is drawn, in mm with y upward; the file has y downward."""
+    """SVG drawing of a sheet, in mm with y upward; the file has y downward."""
 
     def __init__(self, sheet):
         self.sheet, self.items = sheet, []
         self.radius = MM_PER_M * sheet.radius
         self.curves = {name: MM_PER_M * points for name, points in sheet.paths.items()}
-        self.roller = MM_PER_M * sheet.made.roller_radius
+        self.roller = MM_PER_M * sheet.profile.roller_radius
         every = np.concatenate(list(self.curves.values()), axis=1)
         self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
         self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
 
     def text(self):
+        """Text of the SVG file."""
         size = self.size
         self._curves()
         self._axes()
@@ -79,16 +75,16 @@ class SvgDrawing:
             ]
         )
 
-    # what is drawn
+    # Parts of the drawing
 
     def _curves(self):
-        """The material of a disk inside its curve, of a ring outside."""
-        if self.sheet.made.side == "ring":
+        """The curves, with the material of a disk inside its working curve, of a ring outside."""
+        if self.sheet.profile.side == "ring":
             reach = 1.05 * np.max(np.hypot(*self.curves["surface"]))
             self.items.append(f'<circle class="cam" cx="0" cy="0" r="{reach:.6g}"/>')
         for name in ("surface", "pitch", "cutter"):
             if name in self.curves:
-                kind = "hole" if name == "surface" and self.sheet.made.side == "ring" else CURVE_CLASSES[name]
+                kind = "hole" if name == "surface" and self.sheet.profile.side == "ring" else CURVE_CLASSES[name]
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
     def _axes(self):
@@ -98,7 +94,7 @@ class SvgDrawing:
         self._words((0.5 * size, -1.5 * size), "O")
 
     def _roller(self):
-        """The roller where it stands at the zero mark, and the mark."""
+        """The roller at the zero mark, and the mark."""
         x, y = self.curves["pitch"][:, 0]
         self.items.append(f'<circle class="thin" cx="{x:.6g}" cy="{-y:.6g}" r="{self.roller:.6g}"/>')
         along = np.array([x, y]) / np.hypot(x, y)
@@ -107,7 +103,7 @@ class SvgDrawing:
         self._words(outer * along + [0.2 * self.size, -1.3 * self.size], "0° zero mark")
 
     def _sense(self):
-        """An arc with an arrow, the way the roller goes around."""
+        """An arc with an arrow in the sense in which the roller goes around."""
         sign, reach = (-1.0 if self.sheet.clockwise else 1.0), 0.45 * float(self.radius.min())
         turn = np.radians(sign * np.linspace(20.0, 100.0, 41))
         arc = reach * np.stack([np.cos(turn), np.sin(turn)])
@@ -121,28 +117,28 @@ class SvgDrawing:
         base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
         for x in (left, right):
             self._line((x, 0.0), (x, base - size), "thin")
-        self._measure((left, base), (right, base), sheet.written((right - left) / MM_PER_M))
+        self._measure((left, base), (right, base), sheet.length_text((right - left) / MM_PER_M))
         for y in (below, above):
             self._line((0.0, y), (side + size, y), "thin")
-        self._measure((side, below), (side, above), sheet.written((above - below) / MM_PER_M))
+        self._measure((side, below), (side, above), sheet.length_text((above - below) / MM_PER_M))
         for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
             self._ray(place, name)
         x, y = self.curves["pitch"][:, 0]
         self._words(
-            (x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.written(2 * self.roller / MM_PER_M)}"
+            (x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
         )
 
     def _ray(self, place, name):
-        """A radius of the pitch curve, from O to where it is largest or smallest."""
+        """The largest or smallest radius of the pitch curve, as a line from O."""
         end = self.curves["pitch"][:, place]
         self._line((0.0, 0.0), end, "thin")
         self._tip(end, end)
-        degrees = np.degrees(self.sheet.made.crank_angle[place])
-        text = f"{name} R {self.sheet.written(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
+        degrees = np.degrees(self.sheet.profile.crank_angle[place])
+        text = f"{name} R {self.sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
         share = 0.3 if name == "largest" else 0.45
         self._words(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size], text)
 
-    # strokes
+    # Strokes
 
     def _measure(self, start, stop, text):
         """A dimension line with two tips and its text."""
@@ -176,45 +172,45 @@ def _path(points, closed=True):
 
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
-"""Metres in each unit of what is written."""
+"""Metres in each unit of a file."""
 DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
 MAX_POINTS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """What is written of a cam: its profile, the cutter, the unit and the sense of rotation."""
+    """Content of a file: profile of the cam, cutter radius (m), unit and sense of rotation."""
 
-    made: Profile
+    profile: Profile
     cutter_radius: float | None
     units: str
     clockwise: bool
 
     @cached_property
     def paths(self):
-        """Points (2, N) by the name of each curve, m, the cutter's where there is one."""
-        found = {"pitch": self.made.pitch, "surface": self.made.surface}
+        """Points of each curve by name, (2, N), m."""
+        found = {"pitch": self.profile.pitch, "surface": self.profile.surface}
         if self.cutter_radius is not None:
-            found["cutter"] = self.made.cutter_path(self.cutter_radius)
+            found["cutter"] = self.profile.cutter_path(self.cutter_radius)
         return found
 
     @cached_property
     def curves(self):
-        """The same in the unit."""
-        return {name: self.measured(points) for name, points in self.paths.items()}
+        """Points of each curve by name, (2, N), in the unit of the file."""
+        return {name: self.in_unit(points) for name, points in self.paths.items()}
 
-    def measured(self, length):
-        """A length in m in the unit."""
+    def in_unit(self, length):
+        """A length, m, in the unit of the file."""
         return length / UNITS[self.units]
 
-    def written(self, length):
-        """A length in m as text with the unit."""
-        return f"{self.measured(length):.6g} {self.units}"
+    def length_text(self, length):
+        """A length, m, as text with the unit of the file."""
+        return f"{self.in_unit(length):.6g} {self.units}"
 
     @property
     def radius(self):
         """Radius of the pitch curve at each point, m."""
-        return np.hypot(*self.made.pitch)
+        return np.hypot(*self.profile.pitch)
 
     @property
     def sense(self):
@@ -222,27 +218,27 @@ class Sheet:
 
     @property
     def notes(self):
-        """What the workshop must know, as lines."""
-        made, sharpest, hollow = self.made, self.made.smallest_curvature_radius, self.made.smallest_hollow
-        cutter = "" if self.cutter_radius is None else f", cutter radius {self.written(self.cutter_radius)}"
+        """Lines of notes for the workshop."""
+        profile, sharpest, hollow = self.profile, self.profile.smallest_curvature_radius, self.profile.smallest_hollow
+        cutter = "" if self.cutter_radius is None else f", cutter radius {self.length_text(self.cutter_radius)}"
         lines = [
-            f"cam for the workshop: {made.side}, roller radius {self.written(made.roller_radius)}{cutter}, "
-            f"{made.crank_angle.size} points",
+            f"cam for the workshop: {profile.side}, roller radius {self.length_text(profile.roller_radius)}{cutter}, "
+            f"{profile.crank_angle.size} points",
             f"crank angles counter-clockwise from the zero mark, the +x axis; the roller goes around {self.sense}",
-            f"largest pressure angle {np.degrees(made.largest_pressure_angle.value):.4g} deg at "
-            f"{np.degrees(made.largest_pressure_angle.angle):.4g} deg",
+            f"largest pressure angle {np.degrees(profile.largest_pressure_angle.value):.4g} deg at "
+            f"{np.degrees(profile.largest_pressure_angle.angle):.4g} deg",
             "sharpest part of the working curve: "
-            + ("none convex" if sharpest is None else f"radius {self.written(sharpest.value)}")
-            + ("" if hollow is None else f"; tightest hollow: radius {self.written(-hollow.value)}"),
+            + ("none convex" if sharpest is None else f"radius {self.length_text(sharpest.value)}")
+            + ("" if hollow is None else f"; tightest hollow: radius {self.length_text(-hollow.value)}"),
         ]
-        error = getattr(made.cam, "force_error", None)
+        error = getattr(profile.cam, "force_error", None)
         if error is not None:
             lines.append(f"from a measured table: forces are uncertain by {error:.2g} of the largest")
         return lines
 
 
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
-    """Write a cam; what ``cam.export`` does, where it is told."""
+    """Write a cam to a file; ``cam.export`` documents the parameters."""
     radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
     found = checks.single_numbers(
         "cam export",
@@ -256,8 +252,8 @@ def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwi
     problem = write_problem(path, endings=tuple(WRITERS))
     if problem or Path(path).suffix.lower() not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
-    made = profile(cam, found["roller_radius"], int(points), side)
-    sheet = Sheet(made, found.get("cutter_radius"), units, clockwise)
+    working = profile(cam, found["roller_radius"], int(points), side)
+    sheet = Sheet(working, found.get("cutter_radius"), units, clockwise)
     with write_atomically(path) as temporary:
         WRITERS[Path(path).suffix.lower()](sheet, temporary)
 
@@ -270,14 +266,14 @@ def _points_problem(points):
 
 
 def _to_csv(sheet, path):
-    """Roller centres, working curve and cutter; the first two columns are what ``Sampled.from_csv`` reads."""
+    """Table of roller centres, working curve and cutter; ``Sampled.from_csv`` reads its first two columns."""
     unit = sheet.units
-    columns = {"angle [deg]": np.degrees(sheet.made.crank_angle), f"radius [{unit}]": sheet.measured(sheet.radius)}
+    columns = {"angle [deg]": np.degrees(sheet.profile.crank_angle), f"radius [{unit}]": sheet.in_unit(sheet.radius)}
     names = {"pitch": "roller", "surface": "surface", "cutter": "cutter"}
     for name, points in sheet.curves.items():
         columns |= {f"{names[name]}_{axis} [{unit}]": part for axis, part in zip("xy", points, strict=True)}
-    columns["pressure_angle [deg]"] = np.degrees(sheet.made.pressure_angle)
-    columns[f"curvature_radius [{unit}]"] = sheet.measured(sheet.made.curvature_radius)
+    columns["pressure_angle [deg]"] = np.degrees(sheet.profile.pressure_angle)
+    columns[f"curvature_radius [{unit}]"] = sheet.in_unit(sheet.profile.curvature_radius)
     rows = zip(*(part.tolist() for part in columns.values()), strict=True)
     lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -288,7 +284,7 @@ LAYERS = {"surface": ("SURFACE", 7), "pitch": ("PITCH", 1), "cutter": ("CUTTER",
 
 
 def _to_dxf(sheet, path):
-    """Closed polylines of the curves, the roller at the zero mark, O, and notes, each on a layer of its own."""
+    """Closed polylines of the curves, each on its own layer, and a layer of notes with the roller, the mark and O."""
     try:
         import ezdxf
     except ImportError:
@@ -304,8 +300,8 @@ def _to_dxf(sheet, path):
         space.add_lwpolyline(points.T.tolist(), close=True, dxfattribs={"layer": layer})
     drawing.layers.add("NOTES", color=5)
     notes = {"layer": "NOTES"}
-    x, y = sheet.measured(np.array(sheet.made.pitch[:, 0])).tolist()
-    reach, roller = float(np.hypot(x, y)), sheet.measured(sheet.made.roller_radius)
+    x, y = sheet.in_unit(np.array(sheet.profile.pitch[:, 0])).tolist()
+    reach, roller = float(np.hypot(x, y)), sheet.in_unit(sheet.profile.roller_radius)
     space.add_circle((x, y), roller, dxfattribs=notes)
     space.add_line((0.0, 0.0), (1.2 * x, 1.2 * y), dxfattribs=notes)
     space.add_point((0.0, 0.0), dxfattribs=notes)
@@ -327,8 +323,7 @@ def _to_dxf(sheet, path):
 
 
 def _to_svg(sheet, path):
-
-    Path(path).write_text(drawn(sheet), encoding="utf-8")
+    Path(path).write_text(SvgDrawing(sheet).text(), encoding="utf-8")
 
 
 WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}

@@ -1,4 +1,4 @@
-"""The cam that makes the slider follow a law of the whole turn: regular through its singular angles, where one exists.
+"""Cam that makes a slider follow a law of the whole turn: its one coupler length, and its radius free of cancellation.
 
 In the guide's own axes, with phi the crank angle from its direction, x(phi) the law and e the offset, B = (x, e) is
 d = x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
@@ -11,12 +11,8 @@ zero, at phi1 with d = max d = L and at phi2 with d = min d = -L. With h1 = phi 
     L - d = h1^2 q1,   L + d = h2^2 q2,   q1 = - integral over s from 0 to 1 of (1 - s) d''(phi1 + s h1)
 
 whose derivatives follow from d''' alone: q' = - integral of (1 - s) s d''', h q'' = integral of (3 s^2 - 2 s) d'''. So
-nothing cancels at the singular angles, and w is as smooth around them as the law.
-
-Which cam makes the slider follow a law: the one coupler length with which it is smooth, or why there is none.
-
-The coupler is across the crank ray where d, how far the slider is off that ray, is largest and where it is least
-(`law_cam`): a smooth cam needs a coupler as long as both.
+nothing cancels at the singular angles, and w is as smooth around them as the law. Both L are equal for one phase of a
+law only; for others `from_law` raises an error that says which phase.
 """
 
 from dataclasses import dataclass
@@ -31,26 +27,26 @@ from ..laws.law import TURN, breakpoints_of, knots_of, law_problem
 from .cam import Cam
 
 SEARCH_ANGLES = np.linspace(-np.pi, np.pi, 2881)
-"""Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
+"""Crank angles from the guide among which the largest and smallest d are sought, rad."""
 SINGULAR_REACH = 0.5
-"""Distance from a singular angle, rad, up to which L -+ d are found by quadrature; farther they lose no digits."""
+"""Distance from a singular angle, rad, within which L -+ d come from quadrature; beyond it they keep their digits."""
 PANEL_EDGES = np.linspace(-SINGULAR_REACH, SINGULAR_REACH, 5)
 MIN_DISTANCE = 1e-60
-"""Distance from a singular angle, rad, below which there is only the angle itself."""
+"""Distance from a singular angle, rad, below which its limits hold."""
 GAUSS_POINTS, GAUSS_WEIGHTS = (
     part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True)
 )
 
 
 class SingularPosition(NamedTuple):
-    """A place where the coupler is across the ray: crank angle from the guide, rad, and d there, without sign, m."""
+    """Singular position, the coupler across the ray: crank angle from the guide, rad, and size of d there, m."""
 
     angle: float
     length: float
 
 
 class RayDistance(NamedTuple):
-    """d with three derivatives by the crank angle, m."""
+    """Distance d of the slider from the crank ray, and three derivatives by the crank angle, m."""
 
     value: np.ndarray
     first: np.ndarray
@@ -59,7 +55,7 @@ class RayDistance(NamedTuple):
 
 
 def ray_distance(law, offset, phi):
-    """How far the slider is off the crank ray, d = x sin(phi) - e cos(phi), and its derivatives."""
+    """Distance of the slider from the crank ray, d = x sin(phi) - e cos(phi), and its derivatives."""
     x, v, a, j = law(phi)
     s, c = np.sin(phi), np.cos(phi)
     return RayDistance(
@@ -78,11 +74,11 @@ class LawCam(Cam):
     ----------
     law : Law
     coupler_length : float
-        The one with which the cam is smooth, m.
+        The length with which the cam is smooth, m.
     guide_angle, guide_offset : float
         rad and m.
     far, near : Turning
-        Where the coupler is across the ray: in the half turn left of the guide, and right of it.
+        Positions with the coupler across the ray: in the half turn left of the guide, and right of it.
 
     Examples
     --------
@@ -104,7 +100,7 @@ class LawCam(Cam):
 
     @property
     def singular_angles(self):
-        """Crank angles at which the coupler is across the crank ray, rad from +x."""
+        """Crank angles from +x at which the coupler is across the crank ray, rad."""
         return tuple((self.guide_angle + turning.angle) % TURN for turning in (self.far, self.near))
 
     @cached_property
@@ -118,7 +114,7 @@ class LawCam(Cam):
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m."""
+        """Lengths that define the pitch curve, m."""
         return (self.coupler_length, float(np.max(np.abs(self.law(SEARCH_ANGLES)[0]))))
 
     @cached_property
@@ -136,12 +132,12 @@ class LawCam(Cam):
         return tuple((one - other).reshape(shape) for one, other in zip(along, self._reach(phi), strict=True))
 
     def _reach(self, phi):
-        """Signed reach w and two derivatives: by d itself, and near each singular angle from there."""
+        """Signed reach w and two derivatives: from d, and near a singular angle from q."""
         d, first, second, _ = ray_distance(self.law, self.guide_offset, phi)
         one, other = self.far, self.near
         square = (one.length - d) * (other.length + d)
         sign = np.where((phi < one.angle) & (phi > other.angle), 1.0, -1.0)
-        with np.errstate(all="ignore"):  # at the singular angles themselves, where it is replaced
+        with np.errstate(all="ignore"):  # values at the singular angles are replaced below
             w = sign * np.sqrt(np.maximum(square, 0.0))
             slope = -d * first / w
             found = [w, slope, -(first * first + d * second + slope * slope) / w]
@@ -149,12 +145,12 @@ class LawCam(Cam):
             h = np.mod(phi - turning.angle + np.pi, TURN) - np.pi
             here = np.abs(h) < SINGULAR_REACH
             if np.any(here):
-                around = self._around(turning, side, h[here], d[here], first[here], second[here])
+                around = self._near_singular(turning, side, h[here], d[here], first[here], second[here])
                 for part, value in zip(found, around, strict=True):
                     part[here] = value
         return found
 
-    def _around(self, turning, side, h, d, first, second):
+    def _near_singular(self, turning, side, h, d, first, second):
         """Reach w and two derivatives at distances h from a singular angle; `side` is the sign of d there.
 
         w = -side h sqrt(q p), p = L + side d.
@@ -170,7 +166,7 @@ class LawCam(Cam):
         return -side * h * root, -side * (root + h * root_slope), -side * (2.0 * root_slope + root_bend)
 
     def _quotient(self, turning, side, h):
-        """q, q' and h q'' at distances h, by moments of d'' and d''' from the singular angle on."""
+        """q, q' and h q'' at distances h, from moments of d'' and d''' over the distance."""
         edges, sums = self._moments[turning]
         ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
         start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)
@@ -188,7 +184,7 @@ class LawCam(Cam):
 
     @cached_property
     def _moments(self):
-        """By singular angle: edges of panels and knots of the law around it, and the moments from it to each."""
+        """By singular position: edges of panels around it, among them knots of the law, and moments up to each edge."""
         found = {}
         for turning in (self.far, self.near):
             knots = np.mod(np.array(knots_of(self.law)) - turning.angle + np.pi, TURN) - np.pi
@@ -208,7 +204,7 @@ class LawCam(Cam):
 
 
 LENGTH_TOLERANCE = 1e-10
-"""How far the two lengths may differ, relative to them."""
+"""Largest relative difference of the two coupler lengths."""
 
 
 def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
@@ -220,7 +216,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
         Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction:
         from `laws`, or a function that gives position and three derivatives of a whole turn.
     coupler_length : float, optional
-        m; computed unless told. A smooth cam exists for one length only.
+        m; by default computed. A smooth cam exists for one length only.
     guide_angle : float
         Direction of the guide from +x, rad.
     guide_offset : float
@@ -229,14 +225,14 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     Returns
     -------
     LawCam
-        Runs in every engine, its radii computed beforehand as those of sampled cams.
+        It runs in every engine; as for sampled cams its radii are computed before the loop.
 
     Raises
     ------
     ParameterError
-        No smooth cam makes this law: the coupler would have to be of two lengths; with both, their crank angles, and
-        the phase of the law that makes them one, if there is one. Or the coupler has another length, or the law leads
-        the cam through O or the slider behind the roller.
+        No smooth cam makes this law, because the coupler would need two lengths: the message gives both, their crank
+        angles, and the phase of the law that makes them equal. Or the given coupler has another length, or the cam
+        passes through O or the slider behind the roller.
 
     Examples
     --------
@@ -272,7 +268,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
 
 
 def singular_positions(law, offset):
-    """Where d is largest, and where least."""
+    """Singular positions with the largest and with the smallest d."""
     grid = np.unique(np.concatenate([SEARCH_ANGLES, np.mod(np.array(knots_of(law)) + np.pi, TURN) - np.pi]))
     values = ray_distance(law, offset, grid).value
     return _singular_position(law, offset, grid, values, 1.0), _singular_position(law, offset, grid, values, -1.0)
@@ -293,7 +289,7 @@ def _singular_position(law, offset, grid, values, side):
 
 
 def phase_of(law, offset, most=np.pi / 4):
-    """Least phase by which the law must come later so that one coupler length serves, rad; None up to `most`."""
+    """Smallest delay of the law, rad, for which one coupler length serves; None if it exceeds `most`."""
     from scipy.optimize import brentq
 
     def excess(phase):
@@ -327,7 +323,7 @@ def _degrees(turning):
 
 
 def _cam_problems(cam):
-    """Why the law is no motion of a slider ahead of a roller that goes around O, as sentences."""
+    """Problems of a law that leads the pitch curve through O or the slider behind the roller, as sentences."""
     radius = cam.radius(SEARCH_ANGLES + cam.guide_angle)[0]
     position = cam.law(SEARCH_ANGLES)[0]
     ahead = np.array(position - radius * np.cos(SEARCH_ANGLES))
@@ -344,12 +340,13 @@ def _cam_problems(cam):
         place = int(np.argmin(ahead))
         yield (
             f"the slider must stay ahead of the roller along the guide, but is {-ahead[place]:.6g} m behind it at "
-            f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn the guide"
+            f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn "
+            "the guide"
         )
 
 
 def _remedy(position):
-    """What leads the pitch curve of a law around O: the roller, and with it the slider, is farthest on the guide."""
+    """Advice that leads the pitch curve around O; the slider must be farthest where the crank is along the guide."""
     farthest = SEARCH_ANGLES[int(np.argmax(position))]
     if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
         return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"

@@ -1,4 +1,4 @@
-"""What a cam is cut to: the working curve for a roller, the path of a cutter, and what limits both.
+"""Working curve of a cam for a roller, the path of its cutter, and the limits of both: undercutting and collisions.
 
 With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
 a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
@@ -21,20 +21,20 @@ from ..crank import ray as ray_at
 from ..laws.law import TURN
 
 PEAK_SAMPLES = 1440
-"""Crank angles a turn at which extremes are bracketed."""
+"""Crank angles a turn between which peaks are bracketed."""
 PROFILE_ANGLES = np.linspace(0.0, TURN, PEAK_SAMPLES, endpoint=False)
-"""Crank angles at which a chain of points is looked at, rad."""
+"""Crank angles of the chain of points that is tested for collisions, rad."""
 PEAK_CANDIDATES = 4
-"""Highest samples between whose neighbours the peak is sought."""
+"""Number of highest samples around which the peak is sought."""
 SIDE_SIGNS = {"disk": -1.0, "ring": 1.0}
-"""Side of the pitch curve on which the cam is: inside, outside."""
+"""Sign of the side of the pitch curve on which the cam lies: inside, outside."""
 POSITIVE = {"low": 0.0, "strict": True}
 CUT_TOLERANCE = 1e-3
-"""Share of the roller by which it may reach into another part of the cam: what a chain of points leaves open."""
+"""Depth to which a roller may cut into another part of the cam, relative to its radius: error of the chain."""
 
 
 class Peak(NamedTuple):
-    """A largest or smallest value over the turn, and the crank angle where it is, rad.
+    """Largest or smallest value over the turn, and its crank angle, rad.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Peak(NamedTuple):
 
 
 def highest(function, start=0.0, span=TURN):
-    """Largest value of a function of arrays of crank angles over the turn, between samples too."""
+    """Largest value of a function of crank angles over the turn, a `Peak`, between samples too."""
     from scipy.optimize import minimize_scalar
 
     step = span / PEAK_SAMPLES
@@ -70,7 +70,7 @@ def highest(function, start=0.0, span=TURN):
 
 
 def lowest(function):
-    """Smallest value of a function of arrays of crank angles over the turn."""
+    """Smallest value of a function of crank angles over the turn, a `Peak`."""
     peak = highest(lambda angle: -np.asarray(function(angle)))
     return Peak(-peak.value, peak.angle)
 
@@ -87,13 +87,13 @@ class Profile:
     crank_angle : array (N,)
         rad.
     side : "disk" or "ring"
-        Whether the cam is inside the pitch curve or around it.
+        Side of the pitch curve on which the cam lies: inside, outside.
     pitch, surface, normal : array (2, N)
-        Centre of the roller, where it touches the cam, and unit vector from inside the pitch curve outward; m.
+        Centre of the roller, m; its contact point with the cam, m; outward unit normal of the pitch curve.
     pressure_angle : array (N,)
-        Between the normal and the crank ray, rad.
+        Angle between the normal and the crank ray, rad.
     curvature_radius : array (N,)
-        Of the working curve, m: positive where it is convex to the roller, negative where it is hollow.
+        Radius of the working curve, m: positive where it is convex to the roller, negative where it is hollow.
 
     Examples
     --------
@@ -114,7 +114,7 @@ class Profile:
     curvature_radius: np.ndarray = field(repr=False)
 
     def cutter_path(self, cutter_radius):
-        """Centre of a cutter of another radius than the roller's that cuts the same working curve, (2, N), m.
+        """Path of the centre of a cutter that cuts the same working curve, (2, N), m.
 
         Raises
         ------
@@ -148,29 +148,29 @@ class Profile:
 
     @cached_property
     def largest_pressure_angle(self):
-        """Largest size of the pressure angle over the turn, rad, and where."""
+        """Largest size of the pressure angle over the turn, a `Peak`, rad."""
         return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
 
     @cached_property
     def smallest_curvature_radius(self):
-        """Smallest radius of the working curve where it is convex to the roller, m, and where; None if nowhere."""
+        """Smallest radius of convex parts of the working curve, a `Peak`, m; None if no part is convex."""
         sharpest = highest(self._surface_curvature)
         return Peak(1.0 / sharpest.value, sharpest.angle) if sharpest.value > 0 else None
 
     @cached_property
     def smallest_hollow(self):
-        """Radius of the tightest hollow of the working curve, m, negative, and where; None if there is none."""
+        """Radius of the tightest hollow of the working curve, a `Peak`, m, negative; None if there is no hollow."""
         deepest = lowest(self._surface_curvature)
         return Peak(1.0 / deepest.value, deepest.angle) if deepest.value < 0 else None
 
     @cached_property
     def largest_roller_radius(self):
-        """Radius of the roller from which the cam would be undercut, m, by the pitch curve's curvature; inf without."""
+        """Smallest roller radius that undercuts the cam, m; inf if none does."""
         sharpest = highest(lambda angle: _roller_side_curvature(self.cam, angle, self.side))
         return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
-        """What exceeds limits, as sentences: of the pressure angle, rad, and of the smallest convex radius, m."""
+        """Sentences on exceeded limits of the pressure angle, rad, and of the smallest convex radius, m."""
         limits = {
             "pressure_angle": (pressure_angle, "rad", POSITIVE),
             "curvature_radius": (curvature_radius, "m", POSITIVE),
@@ -207,12 +207,12 @@ def surface_curvature(bend, roller_radius, side):
 
 
 def _roller_side_curvature(cam, angle, side):
-    """Curvature of the pitch curve toward the side of the cam, which the roller must fit into, 1/m."""
+    """Curvature of the pitch curve toward the cam, 1/m; the radius of the roller must be smaller."""
     return -SIDE_SIGNS[side] * curvature(cam, angle)
 
 
 def profile(cam, roller_radius, angle, side="disk"):
-    """Working curve of a cam; what ``cam.profile`` returns, where it is told."""
+    """Working curve of a cam, a `Profile`; ``cam.profile`` documents the parameters."""
     radius = checks.single_numbers(
         "cam profile", checks.choice("side", side, tuple(SIDE_SIGNS)), roller_radius=(roller_radius, "m", POSITIVE)
     )["roller_radius"]
@@ -226,7 +226,7 @@ def profile(cam, roller_radius, angle, side="disk"):
 
 
 def _curves(cam, radius, angle, side):
-    """Pitch curve, outward normal and working curve at crank angles."""
+    """Pitch curve, outward normal and working curve at crank angles, each (2, N)."""
     r, slope, _ = cam.radius(angle)
     x, y = ray_at(angle)
     length = np.hypot(r, slope)
@@ -247,7 +247,7 @@ def _angles(angle):
 
 
 def _undercut_problems(cam, radius, side):
-    """Why a roller cannot run on this side of the pitch curve, as sentences, with the crank angles."""
+    """Problems of a roller on this side of the pitch curve, as sentences with the crank angles."""
     least = lowest(lambda angle: cam.radius(angle)[0])
     if not least.value > 0:
         yield (
@@ -283,7 +283,7 @@ def _undercut_problems(cam, radius, side):
 
 
 def _nearest(centres, made):
-    """Least distance of a working curve from centres of what runs on it, m, and the crank angle of that point."""
+    """Smallest distance of the working curve from the path of a roller or cutter centre, a `Peak`, m."""
     from scipy.spatial import cKDTree
 
     distance, _ = cKDTree(centres.T).query(made.T)
@@ -292,7 +292,7 @@ def _nearest(centres, made):
 
 
 def _intervals(grid, marked):
-    """Crank angles between which samples around the turn are marked, in degrees, as texts."""
+    """Texts of the intervals of marked samples around the turn, in degrees."""
     if marked.all():
         return ["all over the turn"]
     order = np.roll(np.arange(grid.size), -int(np.argmin(marked)))
@@ -304,7 +304,7 @@ def _intervals(grid, marked):
 
 
 def base_radius(cam, pressure_angle):
-    """Smallest base circle of a cam of the same rise; what ``cam.base_radius`` returns, where it is told."""
+    """Radius of the smallest base circle, m; ``cam.base_radius`` documents it."""
     rule = {**POSITIVE, "high": np.pi / 2}
     largest = checks.single_numbers("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
 

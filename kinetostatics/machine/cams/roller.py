@@ -1,8 +1,7 @@
-"""What presses on a cam along a line: a roller, or the flat face of a follower, with its size and materials.
+"""Line contact with a cam by Hertz: a roller, or the flat face of a follower, with its size and materials.
 
-Two cylinders pressed together: line contact by Hertz (Johnson, *Contact Mechanics*, 1985, section 4.2).
-
-With 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, F the force, w the width, and 1/Re the sum of both curvatures
+For two cylinders under a force F over a width w (Johnson, *Contact Mechanics*, 1985, section 4.2), with
+1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/Re the sum of both curvatures,
 
     p0 = sqrt(F E* / (pi w Re)),   half width b = sqrt(4 F Re / (pi w E*))
 """
@@ -19,29 +18,26 @@ from ...numbers.lazy import cached_property
 
 
 def contact_modulus(one, other):
-    """E* of two materials together, Pa, from (Young's modulus, Poisson's ratio) of each."""
-    return 1.0 / (_compliance(*one) + _compliance(*other))
-
-
-def _compliance(young, ratio):
-    return (1.0 - ratio * ratio) / young
+    """Contact modulus E* of two materials, Pa, from (Young's modulus, Poisson's ratio) of each."""
+    (young, ratio), (other_young, other_ratio) = one, other
+    return 1.0 / ((1.0 - ratio * ratio) / young + (1.0 - other_ratio * other_ratio) / other_young)
 
 
 def pressure(force, width, modulus, radius):
-    """Largest pressure in the contact, Pa; NaN where the radius is negative, as no body has such a surface."""
+    """Largest Hertz pressure, Pa; NaN where the relative radius is negative."""
     return sqrt(abs(force) * modulus / (math.pi * width * radius))
 
 
 def half_width(force, width, modulus, radius):
-    """Half the width of the contact, m."""
+    """Half width of the contact, m."""
     return sqrt(4.0 * abs(force) * radius / (math.pi * width * modulus))
 
 
 def relative_radius(bend, roller_radius, side):
-    """Radius of the cylinder that presses a plane as a roller does its cam, m, from the pitch curve's curvature.
+    """Relative radius Re of a roller on its cam, m, from the curvature kappa of the pitch curve, 1/m.
 
-    The working curve is the pitch curve moved by the roller's radius R, so that Re = R (1 - kappa R) on a disk inside
-    it, side -1, and R (1 + kappa R) on a ring around it, side +1.
+    The working curve is offset from the pitch curve by the radius R of the roller, so Re = R (1 - kappa R) on a disk,
+    side -1, and R (1 + kappa R) on a ring, side +1.
     """
     return roller_radius * (1.0 + side * bend * roller_radius)
 
@@ -61,14 +57,14 @@ MAX_POISSONS_RATIO = 0.5
 
 
 class LineContact(NamedTuple):
-    """A line contact of a group: `body`, a `Roller` or `Face`, pressed by the force of that name."""
+    """A line contact of a group: `body`, a `Roller` or `Face`, under the force of that name."""
 
     body: Any
     force: str
 
 
 class PressedBody(checks.Checked):
-    """What both have in common: a width, and materials of their own and of the cam."""
+    """Base of `Roller` and `Face`: width of the contact, and materials of the body and the cam."""
 
     width: Any
     youngs_modulus: Any
@@ -76,8 +72,8 @@ class PressedBody(checks.Checked):
     cam_youngs_modulus: Any
     cam_poissons_ratio: Any
 
-    def _compressible(self):
-        """Say where a material would grow under pressure."""
+    def _poisson_problems(self):
+        """Problem of designs with a Poisson's ratio above 0.5: the volume would grow under pressure."""
         for name in ("poissons_ratio", "cam_poissons_ratio"):
             ratio = getattr(self, name)
             if (
@@ -89,35 +85,35 @@ class PressedBody(checks.Checked):
 
     @cached_property
     def modulus(self):
-        """E* of both materials together, Pa; what is not told of the cam is as of this."""
+        """Contact modulus E*, Pa; a missing constant of the cam is that of the body."""
         own = self.youngs_modulus, self.poissons_ratio
         of_cam = self.cam_youngs_modulus, self.cam_poissons_ratio
         return contact_modulus(own, [mine if other is None else other for mine, other in zip(own, of_cam, strict=True)])
 
     def pressure(self, force, radius):
-        """Largest Hertz pressure, Pa, under a force, N, from the radius of the relative curvature, m."""
+        """Largest Hertz pressure, Pa, from the force, N, and the relative radius, m."""
         return pressure(force, self.width, self.modulus, radius)
 
 
 @dataclass(frozen=True, eq=False)
 class Roller(PressedBody):
-    """Roller on a cam, of what its contact pressure takes: with it a cam has the output "contact_pressure".
+    """Size and materials of a roller on a cam; a cam with one has the output "contact_pressure".
 
     Parameters
     ----------
     radius, width : float or array
-        Of the roller, m; the width is that of the contact.
+        m; the width of the contact.
     youngs_modulus : float or array
         Pa.
     poissons_ratio : float or array
         At most 0.5.
     cam_youngs_modulus, cam_poissons_ratio : float or array, optional
-        Of the cam; as of the roller unless told.
+        Constants of the cam; by default those of the roller.
 
     Raises
     ------
     ParameterError
-        A value no machine can have. When a scene is solved: the roller undercuts the side of the cam that carries it.
+        A value is impossible. When a scene is solved: the roller undercuts the side of the cam that carries it.
 
     Examples
     --------
@@ -137,28 +133,28 @@ class Roller(PressedBody):
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("roller", PressedBody._compressible, radius=SIZE_RULE, width=SIZE_RULE, **MATERIAL_RULES)
+    RULES = checks.Rules("roller", PressedBody._poisson_problems, radius=SIZE_RULE, width=SIZE_RULE, **MATERIAL_RULES)
 
     def relative_radius(self, bend, side):
-        """Of both curvatures together, m, from that of the pitch curve; the cam is inside it (-1) or around it (+1)."""
+        """Relative radius, m, from the curvature of the pitch curve, 1/m; `side` as in the function of that name."""
         return relative_radius(bend, self.radius, side)
 
 
 @dataclass(frozen=True, eq=False)
 class Face(PressedBody):
-    """Flat face on a cam, of what its contact pressure takes; as `Roller`, without a radius.
+    """Width and materials of a flat face on a cam, as `Roller` without a radius.
 
     Parameters
     ----------
     width : float or array
-        Of the contact, m.
+        Width of the contact, m.
     youngs_modulus, poissons_ratio, cam_youngs_modulus, cam_poissons_ratio
         As for `Roller`.
 
     Raises
     ------
     ParameterError
-        A value no machine can have.
+        A value is impossible.
 
     Examples
     --------
@@ -174,4 +170,4 @@ class Face(PressedBody):
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("face", PressedBody._compressible, width=SIZE_RULE, **MATERIAL_RULES)
+    RULES = checks.Rules("face", PressedBody._poisson_problems, width=SIZE_RULE, **MATERIAL_RULES)

@@ -1,4 +1,4 @@
-"""A cam from a table: a spline through its points, or as near as their noise allows, and how far it can be trusted."""
+"""Cam from a table of angles and radii: an interpolating or smoothing spline, and the expected error of forces."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,29 +17,29 @@ from .cam import Cam
 class Sampled(Cam):
     """Cam from a table of angles and radii, by a periodic quintic spline.
 
-    The spline has four continuous derivatives, so accelerations and forces are smooth. It goes through every point, or,
-    where the noise of the radii is stated, is the smoothest (FITPACK's) that differs from them by that noise.
+    The spline has four continuous derivatives, so accelerations and forces are smooth. It passes through every point;
+    with a stated noise of the radii it is the smoothest spline (FITPACK's) that differs from them by that noise.
 
     Parameters
     ----------
     angle : array (N,)
-        Rad, rising, within one turn, end excluded; need not be evenly spaced.
+        rad, rising, within one turn, end excluded; spacing may vary.
     radius : array (N,)
         Radii of the pitch curve, m.
     noise : float, optional
-        Standard deviation of the radii, m: of a measurement, or of radii rounded to a step 0.29 of it.
+        Standard deviation of the radii, m; for radii rounded to a step, 0.29 of the step.
 
     Raises
     ------
     ParameterError
-        Fewer than 8 points, angles not rising or more than one turn, a radius not positive or not finite, noise that
-        the radii cannot have.
+        Fewer than 8 points, angles not rising or beyond one turn, a radius not positive or not finite, noise smaller
+        than any smooth curve through the radii allows.
 
     Warns
     -----
     UserWarning
-        The table is too coarse or too noisy: `force_error` is a hundredth or more. Or the noise stated is more than
-        three times what the radii show, or less than a third.
+        The table is too coarse or too noisy: `force_error` is 0.01 or more. Or the stated noise is more than three
+        times the scatter of the radii, or less than a third.
 
     Examples
     --------
@@ -83,7 +83,7 @@ class Sampled(Cam):
         Parameters
         ----------
         path : str or path
-            Its first lines may be comments that begin with ``#``.
+            Comments at the top of the file begin with ``#``.
         noise : float, optional
             As for the cam itself, m.
 
@@ -94,7 +94,7 @@ class Sampled(Cam):
         Raises
         ------
         CaseError
-            The file cannot be read, or makes no table.
+            The file cannot be read, or its rows make no table.
 
         Examples
         --------
@@ -118,12 +118,12 @@ class Sampled(Cam):
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m: its largest radius."""
+        """Length that defines the pitch curve, its largest radius, m."""
         return (self.samples.max(),)
 
     @property
     def smallest_radius(self):
-        """Smallest distance of the roller centre from O in the table, m."""
+        """Smallest radius in the table, m."""
         return self.samples.min()
 
     @cached_property
@@ -143,7 +143,7 @@ class Sampled(Cam):
 
     @property
     def noise(self):
-        """Standard deviation of the radii about a smooth curve, m; of radii rounded to a step, 0.29 of it."""
+        """Standard deviation of the radii about a smooth curve, m; for radii rounded to a step, 0.29 of the step."""
         return self._table.noise
 
     @property
@@ -155,9 +155,8 @@ class Sampled(Cam):
     def force_error(self):
         """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
 
-        The error of the acceleration of the roller centre, relative to its largest value over the turn at even speed,
-        is that of inertia forces. Springs or counterweights that balance them leave a fraction, but the error whole:
-        the figure is for a machine in which they leave a seventh, and on the safe side for others.
+        It is the error of the acceleration of the roller centre over its largest value at constant speed, times seven:
+        springs or counterweights balance inertia forces, but not their error, and leave a seventh of them.
         """
         r, slope, second = (spline(self.angle) for spline in self._table.splines[:3])
         largest = np.max(np.hypot(second - r, 2 * slope)) - self.second_derivative_error

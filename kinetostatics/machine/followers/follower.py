@@ -1,47 +1,29 @@
-"""What all followers of a cam on the crank have in common: the cam itself, the force of contact and its pressure.
+"""Followers of a cam on the crank: the law of their motion, the contact with the cam, and the cam itself.
 
-What a cam on the crank tells its follower: the coordinate of the follower as function of the crank angle.
-
-What followers on a straight guide have in common, whatever face they show to a cam that turns with the crank.
-
-Their coordinate s(phi) along the guide is a law, so motion is exact, and of what acts along the guide, F, the crank
-feels the moment -F s', whatever the cam looks like.
-
-The cam of a follower, in the axes of the crank: the path of the roller centre, or of the contact, on the disk.
-
-A follower knows where its roller centre P(phi) is at each crank angle; on the cam that is P exp(-i phi). In polar form,
-r over the polar angle, it is a cam like all others, with working curve, curvature, cutter path, drawing and files: the
-crank angle that belongs to a polar angle is found by Newton's iteration.
+The coordinate of a follower is a law of the crank angle phi, so its motion is exact. The cam follows from it: with the
+roller centre or contact P(phi), as a complex number, its curve in the axes of the crank is P exp(-i phi). In polar form
+it is a cam as all others, with working curve, curvature, cutter path and files; Newton's iteration gives the crank
+angle of a polar angle.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.lazy import cached_property
-from ...numbers.planar import (
-    curvature,
-    dot,
-    left,
-    number_or_zero,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import curvature, left, scale_vector, subtract_vectors
 from ..cams.cam import Cam
 from ..cams.roller import LineContact
 from ..crank import ray as ray_at
-from ..group import FRAME, Group, Output, Point, Resolved
-from ..guide import Guide, guide_outputs, slider_motion
+from ..group import Group, Output
 from ..laws.law import TURN, breakpoints_of, law_problem
-from ..links import CamDriven, Joint, Link, LinkMotion, Slide, Sliding, Wrench
+from ..links import CamDriven
 
 GRID = np.linspace(0.0, TURN, 2049)
-"""Crank angles from which the iteration starts, rad."""
+"""Crank angles at which Newton's iteration starts, rad."""
 NEWTON_STEPS = 8
 OUTLINE_POINTS = 181
 """Points of a drawn curve."""
@@ -59,7 +41,7 @@ class DiskCam(Cam):
     TABULATED = True
 
     def curve(self, phi):
-        """Roller centre on the cam at crank angles, and two derivatives by it, complex, m."""
+        """Roller centre on the cam at crank angles, and its first two derivatives, complex, m."""
         phi = np.asarray(checks.to_plain_named("cam", "crank angle", phi, "rad"), dtype=float)
         place, first, second = self.follower.pitch(self.follower.cam.law(phi))
         back = np.exp(-1j * phi)
@@ -113,12 +95,12 @@ class DiskCam(Cam):
 
     @property
     def force_error(self):
-        """As of the law, where that is a table."""
+        """`force_error` of the law, if that is a table."""
         return getattr(self.follower.cam.law, "force_error", None)
 
     @property
     def lengths(self):
-        """What the pitch curve is made of, m."""
+        """Largest distance of the pitch curve from O, m."""
         return (float(np.max(np.abs(self.curve(GRID)[0]))),)
 
     @cached_property
@@ -129,7 +111,7 @@ class DiskCam(Cam):
 
 @dataclass(frozen=True, eq=False)
 class FollowerLaw:
-    """The law of a follower, as engines ask cams: ``polar(angle, ray)`` gives its coordinate and two derivatives."""
+    """Law of a follower as a curve of `cam`: ``polar(angle, ray)`` gives its coordinate and two derivatives."""
 
     law: Any
 
@@ -141,12 +123,12 @@ class FollowerLaw:
 
     @cached_property
     def knots(self):
-        """Where the law bends or jumps, each a `Knot`."""
+        """Where the law bends or jumps, each a `Breakpoint`."""
         return breakpoints_of(self.law)
 
     @property
     def lengths(self):
-        """Farthest from 0 that the follower gets, of some places on the turn."""
+        """Largest coordinate on a grid over the turn."""
         return (float(np.max(np.abs(self.law(np.linspace(0.0, 2 * np.pi, 24))[0]))),)
 
     def polar(self, angle, ray):
@@ -155,17 +137,17 @@ class FollowerLaw:
         return tuple(np.broadcast_to(np.asarray(part, dtype=float), shape) for part in self.law(angle)[:3])
 
     def radius(self, phi):
-        """The same at crank angles, rad."""
+        """Coordinate and two derivatives at crank angles, rad."""
         return self.polar(phi, ray_at(np.asarray(phi, dtype=float)))
 
 
 class LawRule:
-    """Rule of the field that holds it: a law of the whole turn, or what was made of one."""
+    """Rule of the field `cam`: a law of the whole turn, kept as a `FollowerLaw`."""
 
     def quick(self, value):
         return value if type(value) is FollowerLaw else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if type(value) is FollowerLaw:
             return value, None
         problem = law_problem(value)
@@ -176,12 +158,11 @@ RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_emp
 
 
 class Follower(checks.Checked, Group):
-    """Follower of one link, `moved`, by a law of the crank angle; `pressed` is what touches the cam, or None."""
+    """Follower of one link, `moved`, by a law of the crank angle; `pressed` is its `Roller` or `Face`, or None."""
 
     cam: Any
     pin: str
     label: str
-    moved: Any
     pressed: Any
 
     @property
@@ -190,7 +171,7 @@ class Follower(checks.Checked, Group):
 
     @property
     def disk(self):
-        """The cam itself, in its own axes: those of +x and +y at crank angle 0; for workshop and figures."""
+        """Cam in its own axes, +x and +y at crank angle 0; for workshop and figures."""
         return DiskCam(self)
 
     @property
@@ -198,30 +179,27 @@ class Follower(checks.Checked, Group):
         return {"crank": self.disk.outline}
 
     @property
-    def led(self):
-        return (CamDriven(self.moved, self.pin, "crank", "contact_force" + self.label),)
-
-    @property
     def knots(self):
         return self.cam.knots
 
     @property
-    def contact_force(self):
-        """Output by name that all of them have."""
-        text = f"cam on {self.moved} along the common normal, positive outward"
-        return {"contact_force" + self.label: Output("N", False, text)}
+    def moved(self):
+        """Name of the link that the cam moves."""
+        return self._key
 
-    @property
-    def contacts(self):
-        label = self.label
-        return (
-            {}
-            if self.pressed is None
-            else {f"contact_pressure{label}": LineContact(self.pressed, f"contact_force{label}")}
-        )
+    def with_cam(self, declaration):
+        """A declaration with the contact on the cam."""
+        (link,) = self.LINKS
+        pressure = {} if self.pressed is None else {"contact_pressure": LineContact(self.pressed, "contact_force")}
+        return declaration._replace(led=(CamDriven(link, self.pin, "crank", "contact_force"),), contacts=pressure)
+
+    @cached_property
+    def outputs(self):
+        text = f"cam on {self.moved} along the common normal, positive outward"
+        return {self.called("contact_force"): Output("N", False, text), **super().outputs}
 
     def relative_radius(self, name, placement, side):
-        """Of a roller: its cam is inside the pitch curve where it presses outward, else around it."""
+        """Radius of relative curvature of a roller: the cam is inside the pitch curve if it presses outward."""
         return self.pressed.relative_radius(path_curvature(placement.joints[self.pin]), -side)
 
 
@@ -233,103 +211,3 @@ def path_curvature(joint):
     place, first, second = joint
     along = subtract_vectors(first, left(place))
     return -curvature(along, subtract_vectors(subtract_vectors(second, scale_vector(2.0, left(first))), place))
-
-
-GUIDED_RULES = {
-    **RULES,
-    "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
-    "follower": checks.InstanceOf(Link, "a Link"),
-}
-
-
-class FollowerForces(NamedTuple):
-    """`contact`: cam on follower, outward positive; `guide_*`: ground on follower; `on_follower`: of the crank."""
-
-    contact: Any
-    guide_force: Any
-    guide_moment: Any
-    on_follower: Wrench
-
-
-@dataclass(frozen=True, eq=False)
-class GuidedFollower(Follower):
-    """Follower on a guide, moved by a cam on the crank; its kinds give ``forces(travel, guide, load, push)``."""
-
-    cam: Any
-    guide: Guide = Guide()
-    follower: Link = Link()
-    pin: str = "R"
-    label: str = ""
-
-    LAW = ("s", "m")
-    PATHS: ClassVar = {"guide": ""}
-    forces: ClassVar[Any]
-
-    @property
-    def links(self):
-        return {self.moved: self.follower}
-
-    @property
-    def references(self):
-        return {self.moved: self.pin}
-
-    @property
-    def lengths(self):
-        return (*getattr(self.cam, "lengths", ()), self.guide.guide_offset, *self.follower.centre)
-
-    @property
-    def moved(self):
-        """Name of the link that the cam moves."""
-        return "follower" + self.label
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self.moved)}
-
-    @property
-    def guides(self):
-        return {self.moved: self.guide}
-
-    @property
-    def outputs(self):
-        return {**self.contact_force, **guide_outputs(self.moved, self.pin, self.label)}
-
-    @property
-    def pairs(self):
-        label = self.label
-        sliding = Sliding(self.moved, self.pin, FRAME, "guide_force" + label, "guide_moment" + label)
-        return {"guide" + label: sliding}
-
-    def sliding(self, name, placement):
-        return Slide(self.guide.line.direction, placement.travels[self.moved].first)
-
-    def place(self, placement):
-        travel, line = Joint(*self.cam.polar(placement.angle, placement.ray)), self.guide.line
-        self._set(placement, slider_motion(None, (travel.position, number_or_zero(line.offset)), travel, line), travel)
-
-    def follow(self, placement, joints):
-        """Place the follower at its pin found in another way."""
-        pin, direction = joints[self.pin], self.guide.direction
-        travel = Joint(*(dot(direction, vector_or_zero(part)) for part in pin))
-        self._set(placement, LinkMotion(pin, direction, None, None), travel)
-
-    def _set(self, placement, follower, travel):
-        placement.joints[self.pin] = follower.joint
-        placement.links[self.moved] = follower
-        placement.travels[self.moved] = travel
-
-    def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m."""
-        return placement.travels[self.moved].position - free_position
-
-    def resolve(self, placement, loads, along) -> Resolved:
-        guide, label = self.guide.line, self.label
-        travel, load = placement.travels[self.moved], loads[self.moved]
-        found = type(self).forces(travel, guide, load, along.get(self.moved))
-        scalars = {
-            "contact_force" + label: found.contact,
-            "guide_force" + label: found.guide_force,
-            "guide_moment" + label: found.guide_moment,
-        }
-        on_follower = rotate((0.0, found.guide_force), guide.direction)
-        return Resolved({"guide" + label: on_follower}, scalars, {"crank": found.on_follower})

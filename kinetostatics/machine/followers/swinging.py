@@ -29,7 +29,7 @@ from ...numbers.planar import (
     subtract_vectors,
 )
 from ..cams.roller import Roller
-from ..group import FRAME, Bar, Output, Point, Resolved
+from ..group import FRAME, Bar, Declaration, Output, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
 from . import follower
 
@@ -38,11 +38,11 @@ TERMS = {
     "inward": ("n", "unit vector from the pivot to O"),
     "reach": ("h", "from the pivot to the roller centre"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SwingingMotion(NamedTuple):
-    """A placed follower; `across`: the way of the roller centre along the cam, turned outward; `lever`: Q x p."""
+    """Motion of a follower; `across`: rate of the roller centre along the cam, turned outward; `lever`: Q x p."""
 
     arm: LinkMotion
     roller: Joint
@@ -81,7 +81,7 @@ def _met(arm, roller, lever):
 
 
 def resolve(motion, arm_length, load):
-    """Forces on the arm (kernel); `load` is all that acts on it but they, a wrench about the pivot."""
+    """Forces on the arm (kernel); `load` is the wrench of all others about the pivot."""
     couple = number_or_zero(load.moment)
     force = couple / (arm_length * motion.lever)
     pressed = scale_vector(force, motion.across)
@@ -100,8 +100,7 @@ class SwingingFollower(follower.Follower):
     ----------
     cam : Law
         Angle at the pivot from the direction to O to the roller centre, rad, between 0 and pi, by the crank angle from
-        +x: one of `laws`, with rad for m, or a function that gives position and three derivatives. What the cam looks
-        like follows: `disk`.
+        +x: one of `laws`, with rad for m, or a function that gives position and three derivatives. `disk` is the cam.
     arm_length : float or array
         From pivot to roller centre, m.
     pivot : (x, y)
@@ -114,7 +113,7 @@ class SwingingFollower(follower.Follower):
     pin, pivot_name : str
         Names of the roller centre and of the pivot.
     label : str
-        Put behind the names of link and forces of a second swinging follower in one mechanism.
+        Appended to the names of link and forces of a second swinging follower in one mechanism.
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
@@ -153,11 +152,12 @@ class SwingingFollower(follower.Follower):
     roller: Roller | None = None
 
     def _pivot_apart(self):
-        """Say where the pivot is at O."""
+        """Yield the problem of a pivot at O."""
         x, y = self.pivot
         if checks.has_known_values(x * x + y * y) and np.any(at := np.hypot(x, y) == 0.0):
             yield checks.Problem("the follower's pivot must not be at O", at)
 
+    LINKS: ClassVar = {"arm": "pivot_name"}
     TRUSTED = True
     LAW = ("beta", "rad")
     PATHS: ClassVar = {"pivot": "follower_pivot"}
@@ -174,47 +174,22 @@ class SwingingFollower(follower.Follower):
     )
 
     @property
-    def links(self):
-        return {self.moved: self.arm}
-
-    @property
-    def references(self):
-        return {self.moved: self.pivot_name}
-
-    @property
-    def bars(self):
-        return (Bar(self.pivot_name, self.pin, self.moved, self.arm_length),)
-
-    @property
-    def lengths(self):
-        return (self.arm_length, *self.pivot, *self.arm.centre)
-
-    @property
-    def moved(self):
-        """Name of the link that the cam moves."""
-        return "arm" + self.label
+    def declaration(self):
+        text = "of the contact force from the way of the roller centre, without sign"
+        return self.with_cam(
+            Declaration(
+                joints={self.pin: Point("arm", self.arm_length), self.pivot_name: Point(FRAME, *self.pivot)},
+                bars=(Bar(self.pivot_name, self.pin, "arm", self.arm_length),),
+                pairs=(Turning("arm", self.pivot_name),),
+                motions={"pressure_angle": Output("rad", False, text)},
+                lengths=(self.arm_length, *self.pivot),
+            )
+        )
 
     @property
     def pressed(self):
-        """What the cam presses on: its `Roller`, or None."""
+        """Body that the cam presses on: its `Roller`, or None."""
         return self.roller
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self.moved, self.arm_length), self.pivot_name: Point(FRAME, *self.pivot)}
-
-    @property
-    def outputs(self):
-        return {**self.contact_force, self.pivot_name: Output("N", True, f"ground on {self.moved}")}
-
-    @property
-    def motions(self):
-        text = "of the contact force from the way of the roller centre, without sign"
-        return {"pressure_angle" + self.label: Output("rad", False, text)}
-
-    @property
-    def pairs(self):
-        return {self.pivot_name: Turning(self.moved, self.pivot_name)}
 
     @property
     def rollers(self):
@@ -226,29 +201,26 @@ class SwingingFollower(follower.Follower):
         return tuple(x + 1j * y for x, y in placed)
 
     def motion(self, name, placement):
-        found = placement.details[self.moved]
+        found = self.placed(placement)
         sine = dot(found.arm.direction, found.across)
         return atan(abs(sine / found.lever))
 
     def place(self, placement):
         swing = self.cam.polar(placement.angle, placement.ray)
-        self._set(placement, place(swing, self.pivot, self.arm_length, self.assembly))
+        self._enter(placement, place(swing, self.pivot, self.arm_length, self.assembly))
 
     def follow(self, placement, joints):
-        """Place the arm at its roller centre found in another way."""
+        """Place the arm at its known roller centre."""
         roller = joints[self.pin]
         arm = link_between(Joint(self.pivot, None, None), roller, self.arm_length)
-        self._set(placement, _met(arm, roller, cross(self.pivot, arm.direction)))
+        self._enter(placement, _met(arm, roller, cross(self.pivot, arm.direction)))
 
-    def _set(self, placement, motion):
-        placement.joints[self.pin] = motion.roller
-        placement.joints[self.pivot_name] = motion.arm.joint
-        placement.links[self.moved] = motion.arm
-        placement.details[self.moved] = motion
+    def _enter(self, placement, motion):
+        self.enter(placement, motion, {self.pin: motion.roller, self.pivot_name: motion.arm.joint}, {"arm": motion.arm})
 
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the arm is on the other side of the line of centres."""
-        found = placement.details[self.moved]
+        found = self.placed(placement)
         return self.assembly * found.lever * abs(found.lever) / dot(found.across, found.across)
 
     def requirement(self, placement):
@@ -258,7 +230,5 @@ class SwingingFollower(follower.Follower):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(placement.details[self.moved], self.arm_length, loads[self.moved])
-        return Resolved(
-            {self.pivot_name: found.pivot}, {"contact_force" + self.label: found.contact}, {"crank": found.on_arm}
-        )
+        found = resolve(self.placed(placement), self.arm_length, *self.of_links(loads))
+        return self.resolved((found.pivot,), (found.contact,), {"crank": found.on_arm})

@@ -1,39 +1,112 @@
-"""Roller follower on a cam that turns with the crank: a slider on a guide, its roller pressed outward by the cam.
+"""Roller and flat followers on a straight guide, moved by a cam that turns with the crank.
 
-In the axes of the guide the roller centre is P = (s, e), with s(phi) by a law and e the offset of the guide from O.
-Seen from the cam it moves by (s' + e, -s) with the crank angle, along the pitch curve; the cam pushes across that,
+In the axes of the guide the pin is P = (s, e), with s(phi) by a law and e the offset of the guide from O. Of the force
+along the guide, F, the crank feels the moment -F s', whatever the cam looks like.
+
+A roller centre moves by (s' + e, -s) along the pitch curve, seen from the cam, which pushes across that:
 
     (s, s' + e) / sqrt(s^2 + (s' + e)^2)
 
-so it leans from the guide by the pressure angle, tan = (s' + e) / s (Norton, *Cam Design and Manufacturing Handbook*,
-2009, chapter 7). The balance along the guide gives the contact force; of what acts along the guide, F, the crank feels
-the moment -F s', whatever the cam looks like.
-
-Flat follower on a cam that turns with the crank: a slider whose face stands across its guide.
-
-In the axes of the guide, from O, the face is at s(phi) by a law, and touches the cam where that moves along the face
-alone: at -s' across the guide, to the left, so that cam force and guide are always parallel. The surface has the radius
-of curvature s + s'', which must stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+so the contact force leans from the guide by the pressure angle, tan = (s' + e) / s. A flat face touches the cam at -s'
+across the guide, to the left, with a force along the guide; the cam has the radius of curvature s + s'', which must
+stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
-from ...numbers.planar import minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
+from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, Roller
-from ..group import Output
-from ..links import Wrench
-from .follower import GUIDED_RULES, FollowerForces, GuidedFollower
+from ..group import FRAME, Declaration, Output, Point, Resolved
+from ..guide import Guide, slider_motion
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
+from .follower import RULES, Follower
 
 TERMS = {
     "pushed": ("N", "force of the cam along the guide"),
     "lean": ("tau", "tangent of the pressure angle"),
+    "lever": ("b", "from the pin to the contact, to the right"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
+
+
+GUIDED_RULES = {
+    **RULES,
+    "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
+    "follower": checks.InstanceOf(Link, "a Link"),
+}
+
+
+class FollowerForces(NamedTuple):
+    """`contact`: cam on follower, outward positive; `guide_*`: ground on follower; `on_follower`: of the crank."""
+
+    contact: Any
+    guide_force: Any
+    guide_moment: Any
+    on_follower: Wrench
+
+
+@dataclass(frozen=True, eq=False)
+class GuidedFollower(Follower):
+    """Follower on a guide, moved by a cam on the crank; its kinds give ``forces(travel, guide, load, push)``."""
+
+    cam: Any
+    guide: Guide = Guide()
+    follower: Link = Link()
+    pin: str = "R"
+    label: str = ""
+
+    LINKS: ClassVar = {"follower": "pin"}
+    LAW = ("s", "m")
+    MOTIONS: ClassVar[dict[str, Output]]
+    PATHS: ClassVar = {"guide": ""}
+    forces: ClassVar[Any]
+
+    @property
+    def declaration(self):
+        return self.with_cam(
+            Declaration(
+                joints={self.pin: Point("follower")},
+                guides={"follower": self.guide},
+                pairs=(Sliding("follower", self.pin, FRAME, "guide_force", "guide_moment"),),
+                motions=self.MOTIONS,
+                lengths=(*getattr(self.cam, "lengths", ()), self.guide.guide_offset),
+            )
+        )
+
+    def sliding(self, name, placement):
+        return Slide(self.guide.line.direction, placement.travels[self.moved].first)
+
+    def place(self, placement):
+        travel, line = Joint(*self.cam.polar(placement.angle, placement.ray)), self.guide.line
+        self._enter(
+            placement, slider_motion(None, (travel.position, number_or_zero(line.offset)), travel, line), travel
+        )
+
+    def follow(self, placement, joints):
+        """Place the follower at its known pin."""
+        pin, direction = joints[self.pin], self.guide.direction
+        travel = Joint(*(dot(direction, vector_or_zero(part)) for part in pin))
+        self._enter(placement, LinkMotion(pin, direction, None, None), travel)
+
+    def _enter(self, placement, follower, travel):
+        self.enter(placement, travel, {self.pin: follower.joint}, {"follower": follower}, {"follower": travel})
+
+    def elongation(self, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m."""
+        return placement.travels[self.moved].position - free_position
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        guide, (load,), (push,) = self.guide.line, self.of_links(loads), self.of_links(along)
+        found = type(self).forces(placement.travels[self.moved], guide, load, push)
+        on_follower = rotate((0.0, found.guide_force), guide.direction)
+        scalars = found.contact, found.guide_force, found.guide_moment
+        return self.resolved((on_follower,), scalars, {"crank": found.on_follower})
 
 
 def roller_forces(travel, guide, load, push):
@@ -60,7 +133,7 @@ class RollerFollower(GuidedFollower):
     ----------
     cam : Law
         Coordinate of the roller centre along the guide, m, from the foot of O, by the crank angle from +x: one of
-        `laws`, or a function that gives position and three derivatives. What the cam looks like follows: `disk`.
+        `laws`, or a function that gives position and three derivatives. `disk` is the cam that follows.
     guide : Guide
         From O outward; its offset is that of the roller centre.
     follower : Link
@@ -68,7 +141,7 @@ class RollerFollower(GuidedFollower):
     pin : str
         Name of the roller centre.
     label : str
-        Put behind the names of link and forces of a second roller follower in one mechanism.
+        Appended to the names of link and forces of a second roller follower in one mechanism.
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
@@ -104,7 +177,13 @@ class RollerFollower(GuidedFollower):
     RULES = checks.Rules(
         "roller follower", **GUIDED_RULES, roller=checks.Optional(checks.InstanceOf(Roller, "a Roller"))
     )
-    forces = staticmethod(forces)
+    MOTIONS: ClassVar = {
+        "pressure_angle": Output(
+            "rad", False, "of the contact force from the guide, positive with growing crank angle"
+        ),
+        "cam_radius": Output("m", False, "of the pitch curve, from O to the roller centre"),
+    }
+    forces = staticmethod(roller_forces)
 
     @property
     def rollers(self):
@@ -112,19 +191,11 @@ class RollerFollower(GuidedFollower):
 
     @property
     def pressed(self):
-        """What the cam presses on: its `Roller`, or None."""
+        """Body that the cam presses on: its `Roller`, or None."""
         return self.roller
 
-    @property
-    def motions(self):
-        text = "of the contact force from the guide, positive with growing crank angle"
-        return {
-            "pressure_angle" + self.label: Output("rad", False, text),
-            "cam_radius" + self.label: Output("m", False, "of the pitch curve, from O to the roller centre"),
-        }
-
     def motion(self, name, placement):
-        if name == "cam_radius" + self.label:
+        if name == self.called("cam_radius"):
             position, offset = placement.travels[self.moved].position, number_or_zero(self.guide.line.offset)
             return sqrt(position * position + offset * offset)
         reach, climb = self._across(placement)
@@ -136,7 +207,7 @@ class RollerFollower(GuidedFollower):
         return along * (law.position + 1j * self.guide.guide_offset), along * law.velocity, along * law.acceleration
 
     def _across(self, placement):
-        """Across the pitch curve, along the guide and to its left, not of length 1."""
+        """Normal of the pitch curve, along the guide and to its left, not of length 1."""
         travel = placement.travels[self.moved]
         return travel.position, plus(self.guide.line.offset, travel.first)
 
@@ -148,13 +219,6 @@ class RollerFollower(GuidedFollower):
     def requirement(self, placement):
         lowest = np.min(placement.travels[self.moved].position)
         return f"the roller centre must stay ahead of O along its guide, but its coordinate falls to {lowest:.6g} m"
-
-
-TERMS = {
-    "pushed": ("N", "force of the cam along the guide"),
-    "lever": ("b", "from the pin to the contact, to the right"),
-}
-"""What hand calculations call lines of the kernels, and what they are."""
 
 
 def flat_forces(travel, guide, load, push):
@@ -181,7 +245,7 @@ class FlatFollower(GuidedFollower):
     ----------
     cam : Law
         Distance of the face from O along the guide, m, by the crank angle from +x: one of `laws`, or a function that
-        gives position and three derivatives. What the cam looks like follows: `disk`.
+        gives position and three derivatives. `disk` is the cam that follows.
     guide : Guide
         From O outward; its offset, that of the pin, has to do with the moment on the guide alone.
     follower : Link
@@ -189,7 +253,7 @@ class FlatFollower(GuidedFollower):
     pin : str
         Name of the point of the face on the guide.
     label : str
-        Put behind the names of link and forces of a second follower in one mechanism.
+        Appended to the names of link and forces of a second follower in one mechanism.
     face : Face, optional
         Width and material of the face, for its contact pressure.
 
@@ -221,32 +285,29 @@ class FlatFollower(GuidedFollower):
 
     TRUSTED = True
     RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.InstanceOf(Face, "a Face")))
-    forces = staticmethod(forces)
+    MOTIONS: ClassVar = {
+        "contact_place": Output("m", False, "of the contact, from O along the guide's left normal"),
+        "curvature_radius": Output("m", False, "of the cam at the contact, positive where convex"),
+    }
+    forces = staticmethod(flat_forces)
 
     @property
     def pressed(self):
-        """What the cam presses on: its `Face`, or None."""
+        """Body that the cam presses on: its `Face`, or None."""
         return self.face
 
-    @property
-    def led(self):
-        return tuple(led._replace(flat=True) for led in super().led)
+    def with_cam(self, declaration):
+        whole = super().with_cam(declaration)
+        return whole._replace(led=tuple(led._replace(flat=True) for led in whole.led))
 
     def relative_radius(self, name, placement, side):
-        """That of the cam; NaN where nothing touches."""
+        """Radius of curvature of the cam; NaN without contact."""
         travel = placement.travels[self.moved]
         return (travel.position + travel.second) * clamped_sqrt(side, 1.0)
 
-    @property
-    def motions(self):
-        return {
-            "contact_place" + self.label: Output("m", False, "of the contact, from O along the guide's left normal"),
-            "curvature_radius" + self.label: Output("m", False, "of the cam at the contact, positive where convex"),
-        }
-
     def motion(self, name, placement):
         travel = placement.travels[self.moved]
-        return -travel.first if name == "contact_place" + self.label else travel.position + travel.second
+        return -travel.first if name == self.called("contact_place") else travel.position + travel.second
 
     def pitch(self, law):
         """Contact and two derivatives at the crank angles of a law's values, complex."""

@@ -1,4 +1,4 @@
-"""Change points: where all links of a linkage lie in one line, found when it is made, and passed as inertia carries it.
+"""Change points, where all links of a linkage lie in one line: their kinds, and kernels that are smooth through them.
 
 Crank a, coupler b, rocker h and ground d of a four-bar; psi, the crank angle from the direction O -> O2, is never
 reduced to one turn. With A -> O2 of length e, four times the area of the triangle A B O2 is the root of
@@ -17,10 +17,6 @@ All vectors are taken in the frame that turns half as fast as the crank, in whic
 A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
 |d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
 normal of that frame.
-
-Groups on branches that pass their change points: kernels in half angles, smooth through those points.
-
-Which change points there are, and the notation, is told in `change_points`.
 """
 
 import math
@@ -32,7 +28,6 @@ import numpy as np
 from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, compensated_sum, cos, guarded_divisor, offset_from_zero, sin, sqrt
-from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import (
     add_vectors,
     cross,
@@ -53,11 +48,11 @@ FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "paralle
 BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
 OPPOSITE = "opposite"
-"""Slotted lever like one of the kind "near", mirrored."""
+"""Mirror image of a slotted lever of the kind "near"."""
 TWO_TURN_KINDS = (FAR, NEAR, MEETING, OPPOSITE)
-"""Kinds of which a branch closes after two turns."""
+"""Kinds whose branch closes after two turns."""
 MAX_ULPS = 8
-"""Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
+"""Largest difference of lengths that count as equal, in units of the last place of the longest length."""
 FOUR_BAR_KINDS = {
     "": "none",
     FAR: "a + d = b + h",
@@ -67,17 +62,17 @@ FOUR_BAR_KINDS = {
     KITE: "a = b and d = h",
     RHOMBUS: "a = b = h = d",
 }
-"""Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
+"""Kinds of four-bars in messages: crank a, coupler b, rocker h, ground d."""
 SLIDER_KINDS = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
 """Kinds of slider groups: crank a, coupler l, offset e of the guide."""
 LEVER_KINDS = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
 """Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
 QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
-"""Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
+"""Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
 
 
 def rocker_passage(group, throws):
-    """How a rocker group on a pin of a crank passes its change points: its kind, and where O2 stands; "" without any.
+    """Passage of a rocker group on a pin of a crank: kind of its change points and quadrant of O2; "" without any.
 
     Raises
     ------
@@ -97,7 +92,7 @@ def rocker_passage(group, throws):
 
 
 def slider_passage(group, throws):
-    """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    """Passage of a slider group on a crank, as `rocker_passage` gives it."""
     x, y = group.guide.direction
     a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
     unit = _unit(a, b, abs(e))
@@ -107,7 +102,7 @@ def slider_passage(group, throws):
 
 
 def lever_passage(group, throws):
-    """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    """Passage of a lever group on a crank, as `rocker_passage` gives it."""
     a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
     d = np.sqrt(x * x + y * y)
     unit = _unit(a, abs(o), d)
@@ -118,7 +113,7 @@ def lever_passage(group, throws):
 
 
 def _known(owner, group, throws, start, *lengths):
-    """Distance of the pin from O, a direction as the pin sees it at crank angle 0, and lengths, all beyond double."""
+    """Radius of the pin, a direction from the pin's at crank angle 0, and lengths, in extended precision."""
     problem, throw = None, throws.get(group.on)
     if throw is None:
         where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
@@ -144,7 +139,7 @@ def _facing(x, y):
 
 
 def _joined(owner, kind, called, facing):
-    """Kind and facing in one text, where all designs have the same."""
+    """Kind and quadrant in one text, if all designs have the same."""
     problems = [_several(kind, "change points", called)]
     if kind.flat[0]:
         problems.append(_several(facing, "directions", QUADRANTS))
@@ -153,20 +148,20 @@ def _joined(owner, kind, called, facing):
 
 
 def _several(found, what, called):
-    """What is wrong with designs that are not of one kind, or None."""
+    """Problem of designs that are of several kinds, or None."""
     kinds, counts = np.unique(found, return_counts=True)
     if kinds.size == 1:
         return None
     texts = "; ".join(called[kind] for kind in kinds.tolist())
     return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {MAX_ULPS} ulp "
-        "of the longest length); make a batch of each",
+        f"designs that pass change points must be of one kind, but these have {what} {texts} "
+        f"(equal within {MAX_ULPS} ulp of the longest length); make a batch of each",
         found != kinds[counts.argmax()],
     )
 
 
 def kink_sentence(group, throws):
-    """What a chosen side makes of the motion at change points, in words; "" where there are none."""
+    """Sentence on kinks or jumps of the motion at change points that a chosen side does not pass; "" without any."""
     if type(group.assembly) is not int or group.on not in throws:
         return ""
     try:
@@ -191,18 +186,13 @@ def _first(throw, start):
 
 
 def parse_passage(passage):
-    """Kind, and where the direction from which the crank angle is halved points."""
+    """Kind, and quadrant of the direction from which the crank angle is halved."""
     kind, facing = passage.split()
     return kind, int(facing)
 
 
-def turns_of_branch(passage):
-    """Turns after which a branch closes."""
-    return 2 if passage and parse_passage(passage)[0] in TWO_TURN_KINDS else 1
-
-
 def crank_angles(group, throws, start):
-    """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
+    """Crank angles in [0, 2 pi) of the change points that a group passes, rad; `start` is its direction of psi = 0."""
     if not group.passage:
         return ()
     throw = throws[group.on]
@@ -211,58 +201,13 @@ def crank_angles(group, throws, start):
     kind, first = parse_passage(group.passage)[0], _first(throw, start)
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
     turn = 2 * math.pi
-    return tuple(
-        sorted((first + angle) % turn % turn for angle in at)
-    )  # what lies just below 0 is rounded up to a turn
-
-
-class Passer:
-    """What groups that may pass change points have in common.
-
-    They give ``found_on(throws)``, how they pass them as `passage` tells, and ``start``, the direction from which their
-    crank angle is halved.
-    """
-
-    assembly: Any
-    passage: Any
-    on: str
-    is_close: bool
-    through: bool
-    found_on: Any
-    start: Any
-
-    @property
-    def side(self):
-        """+1 or -1: its side where no change point is passed."""
-        return SIDES.get(self.assembly, self.assembly)
-
-    def on_crank(self, throws):
-        passage = self.found_on(throws) if self.through else ""
-        throw = throws.get(self.on)
-        is_close = not passage and throw is not None and self.comes_close(throw)
-        if passage == self.passage and is_close is self.is_close:
-            return self
-        return replace_unchecked(self, passage=passage, is_close=is_close)
-
-    def comes_close(self, throw):
-        """Whether it only just clears a limit position, where other formulas save digits."""
-        return False
-
-    def kink(self, throws):
-        return kink_sentence(self, throws)
-
-    @property
-    def turns(self):
-        return turns_of_branch(self.passage)
-
-    def change_points(self, throws):
-        return crank_angles(self, throws, self.start)
+    return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn
 
 
 MIN_ROOT = 2.0**-27
-"""Root of a margin that is not divided by less."""
+"""Least root of a margin by which rates are divided."""
 MIN_DISTANCE = 2.0**-984
-"""Distance that makes the smallest number there is of a zero, and changes no other."""
+"""Distance from a change point in place of 0; it changes no other distance."""
 TERMS = {
     "cosine": ("c", "cosine of half the crank angle from the line to the pivot, or of a quarter"),
     "sine": ("s", "sine of that"),
@@ -271,11 +216,11 @@ TERMS = {
     "turning": ("q", "rate of the line from the joint to the pivot, or of what is mirrored in it"),
     "rate": ("z", "rate of the links besides"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class PassedMotion(NamedTuple):
-    """A rocker group placed on a branch through its change points; `closure` leaves these out.
+    """Motion of a rocker group on a branch through its change points, which `closure` leaves out.
 
     The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
     """
@@ -286,9 +231,6 @@ class PassedMotion(NamedTuple):
     closure: Any
     factor: Any
     distance: Any
-
-
-# How a linkage passes its change points: a text, which belongs to its structure
 
 
 class _Half(NamedTuple):
@@ -426,7 +368,7 @@ def slotted(placement, on, pivot, offset, passage, side):
 def divide_by_factors(parts, divisor):
     """Components of a force over a factor and the distance from a change point (kernel).
 
-    Each by itself: there the whole is infinite, but a component that vanishes stays zero.
+    Each is divided by itself: at the change point one that vanishes stays 0, the others are infinite.
     """
     factor, distance = divisor
     return tuple(part / factor / distance for part in parts)

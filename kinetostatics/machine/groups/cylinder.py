@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from ...numbers import checks
 from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import number_or_zero, scale_vector
-from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
+from ..group import FRAME, Declaration, Group, Output, Point, Resolved, separation
 from ..links import Link, Slide, Sliding, Slot, Turning, Wrench
 from . import lever, near_dead_centre
 
@@ -33,7 +33,7 @@ class CylinderGroup(checks.Checked, Group):
     cylinder : Link
         Reference joint `pivot_name`, along the cylinder toward the rod's pin.
     label : str
-        Put behind the names of links and forces of a second cylinder group in one mechanism.
+        Appended to the names of links and forces of a second cylinder group in one mechanism.
 
     Raises
     ------
@@ -62,6 +62,7 @@ class CylinderGroup(checks.Checked, Group):
     label: str = ""
     is_close: bool = field(default=False, init=False, repr=False)
 
+    LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "cylinder_pivot"}
     RULES = checks.Rules(
@@ -75,100 +76,52 @@ class CylinderGroup(checks.Checked, Group):
     )
 
     @property
-    def links(self):
-        return {self._rod: self.rod, self._cylinder: self.cylinder}
-
-    @property
-    def references(self):
-        return {self._rod: self.on, self._cylinder: self.pivot_name}
-
-    @property
-    def slots(self):
-        return (Slot(self._cylinder, self.on, self._rod),)
-
-    @property
-    def lengths(self):
-        return (*self.pivot, *self.rod.centre, *self.cylinder.centre)
-
-    @property
-    def _rod(self):
-        return "rod" + self.label
-
-    @property
-    def _cylinder(self):
-        return "cylinder" + self.label
-
-    @property
-    def joints(self):
-        return {self.pivot_name: Point(FRAME, *self.pivot)}
-
-    @property
-    def outputs(self):
-        label, rod, cylinder = self.label, self._rod, self._cylinder
-        on, pivot = f"{cylinder} on {rod}", self.pivot_name
-        return {
-            self.on + label: joint_reaction(rod, self.on),
-            pivot: Output("N", True, f"ground on {cylinder}"),
-            "cylinder_force" + label: Output("N", False, f"{on} along the left normal of the {cylinder}"),
-            "cylinder_moment" + label: Output("N m", False, f"{on} about {pivot}", pivot),
-        }
-
-    @property
-    def motions(self):
-        return {"cylinder_length" + self.label: Output("m", False, f"from {self.pivot_name} to {self.on}")}
-
-    @property
-    def pairs(self):
-        label, pivot = self.label, self.pivot_name
-        force, moment = "cylinder_force" + label, "cylinder_moment" + label
-        return {
-            self.on + label: Turning(self._rod, self.on),
-            pivot: Turning(self._cylinder, pivot),
-            "cylinder" + label: Sliding(self._rod, self.on, self._cylinder, force, moment),
-        }
+    def declaration(self):
+        return Declaration(
+            joints={self.pivot_name: Point(FRAME, *self.pivot)},
+            slots=(Slot("cylinder", self.on, "rod"),),
+            inner=(Turning("rod", self.on),),
+            pairs=(
+                Turning("cylinder", self.pivot_name),
+                Sliding("rod", self.on, "cylinder", "cylinder_force", "cylinder_moment", self.pivot_name),
+            ),
+            motions={"cylinder_length": Output("m", False, f"from {self.pivot_name} to {self.on}")},
+            lengths=self.pivot,
+        )
 
     def sliding(self, name, placement):
-        motion = placement.details[self._cylinder]
+        motion = self.placed(placement)
         return Slide(motion.lever.direction, lever.slid(motion))
 
     def motion(self, name, placement):
-        return placement.details[self._cylinder].reach
+        return self.placed(placement).reach
 
     def on_crank(self, throws):
-        """The group as it is on the pins of a crank: whether its pin comes close to the pivot."""
+        """The group with `is_close` for the pins of a crank: whether its pin comes close to the pivot."""
         throw = throws.get(self.on)
         is_close = throw is not None and near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
         return self if is_close is self.is_close else replace_unchecked(self, is_close=is_close)
 
     def place(self, placement):
-        """Add the pivot, rod and cylinder."""
         if self.is_close:
             motion = lever.passed(placement, self.on, self.pivot, None, near_dead_centre.slotted, 1)
         else:
             motion = lever.place(placement.joints[self.on], self.pivot, None, 1)
-        placement.joints[self.pivot_name] = motion.lever.joint
-        placement.links[self._rod] = motion.block._replace(direction=scale_vector(-1.0, motion.block.direction))
-        placement.links[self._cylinder] = motion.lever
-        placement.details[self._cylinder] = motion
+        rod = motion.block._replace(direction=scale_vector(-1.0, motion.block.direction))
+        self.enter(placement, motion, {self.pivot_name: motion.lever.joint}, {"rod": rod, "cylinder": motion.lever})
 
     def follow(self, placement, joints):
-        """Place rod and cylinder: no joint of theirs moves that could be found in another way."""
+        """Place rod and cylinder, which add no moving joint."""
         self.place(placement)
 
     def closure(self, placement):
-        return placement.details[self._cylinder].closure
+        return self.placed(placement).closure
 
     def requirement(self, placement):
         return f"{separation(placement, self.on, self.pivot_name)} be greater than zero"
 
     def resolve(self, placement, loads, along) -> Resolved:
-        on_cylinder = loads[self._cylinder]
-        found = lever.resolve(placement.details[self._cylinder], on_cylinder, loads[self._rod])
-        return Resolved(
-            {self.on + self.label: found.inner, self.pivot_name: found.pivot},
-            {
-                "cylinder_force" + self.label: found.slot,
-                "cylinder_moment" + self.label: number_or_zero(on_cylinder.moment),
-            },
-            {self.on: Wrench(found.inner, None)},
-        )
+        on_rod, on_cylinder = self.of_links(loads)
+        found = lever.resolve(self.placed(placement), on_cylinder, on_rod)
+        scalars = found.slot, number_or_zero(on_cylinder.moment)
+        return self.resolved((found.inner, found.pivot), scalars, {self.on: Wrench(found.inner, None)})

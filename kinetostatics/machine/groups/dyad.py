@@ -11,7 +11,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.planar import add_vectors, cross, dot, subtract_vectors
-from ..group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from ..group import Bar, Declaration, Group, Point, Resolved, separation
 from ..links import Joint, Link, Turning, Wrench, link_between
 from . import rocker
 from .rocker import RockerMotion
@@ -26,10 +26,10 @@ class TwoJoints:
         named = type(value) is tuple and len(value) == 2 and all(self.rule.quick(name) is name for name in value)
         return value if named and value[0] != value[1] else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
             return value, f"{field} must be the names of two joints, got {checks.shown(value)}"
-        found = [self.rule.taken(name, f"{field} {place}") for place, name in enumerate(value, 1)]
+        found = [self.rule.check(name, f"{field} {place}") for place, name in enumerate(value, 1)]
         problem = found[0][1] or found[1][1]
         if problem is None and value[0] == value[1]:
             problem = f"{field} must name two different joints, got {value[0]!r} twice"
@@ -37,7 +37,7 @@ class TwoJoints:
 
 
 def place(first, second, length1, length2, assembly):
-    """Both links for the joints that they begin at (kernel)."""
+    """Both links for given inner joints (kernel)."""
     passing = (subtract_vectors(first.first, second.first), subtract_vectors(first.second, second.second))
     seen = rocker.place(Joint(first.position, *passing), length1, length2, second.position, assembly)
     pin = Joint(
@@ -63,7 +63,7 @@ class Dyad(checks.Checked, Group):
     dyad1, dyad2 : Link
         Reference joints are those they hang on, directions run from there to the pin.
     label : str
-        Put behind the names of links and forces of a second dyad in one mechanism.
+        Appended to the names of links and forces of a second dyad in one mechanism.
 
     Raises
     ------
@@ -95,6 +95,7 @@ class Dyad(checks.Checked, Group):
     dyad2: Link = Link()
     label: str = ""
 
+    LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
     TRUSTED = True
     PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
     RULES = checks.Rules(
@@ -118,92 +119,53 @@ class Dyad(checks.Checked, Group):
         return [*super().names, *self.on]
 
     @property
-    def links(self):
-        return {self._link1: self.dyad1, self._link2: self.dyad2}
-
-    @property
     def references(self):
         return dict(zip(self.links, self.on, strict=True))
 
     @property
-    def bars(self):
+    def declaration(self):
         first, second = self.on
-        return Bar(first, self.pin, self._link1, self.length1), Bar(second, self.pin, self._link2, self.length2)
-
-    @property
-    def lengths(self):
-        return (self.length1, self.length2, *self.dyad1.centre, *self.dyad2.centre)
-
-    @property
-    def _link1(self):
-        return "dyad1" + self.label
-
-    @property
-    def _link2(self):
-        return "dyad2" + self.label
-
-    @property
-    def _inner(self):
-        """Names of the reactions at the joints it hangs on."""
-        return tuple(f"{link}_{joint}" for link, joint in self.references.items())
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self._link2, self.length2)}
-
-    @property
-    def outputs(self):
-        inner = (joint_reaction(link, joint) for link, joint in self.references.items())
-        pin = Output("N", True, f"{self._link1} on {self._link2}")
-        return {**dict(zip(self._inner, inner, strict=True)), self.pin: pin}
-
-    @property
-    def pairs(self):
-        inner = zip(self._inner, self.references.items(), strict=True)
-        return {
-            **{name: Turning(link, joint) for name, (link, joint) in inner},
-            self.pin: Turning(self._link2, self.pin, self._link1),
-        }
+        return Declaration(
+            joints={self.pin: Point("dyad2", self.length2)},
+            bars=(Bar(first, self.pin, "dyad1", self.length1), Bar(second, self.pin, "dyad2", self.length2)),
+            inner=(Turning("dyad1", first), Turning("dyad2", second)),
+            pairs=(Turning("dyad2", self.pin, "dyad1"),),
+        )
 
     def rigid_on(self, owners):
-        """Both links on two joints of one link: a triangle that does not move in itself."""
+        """Both links on two joints of one link make a rigid triangle."""
         return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
-        self._set(placement, place(first, second, self.length1, self.length2, self.assembly))
+        self._enter(placement, place(first, second, self.length1, self.length2, self.assembly))
 
     def follow(self, placement, joints):
-        """Place both links at joints found in another way."""
+        """Place both links at known joints."""
         pin = joints[self.pin]
         first, second = (
             link_between(placement.joints[name], pin, length)
             for name, length in zip(self.on, (self.length1, self.length2), strict=True)
         )
         sine, cosine = cross(first.direction, second.direction), dot(first.direction, second.direction)
-        self._set(placement, RockerMotion(first, second, pin, sine, cosine, sine, None))
+        self._enter(placement, RockerMotion(first, second, pin, sine, cosine, sine, None))
 
-    def _set(self, placement, motion):
-        placement.joints[self.pin] = motion.pin
-        placement.links[self._link1] = motion.coupler
-        placement.links[self._link2] = motion.rocker
-        placement.details[self._link1] = motion
+    def _enter(self, placement, motion):
+        self.enter(placement, motion, {self.pin: motion.pin}, {"dyad1": motion.coupler, "dyad2": motion.rocker})
 
     def closure(self, placement):
         """Squared sine of the angle between the links."""
-        return placement.details[self._link1].closure
+        return self.placed(placement).closure
 
     def requirement(self, placement):
         low, high = abs(self.length1 - self.length2), self.length1 + self.length2
         return (
             f"{separation(placement, *self.on)} lie between the difference and the sum of the lengths of "
-            f"{self._link1} and {self._link2}, {np.min(low):.6g} and {np.max(high):.6g} m"
+            f"{self.called('dyad1')} and {self.called('dyad2')}, {np.min(low):.6g} and {np.max(high):.6g} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = rocker.resolve(
-            placement.details[self._link1], self.length1, self.length2, loads[self._link1], loads[self._link2]
-        )
-        inner = dict(zip(self._inner, (found.inner, found.pivot), strict=True))
-        demands = {name: Wrench(force, None) for name, force in zip(self.on, inner.values(), strict=True)}
-        return Resolved({**inner, self.pin: found.pin}, {}, demands)
+        found = rocker.resolve(self.placed(placement), self.length1, self.length2, *self.of_links(loads))
+        inner = found.inner, found.pivot
+        demands = {name: Wrench(force, None) for name, force in zip(self.on, inner, strict=True)}
+        return self.resolved((*inner, found.pin), (), demands)

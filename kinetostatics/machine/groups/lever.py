@@ -8,7 +8,7 @@ Where the crank is as long as the pivot's distance, A meets the pivot: on a chos
 once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -28,12 +28,12 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
+from ..group import FRAME, Declaration, Group, Output, Point, Resolved, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench, present
-from . import change_points, near_dead_centre
+from . import branches, change_points
 
 MIN_REACH_SHARE = 2.0**-53
-"""Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""
+"""Least reach along the slot over the distance from pivot to pin, by which rates and forces are divided."""
 TERMS = {
     "d": ("d", "from the pivot to the joint"),
     "square": ("D", "square of that distance"),
@@ -46,7 +46,7 @@ TERMS = {
     "resolve.moment": ("K", "moment of both links about the pivot"),
     "resolve.on_block": ("Q", "force of the slot on what slides in it"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class LeverMotion(NamedTuple):
@@ -100,7 +100,7 @@ def place(joint, pivot, offset, assembly):
 
 
 def passed(placement, on, pivot, offset, slotted, *branch):
-    """The same for the pin `on` of a crank, from what `slotted` finds on a branch (kernel)."""
+    """Lever and block for the pin `on` of a crank, by the kernel `slotted` of a branch (kernel)."""
     direction, ratio, slope, *rest = slotted(placement, on, pivot, offset, *branch)
     lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
     return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
@@ -109,7 +109,7 @@ def passed(placement, on, pivot, offset, slotted, *branch):
 def resolve(motion, lever_load, block_load):
     """Forces on lever and block (kernel).
 
-    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
+    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of both links
     together about the pivot give the force across the slot.
     """
     moment, across = number_or_zero(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
@@ -126,7 +126,7 @@ def resolve(motion, lever_load, block_load):
 
 
 @dataclass(frozen=True, eq=False)
-class LeverGroup(checks.Checked, change_points.Passer, Group):
+class LeverGroup(checks.Checked, branches.LeverBranch, Group):
     """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
 
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
@@ -148,7 +148,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     block : Link
         Reference joint `on`, along the slot as the lever; it turns with it.
     label : str
-        Put behind the names of links and forces of a second lever group in one mechanism.
+        Appended to the names of links and forces of a second lever group in one mechanism.
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
         direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
@@ -190,9 +190,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     pivot_name: str = "O2"
     label: str = ""
     assembly: int = 1
-    passage: str = field(default="", init=False, repr=False)
-    is_close: bool = field(default=False, init=False, repr=False)
-
+    LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
     RULES = checks.Rules(
@@ -207,115 +205,57 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
         assembly=checks.Sign(tuple(change_points.SIDES)),
     )
 
-    def found_on(self, throws):
-        """How it passes its change points on a crank with these throws."""
-        return change_points.lever_passage(self, throws)
-
-    def comes_close(self, throw):
-        """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
-        return near_dead_centre.passes_near_pivot(throw, self.offset, self.pivot)
-
     @property
-    def start(self):
-        """Direction, as a vector, from which its words of assembly are counted."""
-        return self.pivot
-
-    @property
-    def links(self):
-        return {self._lever: self.lever, self._block: self.block}
-
-    @property
-    def references(self):
-        return {self._lever: self.pivot_name, self._block: self.on}
-
-    @property
-    def slots(self):
-        return (Slot(self._lever, self.on, offset=self.offset),)
-
-    @property
-    def lengths(self):
-        return (*self.pivot, self.offset, *self.lever.centre, *self.block.centre)
-
-    @property
-    def _lever(self):
-        return "lever" + self.label
-
-    @property
-    def _block(self):
-        return "block" + self.label
-
-    @property
-    def joints(self):
-        return {self.pivot_name: Point(FRAME, *self.pivot)}
-
-    @property
-    def outputs(self):
-        label, lever, block = self.label, self._lever, self._block
-        return {
-            self.on + label: joint_reaction(block, self.on),
-            self.pivot_name: Output("N", True, f"ground on {lever}"),
-            "slot_force" + label: Output("N", False, f"{lever} on {block} along the left normal of the {lever}"),
-            "slot_moment" + label: Output("N m", False, f"{lever} on {block} about {self.on}"),
-        }
+    def declaration(self):
+        return Declaration(
+            joints={self.pivot_name: Point(FRAME, *self.pivot)},
+            slots=(Slot("lever", self.on, offset=self.offset),),
+            inner=(Turning("block", self.on),),
+            pairs=(
+                Turning("lever", self.pivot_name),
+                Sliding("block", self.on, "lever", "slot_force", "slot_moment"),
+            ),
+            lengths=(*self.pivot, self.offset),
+        )
 
     @property
     def motions(self):
         text = f"of {self.on} along the slot, from the foot of {self.pivot_name}"
-        return {f"{self._block}_position": Output("m", False, text)}
-
-    @property
-    def pairs(self):
-        label = self.label
-        return {
-            self.on + label: Turning(self._block, self.on),
-            self.pivot_name: Turning(self._lever, self.pivot_name),
-            "slot" + label: Sliding(self._block, self.on, self._lever, "slot_force" + label, "slot_moment" + label),
-        }
+        return {f"{self.called('block')}_position": Output("m", False, text)}
 
     def sliding(self, name, placement):
-        motion, offset = placement.details[self._lever], present(self.offset)
+        motion, offset = self.placed(placement), present(self.offset)
         rate = plus(slid(motion), product(offset, motion.lever.ratio))
         return Slide(motion.lever.direction, rate, minus(None, offset))
 
     def motion(self, name, placement):
-        return placement.details[self._lever].reach
+        return self.placed(placement).reach
 
     def place(self, placement):
-        """Add the pivot, lever and block."""
         given = self.pivot, present(self.offset)
-        if self.passage:
-            motion = passed(placement, self.on, *given, change_points.slotted, self.passage, self.side)
-        elif self.is_close:
-            motion = passed(placement, self.on, *given, near_dead_centre.slotted, self.side)
+        if self.branch:
+            motion = passed(placement, self.on, *given, *self.branch)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
-        placement.joints[self.pivot_name] = motion.lever.joint
-        placement.links[self._lever] = motion.lever
-        placement.links[self._block] = motion.block
-        placement.details[self._lever] = motion
+        links = {"lever": motion.lever, "block": motion.block}
+        self.enter(placement, motion, {self.pivot_name: motion.lever.joint}, links)
 
     def follow(self, placement, joints):
-        """Place lever and block: no joint of theirs moves that could be found in another way."""
+        """Place lever and block, which add no moving joint."""
         self.place(placement)
 
     def closure(self, placement):
-        return placement.details[self._lever].closure
+        return self.placed(placement).closure
 
     def requirement(self, placement):
-        """Say what distance must hold for the block to be in the slot, with its numbers."""
         offset = np.max(np.abs(self.offset))
         return f"{separation(placement, self.on, self.pivot_name)} be greater than the slot's offset, {offset:.6g} m"
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(placement.details[self._lever], loads[self._lever], loads[self._block])
-        return Resolved(
-            {self.on + self.label: found.inner, self.pivot_name: found.pivot},
-            {
-                "slot_force" + self.label: found.slot,
-                "slot_moment" + self.label: number_or_zero(minus(None, loads[self._block].moment)),
-            },
-            {self.on: Wrench(found.inner, None)},
-        )
+        lever_load, block_load = self.of_links(loads)
+        found = resolve(self.placed(placement), lever_load, block_load)
+        scalars = found.slot, number_or_zero(minus(None, block_load.moment))
+        return self.resolved((found.inner, found.pivot), scalars, {self.on: Wrench(found.inner, None)})
 
 
 def slid(motion):

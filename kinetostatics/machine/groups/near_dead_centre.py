@@ -1,39 +1,31 @@
-"""Four-bar on a pin of the crank: kernel in the crank angle psi from the direction O -> O2.
+"""Kernels for groups on a pin of the crank that save digits near a limit position or dead centre.
 
-With S = sin^2(psi/2) and C = cos^2(psi/2), quarters of the squared distances of the crank ray from that direction and
-from its opposite, so that neither loses a digit where it is small, the sine of the transmission angle is for a crank a,
-coupler b, rocker h and ground d the root of two factors, with e from A to O2 (Heron),
+*Four-bar.* With S = sin^2(psi/2), C = cos^2(psi/2), psi the crank angle from O -> O2, the sine of the transmission
+angle is for crank a, coupler b, rocker h and ground d the root of two factors, with e from A to O2 (Heron),
 
     2 b h far  = (b+h)^2 - e^2 = ((b+h)^2 - (d-a)^2) C + ((b+h)^2 - (d+a)^2) S
     2 b h near = e^2 - (b-h)^2 = ((d-a)^2 - (b-h)^2) C + ((d+a)^2 - (b-h)^2) S
 
-All that stands in brackets are products of sums of given lengths, each rounded as if once: where a factor vanishes, at
-a limit position or change point, its error is no more than what one rounding of the crank angle makes. A length that is
-a root itself, of an inclined pivot or a pin beside the crank ray, goes with what rounding took off it. So are rates,
+C and S are quarters of squared distances of the crank ray, so a small one keeps its digits. Brackets are products of
+sums of given lengths, each rounded once: near a zero the error is that of one rounding of the crank angle. A length
+that is a root itself goes with the rest that rounding took off it. Rates and their slopes have the same factors,
 
     theta' = 1/2 - (d^2 - a^2) / (2 e^2) -+ (1 -+ (b^2 - h^2) / e^2) R,    R = a d sin(psi) / (2 b h sine)
+    R' = a d / (2 b h sine^3) (((d-a)^2 - (b-h)^2) C far - ((b+h)^2 - (d+a)^2) S near) / (2 b h)
 
-with the upper signs for the coupler, the lower ones for the rocker, and their slopes, in which R' is
+with the upper signs for the coupler, the lower ones for the rocker.
 
-    a d / (2 b h sine^3) (((d-a)^2 - (b-h)^2) C far - ((b+h)^2 - (d+a)^2) S near) / (2 b h)
+*Elongation.* A length l that leans from a line reaches l less l (1 - cos) = l sin^2 / (1 + cos), small near a dead
+centre; so the coordinate of a slider less a position loses no digits there.
 
-Where a slider is along its guide less a position, and how it departs from the motion of a pin of the crank.
-
-Kernels without the rounding of its coordinate, and what a group has of them: a length reaches along a line that it
-leans from less l (1 - cos) = l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is left of
-the lengths themselves.
-
-Knuckles: a rocker, and on its pin a slider that moves along a line through its pivot, as the ram of a toggle press.
-
-What a knuckle passes on as it straightens goes with the distance of its pin from that line, which of the directions of
-links is known to a rounding of their lengths. With the line along one axis, and for the other one the coordinates g of
-the pivot and A of the inner joint, and the component q of the coupler's direction, b being its length and e the other
-component, it is what lengths leave of each other,
+*Toggle.* A rocker with a slider on its pin that moves along a line through its pivot, as the ram of a toggle press. The
+distance of the pin from that line decides the force. With the line along one axis, and on the other one the coordinates
+g of the pivot and A of the inner joint, and components q and e of the coupler's direction, b its length,
 
     b q - g + A = (+-b - g) + A - b e^2 / (+-1 + q)
 
-by the sign of q. Where the coupler may lean much, or is much longer than the rocker, that is no nearer, and not used.
-Designs together must all allow it, so what one has may change in its last bits with those beside it.
+by the sign of q. It is used where the coupler leans little and is not much longer than the rocker. The designs of a
+batch use the same formulas, so a design may change in its last bits with its batch.
 """
 
 import math
@@ -68,9 +60,9 @@ from ...numbers.planar import (
 from ..links import present
 
 MIN_ROOT = 2.0**-100
-"""Roots of closure, sines and cosines, that are not divided by less."""
+"""Least root of closure, sine and cosine, by which rates and forces are divided."""
 CLOSE_SHARE = 2.0**-5
-"""Share of the longest length up to which a length differs little from what others leave it."""
+"""Clearance below which a pin is close to a limit position, over the sum of length and crank radius."""
 TERMS = {
     "ground": ("g", "from O to the pivot"),
     "turn": ("s", "sine of the crank angle from the direction of the pivot, times g if that is inclined"),
@@ -93,24 +85,23 @@ TERMS = {
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
     "elongation.sine": ("s", "sine of that angle"),
     "elongation.turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
-    "_from.short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
     "departure.departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
     "straight": ("j", "what the pin would be off the line on which the slider moves were the coupler across it"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class PivotFromPin(NamedTuple):
-    """The line from a pin of the crank to a pivot.
+    """Line from a pin of the crank to a pivot.
 
     Attributes
     ----------
     radius, ground : float or array
         From O to the pin and to the pivot.
     slack, rest : float or array or None
-        What rounding took off these.
+        Rests that rounding took off these.
     gap : float or array
-        By how much the pivot is farther from O than the pin.
+        Distance of the pivot from O less that of the pin.
     turn : array
         Sine of the crank angle from the direction of the pivot, in units of `reach`.
     near_by, far_off : array
@@ -136,10 +127,7 @@ class PivotFromPin(NamedTuple):
 
 
 def direction_and_length(start):
-    """Direction of a vector that may vanish: by its components, none of whose digits is lost, and their length.
-
-    Along an axis it is a sign, of length 1.
-    """
+    """Direction of a vector that may vanish, as its components, and its length; along an axis a sign, of length 1."""
     x, y = map(present, start)
     if y is None:
         return (_sign(number_or_zero(x)), None), 1.0
@@ -154,10 +142,9 @@ def _sign(part):
 
 
 def squared_distances(ray, direction, reach):
-    """Cross product of a direction, of some length, with a ray, and squared distances of its tip from the ray's.
+    """Cross product of a direction of length `reach` with a ray, and squared distances of its tip from the ray's tips.
 
-    The ray is taken as long as the direction, and pointing ahead and backward. A distance that is small has only what
-    the cross product is off, whatever the rest loses.
+    The ray is as long as the direction, ahead and backward. A small distance has the error of the cross product alone.
     """
     (x, y), (cosine, sine) = direction, ray
     along, across = plus(product(x, cosine), product(y, sine)), minus(product(x, sine), product(y, cosine))
@@ -166,12 +153,9 @@ def squared_distances(ray, direction, reach):
 
 
 def pivot_from_pin(placement, on, pivot, is_close):
-    """The pivot as a pin of the crank sees it, which may come close to it (kernel)."""
-    throw, (ground, rest), (direction, size) = (
-        placement.course(on).throw,
-        length_with_error(pivot),
-        direction_and_length(pivot),
-    )
+    """Line from a pin of the crank to a pivot, which may be close (kernel)."""
+    throw, (ground, rest) = placement.course(on).throw, length_with_error(pivot)
+    direction, size = direction_and_length(pivot)
     a, slack = throw.radius_and_rest
     start, reach = (direction, size) if throw.ahead else direction_and_length(rotate_back(pivot, throw.at))
     turn, near_by, far_off = squared_distances(placement.ray, start, reach)
@@ -192,7 +176,7 @@ def pivot_from_pin(placement, on, pivot, is_close):
 
 
 def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_close):
-    """Direction, ratio and slope of coupler and of rocker, and what follows in `RockerMotion`, for a pin (kernel)."""
+    """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel)."""
     b, h = coupler_length, rocker_length
     gap, both, product = b - h, b + h, 2.0 * b * h
     line = pivot_from_pin(placement, on, pivot, is_close)
@@ -275,10 +259,7 @@ def slotted(placement, on, pivot, offset, assembly):
 
 
 def passes_near_pivot(throw, offset, pivot):
-    """Whether a pin comes close to a pivot, or to where a slot passes it at an offset, in any design.
-
-    It chooses formulas that keep all digits there, for all designs together: one has the last bits of its batch.
-    """
+    """Whether a pin comes close to a pivot, or to a slot at an offset from it, in any design of a batch."""
     x, y = pivot
     if type(x) is type(y) is float:
         return has_small_clearance(throw, offset, math.hypot(x, y))
@@ -286,7 +267,7 @@ def passes_near_pivot(throw, offset, pivot):
 
 
 def has_small_clearance(throw, offset, length):
-    """Whether the difference of a length, more or less an offset, and the radius of a pin is small, in any design."""
+    """Whether a length, more or less an offset, is nearly the radius of a pin, in any design of a batch."""
     radius = throw.at[0] if throw.ahead else None
     if type(radius) is type(offset) is type(length) is float:
         unit = CLOSE_SHARE * (length + radius)
@@ -300,15 +281,12 @@ def has_small_clearance(throw, offset, length):
 
 
 def shortfall(length, sine, cosine):
-    """By how much a length falls short of itself along a line, by its angle to that."""
+    """Length less its projection on a line, from sine and cosine of the angle between them."""
     return length * sine * sine / (1.0 + cosine)
 
 
 def elongation(placement, joint, direction, reach, short):
-    """Coordinate of a joint along a direction plus a reach, which falls short, from there.
-
-    The joint itself is so far from a fixed place if a link swings it about that, this way or the other.
-    """
+    """Coordinate along a direction of a joint plus `reach - short`; a joint that a link swings, by its elongation."""
     swing = placement.course(joint).swing
     if swing is None:
         return rotate_back(placement.joints[joint].position, direction)[0] + (reach - short)
@@ -319,7 +297,7 @@ def elongation(placement, joint, direction, reach, short):
 
 
 def across(swing, guide):
-    """From a joint that swings about a fixed place across to a guide: all by the swing if that place is on it."""
+    """Distance from a swinging joint across to a guide, without cancellation if the centre is on the guide."""
     apart = minus(guide.offset, rotate_back(swing.centre, guide.direction)[1])
     return minus(apart, swing.radius * rotate_back(swing.direction, guide.direction)[1])
 
@@ -327,8 +305,8 @@ def across(swing, guide):
 def departure(placement, drawn_in, joint, direction, reach, short):
     """Second derivative of that coordinate plus itself; None where both are large.
 
-    What of both is the joint's cancels if that is a pin of the crank, and is known of a roller on a cam; `drawn_in` is
-    what the second derivative of the reach takes.
+    The share of the joint is 0 for a pin of the crank, and known for a roller on a cam; the reach loses `drawn_in` in
+    its second derivative.
     """
     course = placement.course(joint)
     if course.throw is not None:
@@ -340,10 +318,10 @@ def departure(placement, drawn_in, joint, direction, reach, short):
 
 
 def outward(placement, joint, direction, reach, short):
-    """That coordinate, m, or its opposite where the joint is on the other side of O, as a length and what is more.
+    """That coordinate, or its opposite if the joint is on the other side of O, as a constant length and a rest; m.
 
-    The length is that by which the joint goes round O, which no crank angle changes; None where no group tells it. Near
-    a dead centre what is more is small beside it, and has no rounding of the whole.
+    The length is the mean radius of the joint's orbit about O; None without one. Near a dead centre the rest is small
+    and free of the rounding of the whole.
     """
     orbit = placement.course(joint).orbit
     if orbit is None:
@@ -354,45 +332,15 @@ def outward(placement, joint, direction, reach, short):
     return length, farther * size - shortfall(length, sine, size) + sign(cosine) * (reach - short)
 
 
-class Reaching:
-    """What a group has whose slider a coupler reaches: with `on`, `coupler_length`, `guide`, `side` and `passage`.
-
-    The slider's name is in `_slider`, and of its details in a placement `sine`, `cosine` and `drawn_in` are asked for.
-    """
-
-    def elongation(self: Any, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
-        if self.passage:
-            return placement.travels[self._slider].position - free_position
-        return elongation(placement, *self._from(free_position, placement))
-
-    def departure(self: Any, placement, position):
-        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
-        drawn_in = placement.details[self._slider].drawn_in
-        if self.passage or drawn_in is None:
-            return None
-        return departure(placement, drawn_in, *self._from(position, placement))
-
-    def outward(self, placement, position):
-        """That elongation, or its opposite, as a length of the design and some more, m; None if it is not known so."""
-        return outward(placement, *self._from(position, placement))
-
-    def _from(self: Any, position, placement):
-        """What reaches from a position on, as `elongation` takes it."""
-        motion, length, side = placement.details[self._slider], self.coupler_length, self.side
-        short = side * shortfall(length, motion.sine, side * motion.cosine)
-        return self.on, self.guide.line.direction, side * length - position, short
-
-
 MAX_PIVOT_OFFSET = 2.0**-5
-"""Share of the rocker's length by which its pivot may be off the line."""
+"""Largest distance of the pivot from the line of the slider, over the rocker's length, in a toggle."""
 MIN_COUPLER_REACH, MAX_COUPLER_RATIO = 0.25, 2.0
-"""Least share of its length that the coupler reaches along the axis, and how many times the rocker's it is at most."""
+"""Least reach of the coupler along the axis over its length, and its largest length over the rocker's, in a toggle."""
 AXES = ("x", "y")
 
 
 def toggle_axis(rocker, groups, throws):
-    """Axis, "x" or "y", across the line of what hangs on the pin of a rocker, if that is a knuckle; "" else."""
+    """Axis, "x" or "y", across the guide of a toggle that a rocker makes with a slider on its pin; "" without one."""
     throw = throws.get(rocker.on)
     if throw is None:
         return ""
@@ -401,7 +349,7 @@ def toggle_axis(rocker, groups, throws):
 
 
 def _axis_reached(group, guide, throw):
-    """Axis along which the coupler reaches across a guide that is the other one's, through the pivot; "" for others."""
+    """Axis across a guide that runs through the rocker's pivot along the other axis; "" for other guides."""
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
     are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.has_known_values, given))
@@ -417,9 +365,9 @@ def _axis_reached(group, guide, throw):
     return AXES[axis] if np.all(reached) else ""
 
 
-def straighten_rocker(direction, coupler, joint, coupler_length, rocker_length, pivot, knuckle):
-    """Direction of the rocker, its component along the axis `knuckle` by way of the coupler (kernel)."""
-    axis = AXES.index(knuckle)
+def straighten_rocker(direction, coupler, joint, coupler_length, rocker_length, pivot, toggle):
+    """Direction of the rocker, with its component along the axis `toggle` computed through the coupler (kernel)."""
+    axis = AXES.index(toggle)
     along, lean = coupler[axis], coupler[1 - axis]
     way = sign(along)
     straight = (way * coupler_length - pivot[axis]) + joint.position[axis]

@@ -8,14 +8,13 @@ area / (2 c h): a product of lengths, so no digit is lost near a toggle, where i
 On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
-from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import (
     add_vectors,
     cross,
@@ -26,14 +25,14 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between, tip
-from . import change_points, near_dead_centre
-from .near_dead_centre import straighten_rocker, toggle_axis
+from . import branches, change_points, near_dead_centre
+from .near_dead_centre import straighten_rocker
 
 MIN_SINE = 2.0**-53
-"""Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
+"""Least sine of the transmission angle by which rates and forces are divided."""
 TERMS = {
     "d": ("d", "from the inner joint to the pivot"),
     "square": ("D", "square of that distance"),
@@ -50,7 +49,7 @@ TERMS = {
     "along_coupler": ("U", "force of the pin on the second link along the first"),
     "along_rocker": ("V", "force of the pin on the second link along itself"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class RockerMotion(NamedTuple):
@@ -108,12 +107,12 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close, knuckle):
-    """The same for a pin of the crank, which may come close to the pivot (kernel)."""
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close, toggle):
+    """Coupler and rocker for a pin of the crank, which may come close to the pivot (kernel)."""
     joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
     coupler, (p, *rates), *rest = near_dead_centre.place(placement, on, *given, assembly, is_close)
-    if knuckle:
-        p = straighten_rocker(p, coupler[0], joint, *given, knuckle)
+    if toggle:
+        p = straighten_rocker(p, coupler[0], joint, *given, toggle)
     pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
     return RockerMotion(LinkMotion(joint, *coupler), LinkMotion(fixed, p, *rates), pin, *rest)
 
@@ -121,7 +120,7 @@ def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembl
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     """Forces on rocker and coupler (kernel).
 
-    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of the coupler
+    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of the coupler
     about A and of the rocker about O2 give the pin force by its parts along both links.
     """
     q, p = motion.coupler.direction, motion.rocker.direction
@@ -133,13 +132,13 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
 
 
 def balanced(pin, coupler_load, rocker_load):
-    """All forces for a given pin force."""
+    """Forces from the pin force."""
     pivot = subtract_vectors(subtract_vectors(None, pin), rocker_load.force)
     return RockerForces(subtract_vectors(pin, coupler_load.force), pin, pivot)
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup(checks.Checked, change_points.Passer, Group):
+class RockerGroup(checks.Checked, branches.RockerBranch, Group):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -156,12 +155,12 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
     label : str
-        Put behind the names of links and forces of a second rocker group in one mechanism.
+        Appended to the names of links and forces of a second rocker group in one mechanism.
 
     Raises
     ------
     ParameterError
-        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+        A value no machine can have; the mechanism raises it where the group cannot pass change points that way.
 
     Notes
     -----
@@ -188,10 +187,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     pin: str = "B"
     pivot_name: str = "O2"
     label: str = ""
-    passage: str = field(default="", init=False, repr=False)
-    is_close: bool = field(default=False, init=False, repr=False)
-    knuckle: str = field(default="", init=False, repr=False)
-
+    LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
     RULES = checks.Rules(
@@ -208,104 +204,50 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def found_on(self, throws):
-        """How it passes its change points on a crank with these throws."""
-        return change_points.rocker_passage(self, throws)
-
-    def comes_close(self, throw):
-        """Whether the pin comes close to the pivot."""
-        return near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
-
-    def beside(self, groups, throws):
-        """The group as it is beside others: whether it is a knuckle with one, and along which axis."""
-        knuckle = toggle_axis(self, groups, throws)
-        return self if knuckle == self.knuckle else replace_unchecked(self, knuckle=knuckle)
-
     @property
-    def start(self):
-        """Direction, as a vector, from which its words of assembly are counted."""
-        return self.pivot
-
-    @property
-    def links(self):
-        return {self._coupler: self.coupler, self._rocker: self.rocker}
-
-    @property
-    def references(self):
-        return {self._coupler: self.on, self._rocker: self.pivot_name}
-
-    @property
-    def bars(self):
-        return (
-            Bar(self.on, self.pin, self._coupler, self.coupler_length),
-            Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
+    def declaration(self):
+        return Declaration(
+            joints={self.pin: Point("rocker", self.rocker_length), self.pivot_name: Point(FRAME, *self.pivot)},
+            bars=(
+                Bar(self.on, self.pin, "coupler", self.coupler_length),
+                Bar(self.pivot_name, self.pin, "rocker", self.rocker_length),
+            ),
+            inner=(Turning("coupler", self.on),),
+            pairs=(
+                Turning("rocker", self.pin, "coupler"),
+                Turning("rocker", self.pivot_name),
+            ),
+            lengths=(self.coupler_length, self.rocker_length, *self.pivot),
         )
 
-    @property
-    def lengths(self):
-        return (self.coupler_length, self.rocker_length, *self.pivot, *self.coupler.centre, *self.rocker.centre)
-
-    @property
-    def _coupler(self):
-        return "coupler" + self.label
-
-    @property
-    def _rocker(self):
-        return "rocker" + self.label
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self._rocker, self.rocker_length), self.pivot_name: Point(FRAME, *self.pivot)}
-
-    @property
-    def outputs(self):
-        return {
-            self.on + self.label: joint_reaction(self._coupler, self.on),
-            self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
-            self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
-        }
-
-    @property
-    def pairs(self):
-        return {
-            self.on + self.label: Turning(self._coupler, self.on),
-            self.pin: Turning(self._rocker, self.pin, self._coupler),
-            self.pivot_name: Turning(self._rocker, self.pivot_name),
-        }
-
     def place(self, placement):
-        """Add joints B and O2, coupler and rocker."""
         given = self.coupler_length, self.rocker_length, self.pivot
         if self.passage:
             motion = change_points.place(placement, self.on, *given, self.passage, self.side)
         elif placement.course(self.on).throw is not None:
-            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.knuckle)
+            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.toggle)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
-        self._set(placement, motion)
+        self._enter(placement, motion)
 
     def follow(self, placement, joints):
-        """Place coupler and rocker at joints found in another way."""
+        """Place coupler and rocker at known joints."""
         pin, pivot = joints[self.pin], Joint(self.pivot, None, None)
         coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
         rocker = link_between(pivot, pin, self.rocker_length)
         sine, cosine = cross(coupler.direction, rocker.direction), dot(coupler.direction, rocker.direction)
-        self._set(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
+        self._enter(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
 
-    def _set(self, placement, motion):
-        placement.joints[self.pin] = motion.pin
-        placement.joints[self.pivot_name] = motion.rocker.joint
-        placement.links[self._coupler] = motion.coupler
-        placement.links[self._rocker] = motion.rocker
+    def _enter(self, placement, motion):
+        joints = {self.pin: motion.pin, self.pivot_name: motion.rocker.joint}
+        self.enter(placement, motion, joints, {"coupler": motion.coupler, "rocker": motion.rocker})
         swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.courses[self.pin] = Course(swing=swing)
-        placement.details[self._rocker] = motion
 
     def closure(self, placement):
-        return placement.details[self._rocker].closure
+        return self.placed(placement).closure
 
     def requirement(self, placement):
-        """Say what distances must hold for B to be reached, with their numbers."""
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
         return (
             f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
@@ -313,14 +255,10 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        motion, lengths = placement.details[self._rocker], (self.coupler_length, self.rocker_length)
-        acting = loads[self._coupler], loads[self._rocker]
+        motion, lengths = self.placed(placement), (self.coupler_length, self.rocker_length)
+        acting = self.of_links(loads)
         if isinstance(motion, change_points.PassedMotion):
             found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
         else:
             found = resolve(motion, *lengths, *acting)
-        return Resolved(
-            {self.on + self.label: found.inner, self.pin: found.pin, self.pivot_name: found.pivot},
-            {},
-            {self.on: Wrench(found.inner, None)},
-        )
+        return self.resolved((found.inner, found.pin, found.pivot), (), {self.on: Wrench(found.inner, None)})

@@ -8,7 +8,7 @@ Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on 
 there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -29,13 +29,13 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
-from ..guide import Guide, guide_outputs, slider_motion
+from ..group import FRAME, Bar, Declaration, Group, Point, Resolved
+from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, link_between
-from . import change_points, near_dead_centre
+from . import branches, change_points, near_dead_centre
 
 MIN_COSINE = 2.0**-27
-"""Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
+"""Least cosine of the coupler: its square is a difference with a rounding error of 2^-53."""
 TERMS = {
     "position": ("p", "inner joint along the guide (x) and across it (y)"),
     "first": ("p'", "first derivative by phi of that"),
@@ -47,7 +47,7 @@ TERMS = {
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SliderMotion(NamedTuple):
@@ -95,7 +95,7 @@ def place(joint, coupler_length, guide, assembly, swing=None):
 
 
 def passed(placement, on, coupler_length, guide, slid, *branch):
-    """The same for the pin `on` of a crank, from what `slid` finds on a branch (kernel)."""
+    """Coupler and slider for the pin `on` of a crank, by the kernel `slid` of a branch (kernel)."""
     joint = placement.joints[on]
     position = rotate_back(joint.position, guide.direction)
     first, second = rotate_back(joint.first, guide.direction), rotate_back(joint.second, guide.direction)
@@ -105,7 +105,7 @@ def passed(placement, on, coupler_length, guide, slid, *branch):
 
 
 def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, ratio_slope, divided, closure):
-    """Coupler and slider, from the coupler's reach along the guide and across it and its rate."""
+    """Coupler and slider, from reach along and across the guide and the coupler's rate."""
     position, first, second = along_guide
     sine, cosine = across / coupler_length, along / coupler_length
     drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
@@ -118,8 +118,8 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     """Forces on slider and coupler, from the slider inwards (kernel).
 
-    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, those
-    of further groups among them. The slider's balance along the guide gives the pin force along it, moments of the
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
+    the demands of further groups. The slider's balance along the guide gives the pin force along it, moments of the
     coupler about its inner joint the pin force across; the guide carries the rest.
     """
     on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
@@ -144,7 +144,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reaching, Group):
+class SliderGroup(checks.Checked, branches.SliderBranch, Group):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -160,12 +160,12 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.
     label : str
-        Put behind the names of links and forces of a second slider group in one mechanism.
+        Appended to the names of links and forces of a second slider group in one mechanism.
 
     Raises
     ------
     ParameterError
-        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+        A value no machine can have; the mechanism raises it where the group cannot pass change points that way.
 
     Notes
     -----
@@ -189,9 +189,7 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
     on: str = "A"
     pin: str = "B"
     label: str = ""
-    passage: str = field(default="", init=False, repr=False)
-    is_close: bool = field(default=False, init=False, repr=False)
-
+    LINKS: ClassVar = {"coupler": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
@@ -206,122 +204,60 @@ class SliderGroup(checks.Checked, change_points.Passer, near_dead_centre.Reachin
         label=checks.Name(may_be_empty=True),
     )
 
-    def found_on(self, throws):
-        """How it passes its change points on a crank with these throws."""
-        return change_points.slider_passage(self, throws)
-
-    def comes_close(self, throw):
-        """Whether the coupler, nearly as long as it must be, comes to stand nearly across the guide."""
-        return near_dead_centre.has_small_clearance(throw, self.guide.guide_offset, self.coupler_length)
-
     @property
-    def start(self):
-        """Direction, as a vector, from which its words of assembly are counted."""
-        x, y = self.guide.direction
-        return y, -x
-
-    @property
-    def links(self):
-        return {self._coupler: self.coupler, self._slider: self.slider}
-
-    @property
-    def references(self):
-        return {self._coupler: self.on, self._slider: self.pin}
-
-    @property
-    def bars(self):
-        return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
-
-    @property
-    def lengths(self):
-        return (self.coupler_length, self.guide.guide_offset, *self.coupler.centre, *self.slider.centre)
-
-    @property
-    def _coupler(self):
-        return "coupler" + self.label
-
-    @property
-    def _slider(self):
-        return "slider" + self.label
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self._slider)}
-
-    @property
-    def guides(self):
-        return {self._slider: self.guide}
-
-    @property
-    def outputs(self):
-        return {
-            self.on + self.label: joint_reaction(self._coupler, self.on),
-            self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
-            **guide_outputs(self._slider, self.pin, self.label),
-        }
-
-    @property
-    def pairs(self):
-        label = self.label
-        return {
-            self.on + label: Turning(self._coupler, self.on),
-            self.pin: Turning(self._slider, self.pin, self._coupler),
-            "guide" + label: Sliding(self._slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
-        }
+    def declaration(self):
+        return Declaration(
+            joints={self.pin: Point("slider")},
+            bars=(Bar(self.on, self.pin, "coupler", self.coupler_length),),
+            guides={"slider": self.guide},
+            inner=(Turning("coupler", self.on),),
+            pairs=(
+                Turning("slider", self.pin, "coupler"),
+                Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
+            ),
+            lengths=(self.coupler_length, self.guide.guide_offset),
+        )
 
     def sliding(self, name, placement):
-        return Slide(self.guide.line.direction, placement.travels[self._slider].first)
+        return Slide(self.guide.line.direction, placement.travels[self.called("slider")].first)
 
     def place(self, placement):
         given = self.coupler_length, self.guide.line
-        if self.passage:
-            motion = passed(placement, self.on, *given, change_points.slid, self.passage, self.side)
-        elif self.is_close:
-            motion = passed(placement, self.on, *given, near_dead_centre.slid, self.side)
+        if self.branch:
+            motion = passed(placement, self.on, *given, *self.branch)
         else:
             motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
-        self._set(placement, motion)
+        self._enter(placement, motion)
 
     def follow(self, placement, joints):
-        """Place coupler and slider at joints found in another way."""
+        """Place coupler and slider at known joints."""
         pin, direction = joints[self.pin], self.guide.direction
         coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
         sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
         travel = Joint(*(dot(direction, part) for part in pin))
         slider = LinkMotion(pin, direction, None, None)
-        self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, None, travel))
+        self._enter(placement, SliderMotion(coupler, slider, sine, cosine, cosine, None, travel))
 
-    def _set(self, placement, motion):
-        placement.joints[self.pin] = motion.slider.joint
-        placement.links[self._coupler] = motion.coupler
-        placement.links[self._slider] = motion.slider
-        placement.travels[self._slider] = motion.travel
-        placement.details[self._slider] = motion
+    def _enter(self, placement, motion):
+        links = {"coupler": motion.coupler, "slider": motion.slider}
+        self.enter(placement, motion, {self.pin: motion.slider.joint}, links, {"slider": motion.travel})
 
     def closure(self, placement):
-        return placement.details[self._slider].closure
+        return self.placed(placement).closure
 
     def requirement(self, placement):
-        distance = abs(placement.details[self._slider].sine * self.coupler_length)
+        distance = abs(self.placed(placement).sine * self.coupler_length)
         return (
             f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
-            f"{self._coupler} length, {_span(self.coupler_length)} m"
+            f"{self.called('coupler')} length, {_span(self.coupler_length)} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(
-            placement.details[self._slider],
-            self.coupler_length,
-            self.guide.line,
-            loads[self._coupler],
-            loads[self._slider],
-            along.get(self._slider),
-        )
-        return Resolved(
-            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: found.guide},
-            {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
-            {self.on: Wrench(found.inner, None)},
-        )
+        (coupler_load, slider_load), (_, push) = self.of_links(loads), self.of_links(along)
+        given = self.coupler_length, self.guide.line
+        found = resolve(self.placed(placement), *given, coupler_load, slider_load, push)
+        reactions, scalars = (found.inner, found.pin, found.guide), (found.guide_force, found.guide_moment)
+        return self.resolved(reactions, scalars, {self.on: Wrench(found.inner, None)})
 
 
 def _span(length):

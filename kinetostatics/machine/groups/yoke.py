@@ -21,12 +21,12 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Group, Output, Point, Resolved, joint_reaction
-from ..guide import Guide, guide_outputs, slider_motion
+from ..group import FRAME, Declaration, Group, Point, Resolved
+from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench
 
 MIN_SLOT_SINE = 1e-9
-"""Sine of the slot's angle from which on it counts as parallel to the guide."""
+"""Sine of the slot's angle below which the slot counts as parallel to the guide."""
 TERMS = {
     "lean": ("lambda", "cotangent of the angle of the slot"),
     "rise": ("h", "height of the joint over the guide"),
@@ -34,7 +34,7 @@ TERMS = {
     "resolve.along": ("Q", "force on the slider along its guide"),
     "resolve.across": ("V", "force on the slider across its guide"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class YokeMotion(NamedTuple):
@@ -76,8 +76,8 @@ def _block(joint, slot, guide):
 def resolve(motion, guide, block_load, slider_load, push):
     """Forces on slider and block, from the slider inwards (kernel).
 
-    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, those
-    of further groups among them. The slider's balance along the guide gives the slot force, which stands across the
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
+    the demands of further groups. The slider's balance along the guide gives the slot force, which stands across the
     slot; the block hands its couple to the slot, the slider both to the guide.
     """
     cosine, sine = motion.slot
@@ -112,7 +112,7 @@ class YokeGroup(checks.Checked, Group):
     block : Link
         Reference joint `on`, along the slot; it does not turn.
     label : str
-        Put behind the names of links and forces of a second yoke group in one mechanism.
+        Appended to the names of links and forces of a second yoke group in one mechanism.
 
     Raises
     ------
@@ -144,7 +144,7 @@ class YokeGroup(checks.Checked, Group):
     label: str = ""
 
     def _slot_across(self):
-        """Say where the slot is parallel to the guide."""
+        """Yield the problem of a slot parallel to the guide."""
         if checks.has_known_values(self.slot_angle) and np.any(
             parallel := np.abs(np.sin(self.slot_angle)) < MIN_SLOT_SINE
         ):
@@ -155,6 +155,7 @@ class YokeGroup(checks.Checked, Group):
                 parallel,
             )
 
+    LINKS: ClassVar = {"block": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
@@ -170,103 +171,62 @@ class YokeGroup(checks.Checked, Group):
     )
 
     @property
-    def links(self):
-        return {self._block: self.block, self._slider: self.slider}
-
-    @property
-    def references(self):
-        return {self._block: self.on, self._slider: self.pin}
-
-    @property
-    def slots(self):
-        return (Slot(self._slider, self.on, angle=self.slot_angle),)
+    def declaration(self):
+        return Declaration(
+            joints={self.pin: Point("slider")},
+            guides={"slider": self.guide},
+            slots=(Slot("slider", self.on, angle=self.slot_angle),),
+            inner=(Turning("block", self.on),),
+            pairs=(
+                Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
+                Sliding("block", self.on, "slider", "slot_force", "slot_moment"),
+            ),
+        )
 
     @property
     def lengths(self):
         return (self.guide.guide_offset, *self.slider.centre, *self.block.centre)
 
-    @property
-    def _block(self):
-        return "block" + self.label
-
-    @property
-    def _slider(self):
-        return "slider" + self.label
-
-    @property
-    def joints(self):
-        return {self.pin: Point(self._slider)}
-
-    @property
-    def guides(self):
-        return {self._slider: self.guide}
-
-    @property
-    def outputs(self):
-        label, block, slider = self.label, self._block, self._slider
-        return {
-            self.on + label: joint_reaction(block, self.on),
-            "slot_force" + label: Output("N", False, f"{slider} on {block} along the slot's left normal"),
-            "slot_moment" + label: Output("N m", False, f"{slider} on {block} about {self.on}"),
-            **guide_outputs(slider, self.pin, label),
-        }
-
-    @property
-    def pairs(self):
-        label, block, slider = self.label, self._block, self._slider
-        return {
-            self.on + label: Turning(block, self.on),
-            "guide" + label: Sliding(slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
-            "slot" + label: Sliding(block, self.on, slider, "slot_force" + label, "slot_moment" + label),
-        }
-
     def sliding(self, name, placement):
-        motion = placement.details[self._slider]
-        if name == "guide" + self.label:
+        motion = self.placed(placement)
+        if name == self.called("guide"):
             return Slide(self.guide.line.direction, motion.travel.first)
         climbing = rotate_back(vector_or_zero(motion.block.joint.first), self.guide.line.direction)[1]
         return Slide(motion.block.direction, climbing / motion.slot[1])
 
     def place(self, placement):
-        self._set(placement, place(placement.joints[self.on], self.guide.line, self.slot_angle))
+        self._enter(placement, place(placement.joints[self.on], self.guide.line, self.slot_angle))
 
     def follow(self, placement, joints):
-        """Place block and slider at joints found in another way."""
+        """Place block and slider at known joints."""
         joint, pin, guide = placement.joints[self.on], joints[self.pin], self.guide.line
         travel = Joint(*(rotate_back(vector_or_zero(part), guide.direction)[0] for part in pin))
         rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
         slider = LinkMotion(pin, self.guide.direction, None, None)
-        self._set(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
+        self._enter(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
 
-    def _set(self, placement, motion):
-        placement.joints[self.pin] = motion.slider.joint
-        placement.links[self._block] = motion.block
-        placement.links[self._slider] = motion.slider
-        placement.travels[self._slider] = motion.travel
-        placement.details[self._slider] = motion
+    def _enter(self, placement, motion):
+        links = {"block": motion.block, "slider": motion.slider}
+        self.enter(placement, motion, {self.pin: motion.slider.joint}, links, {"slider": motion.travel})
 
     def closure(self, placement):
-        """Squared sine of the slot's angle: it closes at all crank angles that are numbers."""
-        sine = placement.details[self._slider].slot[1]
+        """Squared sine of the slot's angle: it closes at all finite crank angles."""
+        sine = self.placed(placement).slot[1]
         return sine * sine + 0.0 * placement.angle
 
     def requirement(self, placement):
-        return f"the slot of the {self._slider} must not be parallel to its guide"
+        return f"the slot of the {self.called('slider')} must not be parallel to its guide"
 
     def elongation(self, placement, free_position):
         """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
-        motion = placement.details[self._slider]
+        motion = self.placed(placement)
         along = rotate_back(placement.joints[self.on].position, self.guide.line.direction)[0]
         return (along - free_position) - motion.slot[0] / motion.slot[1] * motion.rise
 
     def resolve(self, placement, loads, along) -> Resolved:
-        label, guide = self.label, self.guide.line
-        found = resolve(
-            placement.details[self._slider], guide, loads[self._block], loads[self._slider], along.get(self._slider)
-        )
-        scalars = {name + label: value for name, value in found._asdict().items() if name != "inner"}
+        (block_load, slider_load), (_, push) = self.of_links(loads), self.of_links(along)
+        guide = self.guide.line
+        inner, *scalars = found = resolve(self.placed(placement), guide, block_load, slider_load, push)
         on_slider = rotate((0.0, found.guide_force), guide.direction)
-        return Resolved(
-            {self.on + label: found.inner, "guide" + label: on_slider}, scalars, {self.on: Wrench(found.inner, None)}
-        )
+        return self.resolved((inner, on_slider), scalars, {self.on: Wrench(inner, None)})

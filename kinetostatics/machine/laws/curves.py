@@ -1,8 +1,8 @@
-"""Rises from 0 to 1 with dwells before and behind: the standard curves of cam design, with three exact derivatives.
+"""Standard rises of cam design, from 0 to 1 over an angle of 1, with three exact derivatives.
 
-Accelerations made of sine arcs and constants, the sine-constant-cosine family of Norton, *Cam Design and Manufacturing
-Handbook* (2009), chapter 3, hold the harmonic, cycloidal, modified sine (Neklutin) and modified trapezoid curve; powers
-hold the 3-4-5 and 4-5-6-7 polynomials (Rothbart, *Cam Design Handbook*, 2004, chapter 3).
+The sine-constant-cosine family (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 3) holds the harmonic,
+cycloidal, modified sine (Neklutin) and modified trapezoid curves; sums of powers hold the 3-4-5 and 4-5-6-7
+polynomials (Rothbart, *Cam Design Handbook*, 2004, chapter 3).
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 
 
 class Motion(NamedTuple):
-    """A position and its derivatives: by the crank angle m, m/rad, m/rad2, m/rad3; of a rise pure numbers.
+    """Position and three derivatives by the crank angle, m, m/rad, m/rad2, m/rad3; pure numbers for a rise.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Motion(NamedTuple):
 
 
 class Coefficients(NamedTuple):
-    """Peak velocity, acceleration and jerk of a rise of 1 over 1, without sign."""
+    """Largest sizes of velocity, acceleration and jerk of a rise of 1 over 1."""
 
     velocity: float
     acceleration: float
@@ -45,7 +45,7 @@ class Coefficients(NamedTuple):
 class SineConstantCosine:
     """A rise whose acceleration is a quarter sine, a constant, half a cosine, a constant, and a quarter sine.
 
-    `sines` is the part of the rise that both quarter sines take together, 0 or more; `cosine` that of the half cosine.
+    `sines` is the share of the angle of both quarter sines, 0 or more; `cosine` the share of the half cosine.
     """
 
     sines: float
@@ -53,7 +53,7 @@ class SineConstantCosine:
 
     @property
     def breaks(self):
-        """Where the jerk may jump, from 0 to 1."""
+        """Places from 0 to 1 at which the jerk may jump."""
         first, second = self.sines / 2, (1.0 - self.cosine) / 2
         return (0.0, *sorted({first, second, 1.0 - second, 1.0 - first} - {0.0, 1.0}), 1.0)
 
@@ -69,7 +69,7 @@ class SineConstantCosine:
         return 4 * pi**2 / ((pi**2 - 8) * (b * b - d * d) - 2 * pi * (pi - 2) * b + pi**2)
 
     def __call__(self, u):
-        """The second half is the first, turned about the middle."""
+        """Motion at places u from 0 to 1; the second half is the first, rotated about the middle."""
         late = u > 0.5
         position, velocity, acceleration, jerk = self._first_half(np.where(late, 1.0 - u, u))
         return Motion(
@@ -106,9 +106,9 @@ class SineConstantCosine:
 
 @dataclass(frozen=True)
 class Powers:
-    """A rise that is a sum of powers of what has passed of it: as many derivatives vanish at its end as can.
+    """A rise that is a sum of powers, with as many vanishing derivatives at its end as it has powers, less one.
 
-    The coefficient of one power is the product, over the others, of other / (other - one).
+    The coefficient of power n is the product of m / (m - n) over the other powers m.
     """
 
     powers: tuple[int, ...]
@@ -134,7 +134,7 @@ class Powers:
         return float(np.max(np.abs(curve(np.concatenate([[0.0, 1.0], inner])))))
 
     def __call__(self, u):
-        """The second half from its own end, so that what vanishes there does."""
+        """Motion at places u from 0 to 1; the second half is expanded at its end, so its zeros there are exact."""
         curve, late = self._polynomial, u > 0.5
         mirrored = curve(1.0) - curve(np.polynomial.Polynomial([1.0, -1.0]))
         found = []
@@ -148,7 +148,7 @@ class Powers:
 
 @dataclass(frozen=True)
 class Rest:
-    """No rise at all."""
+    """A dwell: no rise."""
 
     breaks: ClassVar = (0.0, 1.0)
     coefficients: ClassVar = Coefficients(0.0, 0.0, 0.0)

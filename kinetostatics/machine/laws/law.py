@@ -1,6 +1,7 @@
-"""What a law of motion is: a position as function of the crank angle with three exact derivatives.
+"""Law of motion: a position over the turn, a function of the crank angle, with three exact derivatives.
 
-A law of motion in pieces: Chebyshev polynomials on panels, with their derivatives.
+``law(phi)`` returns position, velocity, acceleration and jerk by phi (m, m/rad, m/rad2, m/rad3). Here stand the base
+`Law`, its shift by a phase, laws in Chebyshev polynomials on panels, and the checks of a user's own law.
 """
 
 from dataclasses import dataclass
@@ -15,34 +16,30 @@ from .curves import Motion
 
 TURN = 2 * np.pi
 TEST_STEPS = 720
-"""Parts of the turn in which the derivatives of a law are added up."""
-GAUSS_POINTS, GAUSS_WEIGHTS = (
-    np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]),
-    np.array([5.0, 8.0, 5.0]) / 18.0,
-)
-"""Of Gauss's quadrature over a part of 1."""
+"""Parts of the turn over which each derivative of a law is integrated and compared with the one before."""
+GAUSS_POINTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
+GAUSS_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+"""Points and weights of Gauss quadrature from 0 to 1."""
 MAX_JUMP_SHARE = 0.1
-"""Share of these parts in which something may jump."""
-
-
+"""Largest share of these parts in which a derivative may jump."""
 KNOT_OFFSET = 1e-7
-"""Angles on both sides of a knot, rad, at which it is looked at."""
+"""Distance from a knot, rad, at which jumps are measured."""
 MIN_JUMP = 1e-4
-"""Share of its largest value by which an acceleration or a jerk jumps at a knot that is none by rounding."""
+"""Smallest jump of an acceleration or a jerk that is not rounding, relative to its largest value."""
 
 
 class Breakpoint(NamedTuple):
-    """A crank angle, rad, at which the jerk of a law `jumps`, or its acceleration does too."""
+    """A crank angle, rad, at which the jerk of a law jumps; `jumps` if the acceleration jumps too."""
 
     angle: float
     jumps: bool
 
 
 class Law:
-    """A position over the whole turn, m, with three derivatives by the crank angle: ``law(phi)``.
+    """Position over the whole turn, m, with three derivatives by the crank angle: ``law(phi)``.
 
-    A law of one's own needs no more than to be called so; `knots` says at which angles its jerk or its acceleration
-    jumps, if it does.
+    Any function that returns the four is a law; an attribute `knots` gives the angles at which its jerk or acceleration
+    jumps.
 
     Examples
     --------
@@ -64,7 +61,7 @@ class Law:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
 
     def shifted(self, phase):
-        """The same law, later by a phase, rad.
+        """The same law delayed by a phase, rad.
 
         Examples
         --------
@@ -78,7 +75,7 @@ class Law:
 
 @dataclass(frozen=True, eq=False)
 class ShiftedLaw(Law):
-    """A law that comes later by a phase, rad."""
+    """A law delayed by a phase, rad; made by `Law.shifted`."""
 
     law: Any
     phase: float
@@ -96,12 +93,12 @@ class ShiftedLaw(Law):
 
 
 def knots_of(law):
-    """Angles at which the jerk of a law jumps, or may; none where it does not say."""
+    """Angles at which the jerk of a law may jump, rad; none if it declares none."""
     return tuple(getattr(law, "knots", ()))
 
 
 def breakpoints_of(law):
-    """Knots of a law at which its acceleration or its jerk jumps, each a `Knot`; not those that are smooth."""
+    """Knots of a law at which its acceleration or jerk jumps, each a `Breakpoint`."""
     angle = np.unique(np.mod(np.array(knots_of(law), dtype=float), TURN))
     if not angle.size:
         return ()
@@ -114,7 +111,7 @@ def breakpoints_of(law):
 
 
 def angle_array(phi):
-    """Crank angles as an array, one for a single number."""
+    """Crank angles as an array of float, rad."""
     phi = checks.to_plain_named("law", "crank angle", phi, "rad")
     if isinstance(phi, np.ndarray) and phi.size:
         checks.require("law", checks.count("the number of crank angles", phi.size, size=phi.itemsize))
@@ -125,7 +122,7 @@ def angle_array(phi):
 
 
 def law_problem(law):
-    """What is wrong with a law, as a sentence, or None."""
+    """Problem of a law, as a sentence, or None."""
     if not callable(law) or isinstance(law, type):
         return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
     angle = np.array([-1.0, 0.5, 0.5 + TURN])
@@ -151,7 +148,7 @@ def _parts(law, angle):
 
 
 def _derivative_problem(law):
-    """Whether each part of a law is what the next adds up to, but for a few steps with a jump between them."""
+    """Problem of a law whose derivatives do not integrate to the part before, except at a few jumps; or None."""
     edges = np.linspace(0.0, TURN, TEST_STEPS + 1)
     width = edges[1]
     ends = _parts(law, edges)
@@ -173,7 +170,7 @@ def _derivative_problem(law):
 
 @dataclass(frozen=True, eq=False)
 class PanelLaw(Law):
-    """A law of the whole turn from polynomials on panels of it."""
+    """A law of the whole turn from Chebyshev polynomials on panels."""
 
     panels: Panels
 

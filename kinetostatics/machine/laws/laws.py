@@ -1,13 +1,11 @@
-"""Segments of a turn in which a position goes from one value to another: the standard curves of cam design.
+"""Laws of motion of `ks.laws`: segments by the standard curves of cam design, and laws of the whole turn.
 
-Laws of motion: a position as function of the crank angle with three exact derivatives, whole turns and segments.
-
-cosine, joined, table             laws of the whole turn: law(phi) -> position, velocity, acceleration, jerk by phi
 harmonic, cycloidal, polynomial,
 modified_sine, modified_trapezoid,
-dwell                             segments of a turn, for `joined`; alone they are laws of their own angle
+dwell                             segments of a turn, for `joined`; alone they are functions of their own angle
+cosine, joined, table             laws of the whole turn: law(phi) -> position, velocity, acceleration, jerk by phi
 
-A cam that makes a slider follow a law of the whole turn comes from ``cams.from_law``.
+``cams.from_law`` makes the cam whose slider follows a law of the whole turn.
 """
 
 from dataclasses import dataclass
@@ -24,13 +22,13 @@ from .law import TURN, Law, angle_array
 from .turn_table import TurnTable
 
 TURN_TOLERANCE = 1e-12
-"""How far segments may be from a whole turn, relative to it."""
+"""Largest difference of the segments together from a whole turn, relative to the turn."""
 POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
 
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve.
+    """Part of a turn: the position goes from `start` to `end`, m, over `angle`, rad, by a standard curve.
 
     Examples
     --------
@@ -48,7 +46,7 @@ class Segment:
 
     @property
     def coefficients(self):
-        """Largest velocity, acceleration and jerk of the curve, as for a stroke of 1 in an angle of 1."""
+        """Largest velocity, acceleration and jerk of the curve for a stroke of 1 over an angle of 1."""
         return self.rise.coefficients
 
     @property
@@ -68,7 +66,7 @@ class Segment:
         return self.at(phi)
 
     def at(self, phi):
-        """The same, nothing checked."""
+        """The same, unchecked."""
         stroke, share = self.end - self.start, 1.0 / self.angle
         found = self.rise(np.clip(phi * share, 0.0, 1.0))
         position = self.start + stroke * found.position
@@ -86,14 +84,14 @@ def _segment(owner, start, end, angle, rise):
 
 
 def harmonic(start, end, angle):
-    """Segment: simple harmonic motion, half a cosine; its acceleration jumps at both ends beside a dwell.
+    """Segment: simple harmonic motion, half a cosine; next to a dwell its acceleration jumps.
 
     Parameters
     ----------
     start, end : float
         Positions, m.
     angle : float
-        Crank angle it takes, rad.
+        Crank angle that it takes, rad.
 
     Returns
     -------
@@ -102,7 +100,7 @@ def harmonic(start, end, angle):
     Raises
     ------
     ParameterError
-        A value is no number, or the angle not between 0 and a turn.
+        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -114,16 +112,16 @@ def harmonic(start, end, angle):
 
 
 def cycloidal(start, end, angle):
-    """Segment: cycloidal motion, a sine of acceleration.
+    """Segment: cycloidal motion, whose acceleration is a sine.
 
-    Peak velocity 2, acceleration 2 pi, jerk 4 pi^2 of a stroke of 1 in an angle of 1.
+    For a stroke of 1 over an angle of 1 the peak velocity is 2, acceleration 2 pi, jerk 4 pi^2.
 
     Parameters
     ----------
     start, end : float
         Positions, m.
     angle : float
-        Crank angle it takes, rad.
+        Crank angle that it takes, rad.
 
     Returns
     -------
@@ -132,7 +130,7 @@ def cycloidal(start, end, angle):
     Raises
     ------
     ParameterError
-        A value is no number, or the angle not between 0 and a turn.
+        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -144,14 +142,14 @@ def cycloidal(start, end, angle):
 
 
 def modified_sine(start, end, angle):
-    """Segment: modified sine, low velocity (Neklutin).
+    """Segment: modified sine (Neklutin), of low peak velocity.
 
     Parameters
     ----------
     start, end : float
         Positions, m.
     angle : float
-        Crank angle it takes, rad.
+        Crank angle that it takes, rad.
 
     Returns
     -------
@@ -160,7 +158,7 @@ def modified_sine(start, end, angle):
     Raises
     ------
     ParameterError
-        A value is no number, or the angle not between 0 and a turn.
+        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -172,14 +170,14 @@ def modified_sine(start, end, angle):
 
 
 def modified_trapezoid(start, end, angle):
-    """Segment: modified trapezoid, low acceleration (Neklutin).
+    """Segment: modified trapezoid (Neklutin), of low peak acceleration.
 
     Parameters
     ----------
     start, end : float
         Positions, m.
     angle : float
-        Crank angle it takes, rad.
+        Crank angle that it takes, rad.
 
     Returns
     -------
@@ -188,7 +186,7 @@ def modified_trapezoid(start, end, angle):
     Raises
     ------
     ParameterError
-        A value is no number, or the angle not between 0 and a turn.
+        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -200,15 +198,15 @@ def modified_trapezoid(start, end, angle):
 
 
 def polynomial(start, end, angle, powers="3-4-5"):
-    """Segment: sum of powers of the angle, whose coefficients follow from rest at both ends.
+    """Segment: sum of powers of the angle with rest at both ends.
 
     Parameters
     ----------
     start, end, angle : float
         As for `harmonic`.
     powers : "3-4-5", "4-5-6-7" or sequence of int
-        Two powers or more, from 2 to 15, rising; the lowest n leaves n - 1 derivatives zero at the start, so many
-        powers as many less one at the end.
+        Two powers or more, from 2 to 15, rising. The lowest power n gives n - 1 zero derivatives at the start, and k
+        powers give k - 1 at the end.
 
     Returns
     -------
@@ -217,7 +215,7 @@ def polynomial(start, end, angle, powers="3-4-5"):
     Raises
     ------
     ParameterError
-        As for `harmonic`, or the powers are none.
+        As for `harmonic`, or the powers are invalid.
 
     Examples
     --------
@@ -244,7 +242,7 @@ def dwell(position, angle):
     position : float
         m.
     angle : float
-        Crank angle it takes, rad.
+        Crank angle that it takes, rad.
 
     Returns
     -------
@@ -253,7 +251,7 @@ def dwell(position, angle):
     Raises
     ------
     ParameterError
-        A value is no number, or the angle not between 0 and a turn.
+        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -285,7 +283,7 @@ __all__ = [
 ]
 
 JUMP_TOLERANCE = 1e-9
-"""Jump between segments, relative to the largest of its kind, that counts as rounding."""
+"""Largest jump between segments that is rounding, relative to the largest value of its kind."""
 DERIVATIVE_UNITS = {"velocity": "m/rad", "acceleration": "m/rad2"}
 
 
@@ -322,7 +320,7 @@ def cosine(amplitude, mean, phase=0.0):
     Raises
     ------
     ParameterError
-        A value is no number, or the amplitude not greater than 0.
+        A value is not a number, or the amplitude not greater than 0.
 
     Examples
     --------
@@ -338,12 +336,12 @@ def cosine(amplitude, mean, phase=0.0):
     return Cosine(**checks.single_numbers("cosine law", **rules))
 
 
-# Segments one after the other
+# Segments in sequence
 
 
 @dataclass(frozen=True, eq=False)
 class JoinedLaw(Law):
-    """Segments that fill a turn; made by `joined`."""
+    """Sequence of segments that fill a turn; made by `joined`."""
 
     segments: tuple[Segment, ...]
 
@@ -369,15 +367,15 @@ class JoinedLaw(Law):
 
 
 def joined(*segments, smooth="acceleration"):
-    """Law of the whole turn from segments, one after the other from crank angle 0: rise, dwell, return ...
+    """Law of the whole turn from a sequence of segments that starts at crank angle 0: rise, dwell, return ...
 
     Parameters
     ----------
     segments : Segment
-        As of `cycloidal`, `dwell` and the others; together they take a turn.
+        Made by `cycloidal`, `dwell` and the others; together they take a turn.
     smooth : "acceleration" or "velocity"
-        What must not jump from one segment to the next, and all below it. A jump of the acceleration is one of the
-        forces: allowed by "velocity".
+        Highest derivative that must not jump between segments. "velocity" allows jumps of the acceleration, and with it
+        of the forces.
 
     Returns
     -------
@@ -386,7 +384,7 @@ def joined(*segments, smooth="acceleration"):
     Raises
     ------
     ParameterError
-        The segments do not fill a turn, or something jumps between them: each place with both numbers.
+        The segments do not fill a turn, or a value jumps between them; the message gives both values at each place.
 
     Examples
     --------
@@ -420,7 +418,7 @@ def joined(*segments, smooth="acceleration"):
 
 
 def _jumps(segments, smooth):
-    """What jumps from each segment to the next, the first again behind the last, as sentences."""
+    """Sentences on values that jump between segments, the last and the first too."""
     angle, kinds = 0.0, {"position": "m", **DERIVATIVE_UNITS}
     largest = [
         max(float(np.max(np.abs(part))) for part in parts)
@@ -452,7 +450,7 @@ def _remedy(kind):
 
 @dataclass(frozen=True, eq=False)
 class TableLaw(Law):
-    """A spline through a table over the turn; made by `table`."""
+    """Spline through a table over the turn; made by `table`."""
 
     rows: TurnTable
 
@@ -480,29 +478,29 @@ def table(angle, position, noise=None):
     Parameters
     ----------
     angle : array (N,)
-        Rad, rising, within one turn, end excluded; need not be evenly spaced.
+        rad, rising, within one turn, end excluded; spacing may vary.
     position : array (N,)
         m.
     noise : float, optional
-        Standard deviation of the positions, m (of positions rounded to a step 0.29 of it): the spline then passes as
-        smoothly as it explains. Without it the spline goes through every point.
+        Standard deviation of the positions, m; for positions rounded to a step, 0.29 of the step. The spline is then
+        the smoothest within that noise. Without noise it passes through every point.
 
     Returns
     -------
     Law
-        Its `force_error` is what forces are uncertain by, relative to the largest.
+        Its `force_error` is the expected error of forces relative to the largest.
 
     Raises
     ------
     ParameterError
-        Fewer than 8 points, angles not rising or more than one turn, a value that is not finite, or noise that the
-        positions cannot have.
+        Fewer than 8 points, angles not rising or beyond one turn, a value that is not finite, or noise smaller than any
+        smooth curve through the positions allows.
 
     Warns
     -----
     UserWarning
-        The table is too coarse or too noisy: `force_error` is a hundredth or more. Or the noise stated is more than
-        three times what the positions show, or less than a third.
+        The table is too coarse or too noisy: `force_error` is 0.01 or more. Or the stated noise is more than three
+        times the scatter of the positions, or less than a third.
 
     Examples
     --------

@@ -1,6 +1,7 @@
-"""A value over the turn from a table: a periodic quintic spline through its points, or as near as their noise allows.
+"""Value over the turn from a table, by a periodic quintic spline, with the expected error of its second derivative.
 
-A table says how far its second derivative can be trusted, from its own noise and coarseness.
+The spline interpolates the points, or is the smoothest within their stated noise. The error follows from the scatter of
+the points and the coarseness of the table.
 """
 
 import math
@@ -14,19 +15,19 @@ from ...numbers import checks
 from ...numbers.lazy import cached_property
 
 NOISE_IN_SECOND_DERIVATIVE = 16.0
-"""Largest error of r'' that noise of 1 makes at points 1 apart: a standard deviation of 4.8, exceeded 3.3 times."""
+"""Largest error of r'' from noise 1 at points 1 apart: 3.3 times its standard deviation of 4.8."""
 SPLINE_DEGREE = 5
 BALANCING_RATIO = 7.0
-"""How many times inertia forces exceed what springs or counterweights leave of them."""
+"""Ratio of inertia forces to the rest that springs or counterweights leave."""
 NOISE_TRIALS = 6
-"""Tables with other noise of the same size that tell how far a smoothed one can be trusted."""
+"""Number of tables with random noise of the same size that estimate the error of a smoothed table."""
 MAX_NOISE_RATIO = 3.0
-"""How many times the noise that a table shows may differ from the noise stated."""
+"""Largest ratio of the stated noise to the scatter of the table, or the reverse, without a warning."""
 
 
 @dataclass(frozen=True, eq=False)
 class TurnTable:
-    """Values at angles within a turn, made by `of`; `smoothing` is the noise stated, None: through every point."""
+    """Values at angles within a turn; made by `of`. `smoothing` is the stated noise, None to interpolate."""
 
     angle: np.ndarray
     values: np.ndarray
@@ -34,7 +35,7 @@ class TurnTable:
 
     @classmethod
     def of(cls, owner, angle, values, name, smoothing=None, positive=False):
-        """Table of values from outside; `name` is what errors call them.
+        """Table of checked values; `name` stands for the values in messages.
 
         Raises
         ------
@@ -77,7 +78,7 @@ class TurnTable:
         return made
 
     def _check_noise(self, owner, name):
-        """Refuse noise too small to be that of the table; warn of noise that is not what it shows."""
+        """Raise an error if no smooth curve comes within the noise; warn if it differs from the scatter."""
         if self.smoothing is None:
             return
         if self._fit(self.values) is None:
@@ -105,7 +106,7 @@ class TurnTable:
         return 0.0 if self.smoothing is None else self.smoothing
 
     def _fit(self, values):
-        """Smoothest spline within the noise stated of the values; None where there is none."""
+        """Smoothest spline within the stated noise of the values; None if there is none."""
         from scipy.interpolate import BSpline, splrep
 
         goal = values.size * self._stated**2
@@ -116,10 +117,10 @@ class TurnTable:
 
     @cached_property
     def noise(self):
-        """Standard deviation of the values about a smooth curve; of values rounded to a step, 0.29 of it.
+        """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
 
-        From what each value differs by from the polynomial through its neighbours, for the number of neighbours that
-        explains the table best.
+        From the distance of each value from the polynomial through its neighbours, with the number of neighbours that
+        gives the smallest.
         """
         return min(_roughness(self.angle, self.values, reach) for reach in range(2, 7) if 2 * reach < self.angle.size)
 
@@ -127,10 +128,9 @@ class TurnTable:
     def second_derivative_error(self):
         """Expected largest error of the second derivative over the turn, from noise and coarseness of the table.
 
-        Half of the points tell it too, and worse: by the noise that shows in the spline through all of them, and by
-        2^4 times its truncation. So their difference bounds both, and a twelfth of it the truncation (a fifteenth, and
-        something for coarse tables); where it is more than `noise` can cause, the rest is truncation. A smoothed table
-        errs by what other noise of the same size makes of the smooth curve itself.
+        The spline through every second point has 2^4 times the truncation error, so the difference of both splines
+        bounds noise and truncation, and a twelfth of it (1/15 and a margin for coarse tables) the truncation. Noise is
+        bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
         """
         nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
@@ -143,16 +143,15 @@ class TurnTable:
         return min(difference, caused + difference / 12)
 
     def force_error(self, largest):
-        """Expected largest error of a force, relative to its largest value, from the `largest` acceleration by angle.
+        """Expected largest error of a force, relative to its largest value; `largest` acceleration in m/rad2.
 
-        The error of an acceleration, relative to the largest over the turn at even speed, is that of inertia forces.
-        Springs or counterweights that balance them leave a fraction, but the error whole: the figure is for a machine
-        in which they leave a seventh, and on the safe side for others.
+        It is the relative error of the acceleration at constant speed, times seven: springs or counterweights balance
+        inertia forces, but not their error, and leave a seventh of them.
         """
         return BALANCING_RATIO * self.second_derivative_error / float(largest) if largest > 0 else math.inf
 
     def warn_if_uncertain(self, owner, symbol, name, force_error):
-        """Warn of a table that leaves forces uncertain by a hundredth or more."""
+        """Warn if forces are uncertain by 0.01 or more of the largest."""
         if force_error >= 0.01:
             remedy = ", or state their noise to have them smoothed" if self.smoothing is None else ""
             warnings.warn(
@@ -175,14 +174,14 @@ class TurnTable:
 
 
 def _periodic(angle, values):
-    """Angles and values with the first again behind the last."""
+    """Angles and values with the first point repeated a turn later."""
     return np.append(angle, angle[0] + 2 * np.pi), np.append(values, values[0])
 
 
 def _roughness(angle, radius, reach):
-    """Root mean square of what each value differs by from the polynomial through `reach` neighbours on both sides.
+    """Root mean square distance of the values from polynomials through `reach` neighbours on both sides.
 
-    In units of one value: what independent noise of that size in every value would give.
+    It is scaled to the standard deviation of independent noise in every value.
     """
     size = angle.size
     steps = [step for step in range(-reach, reach + 1) if step]

@@ -1,14 +1,6 @@
-"""Loads on the links besides inertia: weight, forces and couples, springs, dampers, and tables of their values.
+"""Loads besides inertia: weight, forces, couples, springs, dampers, and tables of their values.
 
-load        what a load is
-gravity     weight
-slider      spring and process force along a guide
-places      points of links, by which loads say where they act
-points      forces, springs and dampers at points
-torsion     couples on links
-tables      values by crank angle or travel: rows their rows, bending those that bend, crossings where they are passed
-kinked      what loads declare of their kinks and jumps
-period      turns after which loads repeat
+May import errors, numbers and the modules of `machine` that describe links and mechanisms.
 """
 
 from .gravity import Gravity
@@ -47,8 +39,8 @@ KINDS = (
 
 __all__ = [
     "KINDS",
-    "MOST_TURNS",
-    "STRAIGHT",
+    "KINK_TOLERANCE",
+    "MAX_TURNS",
     "TURN",
     "Force",
     "Gravity",
@@ -63,16 +55,16 @@ __all__ = [
     "TorsionDamper",
     "TorsionSpring",
     "WholeTurns",
-    "bends_of",
-    "by_sense",
-    "in_rows",
-    "is_bent",
-    "is_given",
-    "kinked",
+    "depends_on_sense",
+    "has_no_user_code",
+    "has_significant_kinks",
+    "kink_sources",
     "kinks_of",
     "may_refuse",
+    "pad_rows",
     "period_of",
     "period_on",
     "refusals",
+    "significant_kinks",
     "value_of",
 ]

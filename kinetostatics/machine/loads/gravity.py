@@ -1,4 +1,4 @@
-"""Weight."""
+"""Weight of the links: a field of constant acceleration."""
 
 import math
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ class Gravity(Load):
     Parameters
     ----------
     acceleration : float
-        m/s2. Unless told 9.81, the rounded value that studies and textbooks count with; standard gravity is 9.80665,
-        0.03 % less (ISO 80000-3).
+        m/s2. The default 9.81 is the rounded value of studies and textbooks; standard gravity is 9.80665, 0.03 % less
+        (ISO 80000-3).
     direction : float
-        Angle of the direction it pulls in, from +x, rad; straight down (-pi/2) unless told.
+        Direction of the pull, counter-clockwise from +x, rad; by default straight down (-pi/2).
 
     Raises
     ------
@@ -50,15 +50,16 @@ class Gravity(Load):
 
     @cached_property
     def vector(self):
-        """Components (x, y), m/s2."""
+        """Acceleration (x, y), m/s2."""
         x, y = ray(self.direction)
         return self.acceleration * x, self.acceleration * y
 
     def potential(self, motion):
-        """Energy of all weights, J; zero at the height of O."""
+        """Potential energy of all links, J; zero at O."""
         links = motion.placement.links
-        return reduce(plus, (self._of_link(links[name], link.body) for name, link in motion.mechanism.links.items()))
+        parts = (self._link_potential(links[name], link.body) for name, link in motion.mechanism.links.items())
+        return reduce(plus, parts)
 
-    def _of_link(self, motion, body):
+    def _link_potential(self, motion, body):
         centre = add_vectors(motion.joint.position, arm(motion.direction, body.along, body.across))
         return product(body.mass, -dot(self.vector, centre))

@@ -1,33 +1,33 @@
-"""What a load is: the protocol by which everything else asks it.
+"""Protocol of loads, and of their kinks and jumps.
 
-A load is a frozen dataclass derived from `Load`. It acts in one of two ways:
+A load is a frozen dataclass derived from `Load`. It acts in one of two ways, computed from a `Motion` by arithmetic:
 
-    wrenches(motion)    pairs of a link's name and the `Wrench` on it about its reference joint; on the frame they end
-    push(motion)        force on the slider `on` along its guide, kept apart as it may nearly cancel with inertia
+    wrenches(motion)    pairs of a link's name, or the frame's, and the `Wrench` on it about its reference joint
+    push(motion)        force on the slider `on` along its guide, N
 
-a spring along a guide says besides by ``spring_rate(motion)`` what it takes, over its elongation from `free_position`,
-which is then all of its push, and may by ``parted_rate(motion)`` say how much of that no crank angle changes;
+A spring along a guide also gives ``spring_rate(motion)``, N/m; its push is minus that rate times the elongation from
+`free_position`. ``parted_rate(motion)`` may split the rate into a constant and a rest. Both keep digits where spring
+and inertia nearly cancel.
 
-from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` names the field that may hold an array over
-the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
-such a function gives in its place before (`settled`). ``LENGTHS`` names the fields that hold
-lengths and angles of the geometry. ``potential(motion)``, of loads that have one, is their potential energy, J; those
-that turn to heat what they take, as dampers do, say so by ``DISSIPATES``. ``misplaced(mechanism)`` says what of a
-mechanism it names wrongly, ``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)``
-how it is drawn. Where it has kinks and jumps, it or its value may declare: see `kinked`.
+    VALUE, UNIT             field that may hold an array over the crank angles, a `Table` or a function of the motion
+                            instead of a number, and its unit; `evaluate_load` replaces it by values first
+    LENGTHS                 fields that hold lengths and angles of the geometry
+    potential(motion)       potential energy, J, where there is one; DISSIPATES marks dampers
+    misplaced(mechanism)    problems of the joints and links it names
+    refusals(motion)        sentences on crank angles at which it has no value; REFUSES says that there may be any
+    signs(motion)           symbols by which it is drawn
 
-What loads declare of their kinks and jumps.
+A load or its value (a `Table`, a function of the motion) may declare kinks and jumps:
 
-A load, or what gives its value (a `Table`, a function of the motion), declares them by
+    kinks(motion)               crank angles of kinks, (K,), and of jumps, (J,), rad, in its own `period` (one turn by
+                                default), whatever the crank angles of the motion
+    bends(motion, straight),    the same for each of many designs, without kinks smaller than `straight` times its
+    is_bent(straight)           largest value, as `Table` does
 
-    kinks(motion)               crank angles (K,) of kinks, and (J,) of jumps, rad, in one period of its own (`period`,
-                                one turn unless it has that), whatever crank angles the motion has
-
-and may by ``bends(motion, straight)`` and ``is_bent(straight)`` leave out those that bend by less than a share of its
-largest value, as `Table` does, for each of many designs its own. What declares none is sampled, and what it does within
-two degrees may pass unseen.
+Values without declared kinks are sampled; a peak narrower than two degrees may pass unseen.
 """
 
+from contextlib import suppress
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -40,21 +40,21 @@ from .table_pieces import TURN
 
 
 class Symbol(NamedTuple):
-    """How a load is drawn, in the poses of a motion.
+    """Symbol by which a load is drawn in the poses of a motion.
 
     Attributes
     ----------
     kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
-        A spring, damper or line is drawn between two places, all else at the first.
+        Springs, dampers and lines run from `start` to `end`; all others stand at `start`.
     start : array (2, N)
     end : array (2, N), optional
-        Of a spring on a slider None: beside its guide, from the end of its way.
+        None for a spring on a slider, which is drawn beside the guide.
     direction : array (2, N), optional
-        Of a force: unit vector of a positive one.
+        Unit vector of a positive force.
     slider : str
-        That a spring is on.
+        Slider of a spring along a guide.
     sense : array (N,) or float
-        Of a force or couple: -1 where it acts against its positive sense.
+        -1 where a force or couple acts against its positive sense, else 1.
     """
 
     kind: str
@@ -66,7 +66,7 @@ class Symbol(NamedTuple):
 
 
 class Load(checks.Checked, Batched):
-    """What all loads have in common; see the module."""
+    """Base of all loads; the module describes the protocol."""
 
     PATH: ClassVar[str] = ""
     VALUE: ClassVar[str] = ""
@@ -77,26 +77,26 @@ class Load(checks.Checked, Batched):
 
     @property
     def value_now(self) -> Any:
-        """What stands for its force or moment: a number, an array, a table or a function; None if that is fixed."""
+        """Force or moment: a number, an array, a table or a function; None for springs, dampers and weight."""
         return getattr(self, self.VALUE) if self.VALUE else None
 
     @property
     def is_given(self):
-        """Whether it is numbers, checked when it was made, and no code of the user's."""
+        """Whether it consists of checked numbers, without a function of the user's."""
         return not callable(self.value_now)
 
     @property
     def period(self) -> float:
-        """Crank angle after which it repeats, rad."""
+        """Period, rad of the crank."""
         return getattr(self.value_now, "period", TURN)
 
     @property
     def title(self):
-        """What messages call it."""
+        """Name of the load in messages."""
         return type(self).__name__
 
     def problems(self, mechanism):
-        """What is wrong with it, and with its table, on a mechanism, as sentences."""
+        """Problems of the load and its table on a mechanism, as sentences or None."""
         table = self.value_now
         if not isinstance(table, Table):
             return [*self.misplaced(mechanism)]
@@ -105,25 +105,27 @@ class Load(checks.Checked, Batched):
         return [*self.misplaced(mechanism), *table.problems(mechanism), wrong if table.unit not in ("", own) else None]
 
     def misplaced(self, mechanism) -> Any:
-        """What is wrong with the joints and links that it names."""
+        """Problems of the joints and links that it names, as sentences or None."""
         return ()
 
     def refusals(self, motion) -> Any:
-        """Where it has no value, as sentences."""
+        """Sentences on the crank angles at which it has no value."""
         return ()
 
     def signs(self, motion) -> Any:
-        """How it is drawn, each as a `Sign`."""
+        """Symbols by which it is drawn, each a `Symbol`."""
         return ()
 
     def sense(self, motion) -> Any:
         """Sign of its value in the poses of a motion, 1 or -1.
 
-        Where it is zero or has none, as beyond a table, that of its largest; 1 for a function.
+        Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
         """
         value = self.value_now
         if isinstance(value, Table):
-            known, here = value.largest, _read(value, motion)
+            known, here = value.largest, 0.0
+            with suppress(ParameterError):
+                here = value(motion)
         elif value is None or callable(value):
             return 1.0
         else:
@@ -133,57 +135,49 @@ class Load(checks.Checked, Batched):
         return np.where(here == 0, -1.0 if known < 0 else 1.0, np.sign(here))
 
 
-def _read(table, motion):
-    """Values of a table in the poses of a motion; zero if it has none in one of them."""
-    try:
-        return table(motion)
-    except ParameterError:
-        return 0.0
-
-
 def has_no_user_code(item):
-    """Whether a load is numbers, checked when it was made, and no code of the user's."""
+    """Whether a load consists of checked numbers, without code of the user's."""
     return isinstance(item, Load) and item.is_given
 
 
 def value_of(item):
-    """What stands for the force or moment of a load, also of one of the user's own; None if that is fixed."""
+    """Force or moment of a load, also of one of the user's own: see `Load.value_now`."""
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
 
 
 def depends_on_sense(item):
-    """Whether a load declares that it depends on which way the crank turns."""
+    """Whether a load declares that it depends on the sense of rotation of the crank."""
     return getattr(value_of(item), "by_sense", False)
 
 
 def refusals(motion):
-    """Where loads have no value at the crank angles of a motion, as sentences."""
+    """Sentences on the crank angles of a motion at which loads have no value."""
     return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]
 
 
 def may_refuse(item):
-    """Whether there are motions for which a load has no value."""
+    """Whether a load has no value for some motions."""
     return isinstance(item, Load) and item.REFUSES
 
 
 def value_rule(unit):
-    """Rule of what is a number, an array over the crank angles, a table, or a function of the motion."""
+    """Rule of a value that is a number, an array over the crank angles, a table, or a function of the motion."""
     return checks.OrFunction(checks.Number(unit, table=True))
 
 
 def kink_sources(loads):
-    """Parts of loads that declare kinks: loads themselves, or their values."""
+    """Loads and values of loads that declare kinks, a list."""
     parts = (part for item in loads for part in (item, value_of(item)))
     return [part for part in parts if hasattr(part, "kinks")]
 
 
 def kinks_of(part, motion):
-    """Crank angles (K,) of kinks and (J,) of jumps that a part declares, brought into its period.
+    """Crank angles of kinks, (K,), and of jumps, (J,), that a part declares, rad, wrapped into its period.
 
     Raises
     ------
     ParameterError
-        It declares something else than two rows of finite crank angles.
+        It returns something other than two arrays of finite crank angles.
     """
     found = part.kinks(motion)
     try:
@@ -201,12 +195,16 @@ def kinks_of(part, motion):
 
 
 def has_significant_kinks(part, straight):
-    """Whether what declares kinks has some that bend by so much."""
+    """Whether a part has kinks larger than `straight` times its largest value, or jumps."""
     return not hasattr(part, "is_bent") or part.is_bent(straight)
 
 
 def significant_kinks(part, motion, straight):
-    """Crank angles (1 or designs, K), NaN where a design has fewer, which (K,) jump, by what share it bends besides."""
+    """Crank angles of the kinks larger than `straight` times the largest value of a part, rad, (1 or designs, K).
+
+    Rows end with NaN where a design has fewer. Also which of them are jumps, (K,), and the largest kink left out,
+    relative to the largest value.
+    """
     if hasattr(part, "bends"):
         return part.bends(motion, straight)
     kinks, jumps = kinks_of(part, motion)
@@ -214,5 +212,5 @@ def significant_kinks(part, motion, straight):
 
 
 def period_on(part, mechanism):
-    """Crank angle after which what declares kinks repeats on a mechanism, rad."""
+    """Period of a part that declares kinks on a mechanism, rad."""
     return part.period_on(mechanism) if hasattr(part, "period_on") else getattr(part, "period", TURN)

@@ -1,6 +1,8 @@
-"""Loads at points of links: forces, springs and dampers, fixed in direction, turning with a link, or between points.
+"""Loads at points of links: forces of given direction, and forces, springs and dampers along the line of two points.
 
-Places at which loads act: a joint, a place on a link, or a fixed point.
+A point is a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y). A force F at a
+point with lever r from the reference joint of its link is the wrench (F, r x F). A load between two points acts
+oppositely on both.
 """
 
 import math
@@ -22,7 +24,7 @@ PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a 
 
 
 class PlaceRule:
-    """Rule of a place; kept as a name, as (link, along, across), or as (x, y)."""
+    """Rule of a point; the value is a name, (link, along, across) or (x, y), m."""
 
     def quick(self, value):
         if type(value) is str and value and value.isprintable():
@@ -32,9 +34,9 @@ class PlaceRule:
             return checks.UNDECIDED if checks.UNDECIDED in numbers else (*value[:-2], *numbers)
         return checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, str):
-            return checks.Name().taken(value, field)
+            return checks.Name().check(value, field)
         wrong = f"{field} must be {PLACE_FORMS}, got {checks.shown(value)}"
         try:
             parts = list(value)
@@ -47,11 +49,11 @@ class PlaceRule:
         if len(numbers) != 2 or any(isinstance(part, str) for part in numbers):
             return value, wrong
         of = ("along", "across") if names else ("x", "y")
-        found = [COORDINATE.taken(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
+        found = [COORDINATE.check(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
         return (*names, *(part for part, _ in found)), found[0][1] or found[1][1]
 
     def numbers(self, value):
-        """Name, steps and rule of each number of a place, for paths."""
+        """Name, place and rule of each number of a point, for parameter paths."""
         if isinstance(value, str):
             return
         names = ("along", "across") if isinstance(value[0], str) else ("x", "y")
@@ -60,7 +62,7 @@ class PlaceRule:
 
 
 class PlacePairRule:
-    """Rule of a pair of places."""
+    """Rule of a pair of points."""
 
     rule = PlaceRule()
 
@@ -70,14 +72,14 @@ class PlacePairRule:
         found = tuple(self.rule.quick(part) for part in value)
         return checks.UNDECIDED if checks.UNDECIDED in found else found
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
             return value, f"{field} must be a pair of points, each {PLACE_FORMS}, got {checks.shown(value)}"
-        found = [self.rule.taken(part, f"{field} {number}") for number, part in enumerate(value, 1)]
+        found = [self.rule.check(part, f"{field} {number}") for number, part in enumerate(value, 1)]
         return tuple(part for part, _ in found), "; ".join(problem for _, problem in found if problem) or None
 
     def numbers(self, value):
-        """Name, steps and rule of each number of both places, for paths."""
+        """Name, place and rule of each number of both points, for parameter paths."""
         for number, part in enumerate(value):
             for name, steps, rule in self.rule.numbers(part):
                 yield f"{number + 1}.{name}", (number, *steps), rule
@@ -87,7 +89,7 @@ PLACE_RULE = PlaceRule()
 
 
 def point_on_link(mechanism, place) -> Point:
-    """The point of a link that a place is; a joint fixed to the frame is one of the link that turns about it."""
+    """Link that carries a point, and the point's place on it; a fixed pivot belongs to the link that turns about it."""
     if not isinstance(place, str):
         return Point(*place) if isinstance(place[0], str) else Point(FRAME, *place)
     point = mechanism.joints[place]
@@ -96,7 +98,7 @@ def point_on_link(mechanism, place) -> Point:
 
 
 def wrench_at(motion, place, force):
-    """Link that a force at a place acts on, and its wrench there."""
+    """Link that a force at a point acts on, and the wrench about its reference joint."""
     point = point_on_link(motion.mechanism, place)
     if point.link == FRAME:
         return FRAME, Wrench(force, None)
@@ -106,7 +108,7 @@ def wrench_at(motion, place, force):
 
 
 def place_problem(owner, field, place, mechanism) -> Any:
-    """What is wrong with a place on a mechanism, as a sentence, or None."""
+    """Problem of a point on a mechanism, as a sentence, or None."""
     if isinstance(place, str):
         if place in mechanism.links and place not in mechanism.joints:
             return f'{owner}: {field} is {place!r}, a link; name a place on it, ("{place}", along, across)'
@@ -117,7 +119,7 @@ def place_problem(owner, field, place, mechanism) -> Any:
 
 
 def place_text(place):
-    """How a place looks in a message."""
+    """Text of a point in messages."""
     if isinstance(place, str):
         return repr(place)
     words = (repr(part) if isinstance(part, str) else f"{part:.6g}" for part in place if not np.ndim(part))
@@ -125,12 +127,12 @@ def place_text(place):
 
 
 MEETING_DISTANCE = 2.0**-50
-"""Distance of two points, relative to coordinates and lengths, that is rounding and has no direction."""
+"""Largest distance of two points that meet, relative to their coordinates and the lengths: rounding."""
 MEETING_SQUARE, MEETING_LOOKAHEAD = (8.0 * MEETING_DISTANCE) ** 2, 2.0**23
-"""Square of the distance of two points, relative to their coordinates, at which they begin to meet; and how many times
-that distance their motion is followed there."""
+"""Square of the relative distance of two points below which a damper follows their motion, and how many times that
+distance it looks ahead."""
 MIN_SQUARE = 1e-280
-"""Square of a distance, m2, below which there is only zero."""
+"""Square of a distance, m2, that guards divisors."""
 TERMS = {
     "d": ("d", "from the second point to the first"),
     "distance": ("D", "distance of both points"),
@@ -138,41 +140,41 @@ TERMS = {
     "share": ("h", "share of their motion in their direction, nothing unless they meet"),
     "shortening": ("z", "rate at which the points part, over their distance"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 class ForceRule(checks.OrFunction):
-    """Rule of a force's value; two components in place of it are told what to write."""
+    """Rule of the value of a force; the message for two components says what to write."""
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) in (int, float) for part in value):
             x, y = value
             write = f"Force({math.hypot(x, y):.6g}, direction={math.atan2(y, x):.6g}, ...)"
             return value, f"{field} is a number, its direction another; for the components {value!r} write {write}"
-        return super().taken(value, field)
+        return super().check(value, field)
 
 
 @dataclass(frozen=True, eq=False)
 class Force(Load):
-    """Force at a point, in a fixed direction or in one that turns with a link.
+    """Force at a point, in a fixed direction or in a direction that turns with a link.
 
     Parameters
     ----------
     value : float, array, Table or function
         N; an array has one value for each crank angle, a function takes the `Motion` and returns such values.
     at : point
-        Where it acts: a joint, such as "B" (on the link that owns it, ``mechanism.joints``; a joint fixed to the frame
-        stands for the link that turns about it), a place on a link, ("coupler", along, across) in m as mass centres
-        are given, or a fixed point (x, y), where the frame takes it.
+        Joint such as "B", a place on a link, ("coupler", along, across), in m and axes of mass centres, or a fixed
+        point (x, y), where the frame takes the force. A joint stands for the link that owns it (``mechanism.joints``),
+        a fixed pivot for the link that turns about it.
     direction : float
         Angle of the force, rad, counter-clockwise from +x, or from the axis of the link `along`.
     along : str, optional
-        The link that the direction turns with.
+        Link that the direction turns with.
 
     Raises
     ------
     ParameterError
-        A value is no number or not finite, or `at` is no point; when a scene is made: there is no such joint or link.
+        A value is not a finite number, or `at` is not a point; when a scene is made: there is no such joint or link.
 
     Examples
     --------
@@ -202,7 +204,7 @@ class Force(Load):
         return f"Force at {place_text(self.at)}"
 
     def misplaced(self, mechanism):
-        """Say if there is no such joint or link."""
+        """Sentences if the mechanism has no such joint or link."""
         yield place_problem("Force", "at", self.at, mechanism)
         if self.along is not None:
             yield checks.choice("Force: along", self.along, tuple(mechanism.links))
@@ -214,12 +216,12 @@ class Force(Load):
         yield wrench_at(motion, self.at, force)
 
     def _axis(self, motion):
-        """Unit vector of a positive force; None for +x."""
+        """Unit vector of a positive force; None means +x."""
         axis = None if self.along is None else motion.placement.links[self.along].direction
         return axis if present(self.direction) is None else rotate(ray(self.direction), axis)
 
     def signs(self, motion):
-        """An arrow."""
+        """Symbol of a force."""
         axis = self._axis(motion)
         direction = motion.as_vector((1.0, 0.0) if axis is None else axis)
         yield Symbol("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
@@ -241,7 +243,7 @@ class PointLoad(Load):
         return f"{type(self).__name__} between {' and '.join(map(place_text, self.between))}"
 
     def misplaced(self, mechanism):
-        """Say if there are no such points, or if both move as one."""
+        """Sentences if there are no such points, or if one link carries both."""
         owner = type(self).__name__
         wrong = [place_problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
         yield from wrong
@@ -258,16 +260,16 @@ class PointLoad(Load):
             yield wrench_at(motion, place, part)
 
     def signs(self, motion):
-        """Its sign between both points."""
+        """Symbol between both points."""
         yield Symbol(self.SIGN, *map(motion.position, self.between))
 
-    def _apart(self, motion):
+    def _distance_vector(self, motion):
         """Vector from the second point to the first."""
         first, second = (motion.spot(place).position for place in self.between)
         return vector_or_zero(subtract_vectors(first, second))
 
     def refusals(self, motion):
-        """Say at which crank angles the points meet, where the line between them has no direction."""
+        """Sentence on the crank angles at which the points meet, so that their line has no direction."""
         first, second = (motion.position(place) for place in self.between)
         if not isinstance(first, np.ndarray) or first.dtype != float:
             return
@@ -301,7 +303,7 @@ class PointForce(PointLoad):
     Raises
     ------
     ParameterError
-        As for `Force`; both points are of one link; when a scene is solved: the points meet at a crank angle.
+        As for `Force`; one link carries both points; when a scene is solved: the points meet at a crank angle.
 
     Examples
     --------
@@ -320,11 +322,11 @@ class PointForce(PointLoad):
 
     def pull(self, motion):
         """Force on the first point, N."""
-        d = self._apart(motion)
+        d = self._distance_vector(motion)
         return scale_vector(self.value / length(d), d)
 
     def signs(self, motion):
-        """A line between both points, and arrows that push them apart or pull them together."""
+        """Symbols of a line between the points and of the force on each."""
         first, second = map(motion.position, self.between)
         apart = first - second
         with np.errstate(invalid="ignore"):
@@ -344,7 +346,7 @@ class PointSpring(PointLoad):
     stiffness : float or array
         N/m.
     free_length : float or array
-        m; 0 makes it exact everywhere, also where the points meet.
+        m; with 0 the force is exact also where the points meet.
     between : (point, point)
         As for `PointForce`.
 
@@ -377,15 +379,15 @@ class PointSpring(PointLoad):
 
     def pull(self, motion):
         """Force on the first point, N."""
-        d = self._apart(motion)
+        d = self._distance_vector(motion)
         if present(self.free_length) is None:
             return scale_vector(-self.stiffness, d)
         distance = length(d)
         return scale_vector(-self.stiffness * ((distance - self.free_length) / distance), d)
 
     def potential(self, motion):
-        """Energy stored, J."""
-        d = self._apart(motion)
+        """Strain energy, J."""
+        d = self._distance_vector(motion)
         square = dot(d, d)
         if present(self.free_length) is not None:
             elongation = length(d) - self.free_length
@@ -399,9 +401,9 @@ class PointSpring(PointLoad):
 
 @dataclass(frozen=True, eq=False)
 class PointDamper(PointLoad):
-    """Viscous damper between two points, fixed or moving: against the change of their distance.
+    """Viscous damper between two points, fixed or moving; its force opposes the rate of their distance.
 
-    Where the points meet stands the limit: the whole velocity of one against the other.
+    Where the points meet it takes the limit: the force opposes their relative velocity.
 
     Parameters
     ----------
@@ -432,19 +434,19 @@ class PointDamper(PointLoad):
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=PlacePairRule())
 
     def pull(self, motion):
-        """Force on the first point, N; None where neither point moves, and without a coefficient."""
-        directed = self._directed(motion)
+        """Force on the first point, N; None if neither point moves or the coefficient is 0."""
+        directed = self._directed_distance(motion)
         if directed is None or present(self.coefficient) is None:
             return None
         d, slope = directed
         shortening = dot(d, slope) / guarded_divisor(dot(d, d), MIN_SQUARE)
         return scale_vector(-self.coefficient * motion.crank_speed * shortening, d)
 
-    def _directed(self, motion):
-        """Vector from the second point to the first, and its derivative by crank angle; None where neither moves.
+    def _directed_distance(self, motion):
+        """Vector from the second point to the first and its derivative by the crank angle; None if neither moves.
 
-        Where the points meet, and rounding is all that is left of the vector, it is moved along its derivative: that is
-        the direction in which they pass each other. The move fades with the fourth power of the distance.
+        Where the points meet the vector is only rounding, so it is moved along its derivative, the direction in which
+        the points pass each other. The move fades with the fourth power of the distance.
         """
         first, second = (motion.spot(place) for place in self.between)
         if first.first is None and second.first is None:

@@ -1,4 +1,4 @@
-"""Loads on a slider along its guide: spring and process force."""
+"""Loads on a slider along its guide: spring and process force; positive in the direction of the guide."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,7 +23,7 @@ class SliderLoad(Load):
         return f"{type(self).__name__} on {self.on!r}"
 
     def misplaced(self, mechanism):
-        """Say if there is no such slider."""
+        """Sentence if the mechanism has no such slider."""
         problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
         if problem and not mechanism.guides:
             problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
@@ -41,14 +41,14 @@ class Spring(SliderLoad):
     free_position : float or array
         Coordinate of B along the guide (B . guide direction) at which the spring is free, m.
     on : str
-        The slider it acts on.
+        Slider that it acts on.
     cubic : float or array
-        N/m3: the force grows by so much times the cube of the elongation; negative for a spring that grows softer.
+        N/m3, factor of the cube of the elongation in the force; negative for a softening spring.
 
     Raises
     ------
     ParameterError
-        The stiffness is negative, or a value no number or not finite; when a scene is made: there is no such slider.
+        The stiffness is negative, or a value is not a finite number; when a scene is made: there is no such slider.
 
     Examples
     --------
@@ -75,14 +75,14 @@ class Spring(SliderLoad):
 
     @classmethod
     def balancing(cls, mass, crank_speed, free_position, on="slider"):
-        """Spring that balances a slider that moves by a cosine law.
+        """Spring that balances the inertia force of a slider with a cosine law.
 
-        Its stiffness, mass times crank speed squared, makes spring and inertia force equal and opposite all the way.
+        Its stiffness is mass times crank speed squared, so spring and inertia force are opposite at every angle.
 
         Parameters
         ----------
         mass : float
-            Of the slider and all that moves with it, kg.
+            Mass that moves with the slider, kg.
         crank_speed : float
             rad/s.
         free_position : float
@@ -110,7 +110,9 @@ class Spring(SliderLoad):
         rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
         mass, crank_speed = checks.check_values("balancing spring", rules, given).values()
         still = (
-            f"the {name} is 0" for name, value in (("mass", mass), ("crank speed", crank_speed)) if _is_zero(value)
+            f"the {name} is 0"
+            for name, value in (("mass", mass), ("crank speed", crank_speed))
+            if checks.has_known_values(value) and np.any(np.equal(value, 0.0))
         )
         if problem := " and ".join(still):
             raise ParameterError(
@@ -124,14 +126,14 @@ class Spring(SliderLoad):
         return -self.spring_rate(motion) * motion.elongation(self.free_position, self.on)
 
     def spring_rate(self, motion):
-        """Force that the spring takes over its elongation, N/m."""
+        """Secant stiffness, force over elongation, N/m."""
         if present(self.cubic) is None:
             return self.stiffness
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
 
     def parted_rate(self, motion):
-        """The same as a rate that no crank angle changes, if there is one, and what it has besides; None: nothing."""
+        """The same as a part that is constant over the crank angle, where the group knows one, and a rest or None."""
         if present(self.cubic) is None:
             return self.stiffness, None
         found = motion.outward(self)
@@ -141,7 +143,7 @@ class Spring(SliderLoad):
         return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
 
     def potential(self, motion):
-        """Energy stored, J."""
+        """Strain energy, J."""
         elongation = motion.elongation(self.free_position, self.on)
         square = elongation * elongation
         if present(self.cubic) is None:
@@ -149,7 +151,7 @@ class Spring(SliderLoad):
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
     def signs(self, motion):
-        """A spring along the guide."""
+        """Symbol of a spring along the guide."""
         yield Symbol("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
 
 
@@ -160,21 +162,19 @@ class ProcessForce(SliderLoad):
     Parameters
     ----------
     force : float, array, Table or function
-        N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function
-        takes the `Motion` and returns such values, so the force may depend on crank angle, position or velocity, at
-        each crank angle by itself. The compiled engine takes its constants into the program, so a function with other
-        constants is compiled anew. It must be pure: the motion alone decides what it returns, without counters, random
-        numbers or clocks, because engines call it as often as they need.
+        N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function takes
+        the `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. It must be
+        pure: without counters, random numbers or clocks, because engines call it as often as they need. The compiled
+        engine compiles its constants, so other constants are compiled anew.
     on : str
-        The slider it acts on.
+        Slider that it acts on.
     period : float, optional
-        Crank angle after which the force repeats, rad, 4 pi for a four-stroke engine; that of its `Table` unless told,
-        2 pi without one.
+        Period of the force, rad: 4 pi for a four-stroke engine. By default the period of its `Table`, else 2 pi.
 
     Raises
     ------
     ParameterError
-        A value is no number or not finite, or the period no whole number of turns; when a scene is made: there is no
+        A value is not a finite number, or the period not a whole number of turns; when a scene is made: there is no
         such slider.
 
     Examples
@@ -198,15 +198,15 @@ class ProcessForce(SliderLoad):
             object.__setattr__(self, "period", getattr(self.force, "period", TURN))
         super().__post_init__()
 
-    def _periods(self):
-        """Say where the force has a period of its own."""
+    def _period_problems(self):
+        """Sentence if the period differs from that of the force."""
         known = getattr(self.force, "period", self.period)
         if known != self.period:
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
         "process force",
-        _periods,
+        _period_problems,
         force=value_rule("N"),
         on=checks.Name(),
         period=WholeTurns(),
@@ -214,7 +214,7 @@ class ProcessForce(SliderLoad):
 
     @property
     def value_now(self):
-        """The force, a table over travel by the slider itself."""
+        """The force; a table over travel that names no slider is read by the slider `on`."""
         return self.force.of(self.on) if isinstance(self.force, Table) else self.force
 
     def push(self, motion):
@@ -222,12 +222,7 @@ class ProcessForce(SliderLoad):
         return self.force
 
     def signs(self, motion):
-        """An arrow along the guide."""
+        """Symbol of a force along the guide."""
         mechanism = motion.mechanism
         along = motion.as_vector(mechanism.guides[self.on].direction)
         yield Symbol("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))
-
-
-def _is_zero(value):
-    """Whether a number, or one of an array, is plainly 0."""
-    return checks.has_known_values(value) and bool(np.any(np.equal(value, 0.0)))

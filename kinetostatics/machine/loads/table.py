@@ -13,9 +13,9 @@ from . import table_pieces
 from .table_pieces import TURN, WholeTurns, kink_rows, largest_ignored_kink, stops_and_crossings
 
 COLUMNS = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
-"""By what a table may be over: the heading of such a column, and its unit."""
+"""Heading and unit of the first column, by `over`."""
 MAX_AREA = checks.PlausibleRange(5.0, "is it in cm2, or in mm2?")
-"""Area, m2, beyond which no piston goes: one of 2.5 m in diameter."""
+"""Largest plausible area of a piston, m2: 2.5 m in diameter."""
 VALUE_HEADINGS = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 
@@ -36,16 +36,16 @@ class Table:
     """Values for any load: linear between rows by crank angle, or by the travel of a slider.
 
     It passes through every row, adds no extrema between them, and has a kink at each; a jump is two rows close
-    together. It is a function of the crank angle once read: extremes, means, `Solution.at` and sweeps take it, programs
-    give derivatives through its travel.
+    together. Extremes, means, `Solution.at` and sweeps evaluate it at any crank angle; programs differentiate it by the
+    travel.
 
     Parameters
     ----------
     x : array (N,)
-        Crank angles, rad, over one period, whose end may be given too, with the value of the start; or coordinates of
-        the slider's pin along its guide (B . guide direction), m. Rising or falling.
+        Crank angles of one period, rad; the end of the period may repeat the first row. Or coordinates of the slider's
+        pin along its guide (B . guide direction), m. Rising or falling.
     y : array (N,)
-        Values in the unit of the load, N or N m; quantities of pint are for loads of their dimension only.
+        Values in the unit of the load, N or N m; pint quantities fit loads of their dimension only.
     over : "angle" or "travel"
     back : array (N,), optional
         Over travel, the values of the stroke with negative velocity of the slider along its guide: an indicator
@@ -53,13 +53,14 @@ class Table:
     period : float
         Crank angle after which a table over the angle repeats, rad: 2 pi or a whole multiple of it.
     slider : str, optional
-        Over travel, the slider it is read by: unless told the one that the load acts on, or the only one there is.
+        Slider whose travel is read; by default the slider that the load acts on, or the only one of the mechanism.
 
     Raises
     ------
     ParameterError
         Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
-        ends; over travel: fewer than two rows, coordinates that do not rise. When it is read: a travel outside of it.
+        ends; over travel: fewer than two rows, coordinates that do not rise. When a scene is solved: the slider leaves
+        the table.
 
     Examples
     --------
@@ -89,8 +90,8 @@ class Table:
             | dict.fromkeys(tuple(given)[1:], value),
             given,
             checks.choice("over", over, tuple(COLUMNS)),
-            WholeTurns().taken(period, "period")[1],
-            None if slider is None else checks.Name().taken(slider, "slider")[1],
+            WholeTurns().check(period, "period")[1],
+            None if slider is None else checks.Name().check(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
             None if slider is None or over == "travel" else 'slider is for a table over="travel"',
         )
@@ -107,14 +108,15 @@ class Table:
         checks.require("table", table_pieces.order_problem(arrays["x"], over))
         if arrays["x"][0] > arrays["x"][-1]:
             arrays = {name: values[::-1] for name, values in arrays.items()}
-        period = WholeTurns().taken(period)[0]
+        period = WholeTurns().check(period)[0]
         if over == "angle":
             checks.require("table", table_pieces.angle_problem(arrays["x"], arrays["y"], period))
             if table_pieces.repeats_first_row(arrays["x"], period):
                 arrays = {name: values[:-1] for name, values in arrays.items()}
         else:
             short = None if period == TURN else "over travel the period is one turn"
-            checks.require("table", table_pieces.travel_problem(arrays["x"]), short)
+            few = "at least 2 rows are needed, got 1; a value that does not change is no table"
+            checks.require("table", few if arrays["x"].size < 2 else None, short)
         for values in arrays.values():
             values.setflags(write=False)
         for name, part in {
@@ -139,11 +141,12 @@ class Table:
         unit : "N" or "N m"
             Of the load.
         area : float, optional
-            m2, by which pressures become forces along the guide; negative where they push against its direction.
+            Piston area, m2, that turns pressures into forces along the guide; negative if they push against its
+            direction.
         period, slider
             As of the table.
         over : "angle" or "travel", optional
-            Which column to take where the file has both; unless told, the travel.
+            Column to read if the file has both; by default the travel.
 
         Returns
         -------
@@ -152,7 +155,7 @@ class Table:
         Raises
         ------
         CaseError
-            The file cannot be read, or makes no table.
+            The file cannot be read, or its rows make no table.
 
         Examples
         --------
@@ -202,12 +205,12 @@ class Table:
 
     @property
     def back(self):
-        """Values of the stroke with negative velocity; None where there are no others."""
+        """Values of the stroke with negative velocity; None if both strokes have the same values."""
         return self.rows.back
 
     @property
     def strokes(self):
-        """Values of both strokes, or of one where they are the same."""
+        """Values of each stroke, a list of one or two arrays."""
         return [self.y] if self.back is None else [self.y, self.back]
 
     @property
@@ -217,11 +220,11 @@ class Table:
         return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
-        """The table read by the travel of a slider unless it names one itself."""
+        """The table with this slider, if it is over travel and names none."""
         return self if self.over == "angle" or self.slider is not None else replace_unchecked(self, slider=slider)
 
     def problems(self, mechanism):
-        """What is wrong with it on a mechanism, as sentences."""
+        """Problems of the table on a mechanism, as sentences."""
         if self.over == "angle":
             return
         sliders = tuple(mechanism.guides)
@@ -235,11 +238,11 @@ class Table:
         return self.read(motion, self.pieces(motion))
 
     def place(self, motion):
-        """What it is read by: crank angle, or travel of the slider."""
+        """Crank angle, rad, or travel of the slider, m, at which it is read."""
         return motion.crank_angle if self.over == "angle" else motion.travel(self._slider(motion))
 
     def read(self, motion, pieces):
-        """Values at a motion of whatever numbers that runs through these pieces."""
+        """Values at a motion, (..., N), from its `pieces`."""
         start, value, slope = pieces
         is_angle = self.over == "angle"
         beyond = motion.crank_angle - start if is_angle else motion.elongation(start, self._slider(motion))
@@ -249,14 +252,14 @@ class Table:
         return self.slider or next(iter(motion.mechanism.guides))
 
     def pieces(self, motion, number=lambda given: given):
-        """Where the piece of the table starts at each crank angle, the value there, and its slope.
+        """Start of the piece read at each crank angle, the value there, and its slope.
 
-        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
+        `number` converts floats and arrays to another kind of numbers.
 
         Raises
         ------
         ParameterError
-            The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
+            The travel leaves the table. While JAX traces, values outside are NaN instead.
         """
         place = self.place(motion)
         returning = None if self.back is None else self.returns(motion)
@@ -280,37 +283,37 @@ class Table:
         return start, xp.where(table_pieces.is_outside(self.x, place), xp.nan, value), slope
 
     def rate(self, motion):
-        """Rate of the slider along its guide by the crank angle, m."""
+        """First kinematic coefficient of the slider along its guide, m/rad."""
         return motion.placement.travels[self._slider(motion)].first
 
     @property
     def by_sense(self):
-        """Whether its values depend on which way the crank turns."""
+        """Whether its values depend on the sense of rotation of the crank."""
         return self.back is not None
 
     def returns(self, motion):
-        """Whether the slider is on its stroke with negative velocity, or begins it where the crank stands."""
+        """Whether the slider moves, or is about to move, with negative velocity."""
         return motion.crank_sense * self.rate(motion) < 0
 
     def period_on(self, mechanism):
-        """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
+        """Period on a mechanism, rad; over travel the period of the motion."""
         return self.period if self.over == "angle" else TURN * mechanism.turns
 
     def kinks(self, motion):
-        """Crank angles (K,) of its kinks in its period, ends of strokes among them, and (J,) at which it may jump."""
+        """Crank angles of its kinks, (K,), and jumps, (J,), in its period, rad; ends of strokes are among the kinks."""
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
         ends, passed = (part[~np.isnan(part)] for part in stops_and_crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     def is_bent(self, straight):
-        """Whether it bends by so much, or may jump where a slider turns back; any table bends by more than 0."""
+        """Whether it kinks by more than `straight` times its largest value, or may jump at ends of strokes."""
         return straight == 0.0 or self.back is not None or kink_rows(self, straight).size > 0
 
     def bends(self, motion, straight):
-        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer.
+        """Crank angles of kinks larger than `straight` times its largest value, (1 or designs, K), rad, NaN-padded.
 
-        Also which (K,) are jumps, and the share of its largest value by which it may bend besides.
+        Also which of them are jumps, (K,), and the largest kink left out, relative to its largest value.
         """
         inner, rest = self.x[kink_rows(self, straight)], largest_ignored_kink(self, straight)
         if self.over == "angle":
@@ -322,11 +325,8 @@ class Table:
     @property
     def _content(self):
         own = self.rows
-        return own.x.tobytes(), own.y.tobytes(), None if own.back is None else own.back.tobytes(), *self._structure
-
-    @property
-    def _structure(self):
-        return self.over, self.slider, self.period, self.unit
+        arrays = own.x.tobytes(), own.y.tobytes(), None if own.back is None else own.back.tobytes()
+        return *arrays, self.over, self.slider, self.period, self.unit
 
     def __eq__(self, other):
         return self._content == other._content if isinstance(other, Table) else NotImplemented

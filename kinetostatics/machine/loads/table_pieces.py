@@ -1,12 +1,10 @@
-"""Periods of loads: whole turns of the crank.
+"""Pieces of a table: checks of its rows, look-up, kinks, crossings, and rounding errors of what is read.
 
-Rows of a table: what is wrong with them, how they are read, and what is wrong with what is read from them.
+A table is linear between its rows: piece k gives y_k + (x - x_k) (y_k+1 - y_k) / (x_k+1 - x_k). It has a kink at each
+row, but rows that follow a smooth curve within `KINK_TOLERANCE` count as none. A table over the travel of a slider has
+its kinks where the slider passes a row, and may jump where the slider turns back.
 
-Rows at which a table bends, or jumps, and does not just run as a smooth curve does that fine rows are read off.
-
-Where sliders stand still, and where they pass given places: crank angles, for each of many designs.
-
-What bounds need to know of a table: its own rounding, and its kinks and jumps.
+x is the crank angle, rad, or the travel, m; y is in the unit of the load, N or N m.
 """
 
 import math
@@ -24,16 +22,18 @@ from ...numbers.arithmetic import UNIT_ROUNDOFF, namespace
 
 TURN = 2 * math.pi
 MAX_TURNS = 100
-"""Turns after which loads must repeat, all together."""
+"""Largest number of turns in a period."""
+
+# Periods
 
 
 class WholeTurns:
-    """Rule of a period: 2 pi or a whole multiple of it, but for rounding, which is taken away."""
+    """Rule of a period: 2 pi or a whole multiple of it, rad; the value is rounded to one."""
 
     def quick(self, value):
         return value if value is TURN else checks.UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         try:
             value = checks.to_plain(value, "rad")
         except checks.DimensionError as fault:
@@ -47,18 +47,20 @@ class WholeTurns:
 
 
 def period_of(loads, turns=1):
-    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, or so many."""
+    """Common period of all loads, rad: a multiple of `turns` turns."""
     return TURN * math.lcm(turns, *(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
 
 
+# Rows
+
 TRAVEL_TOLERANCE = 1e-9
-"""Share of a table over travel by which a slider may go beyond it: rounding."""
+"""Rounding by which a slider may leave a table over travel, relative to the table's length."""
 RETURN_STROKE_WORDS = re.compile("back|return", re.IGNORECASE)
-"""What a heading has that is meant for a stroke back."""
+"""Words by which the heading of a column means the stroke back."""
 
 
 def order_problem(x, over):
-    """What is wrong with the order of rows as they are given, rising or falling, or None."""
+    """Problem of rows that neither rise nor fall throughout, as a sentence, or None."""
     falls = x.size > 1 and x[-1] < x[0]
     wrong = np.diff(x) >= 0 if falls else np.diff(x) <= 0
     if not np.any(wrong):
@@ -73,13 +75,8 @@ def order_problem(x, over):
     return f"{what} must {'fall' if falls else 'rise'}, but {here} follows {before} in row {row + 1}; {remedy}"
 
 
-def travel_problem(x):
-    """What is wrong with coordinates of a table over travel in order, or None."""
-    return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
-
-
 def unread_column_problem(names, value, over):
-    """Why a column of a file whose heading looks like a stroke back, or a value beside it, is not read; or None."""
+    """Problem of a column of a file that looks like a stroke back, or a second value, but is not read; or None."""
     read = {f"{value}_back"} if over == "travel" else set()
     read.update(f"{name}_back" for name in names if name != value)
     beside = f"{value}_" if over == "travel" else f"{value}_back"
@@ -91,53 +88,13 @@ def unread_column_problem(names, value, over):
     return None
 
 
-def lookup_arrays(place, returning):
-    """The library that looks values up, places and strokes: NumPy, unless they have no values yet, as under JAX."""
-    try:
-        return np, np.asarray(place, dtype=float), returning if returning is None else np.asarray(returning)
-    except (TypeError, ValueError):
-        return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
-
-
-def piece_index(xp, x, place):
-    """Which piece between rows each place lies in; the first or last beyond."""
-    return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
-
-
-def piece_lines(xp, x, strokes, piece, back=None):
-    """Start, value there and slope of some pieces, of the first or, where told, the second of two strokes."""
-    place = piece if back is None else piece + (x.size - 1) * back
-    values = np.concatenate([y[:-1] for y in strokes])
-    slopes = np.concatenate([np.diff(y) / np.diff(x) for y in strokes])
-    return tuple(xp.asarray(part)[at] for part, at in ((x, piece), (values, place), (slopes, place)))
-
-
-def is_outside(x, place):
-    """Whether places lie beyond the rows."""
-    room = TRAVEL_TOLERANCE * (x[-1] - x[0])
-    return (place < x[0] - room) | (place > x[-1] + room)
-
-
-def require_inside(x, place, motion):
-    """Raise an error where a slider goes beyond the rows."""
-    out = is_outside(x, place)
-    if out.any():
-        angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
-        raise ParameterError(
-            f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
-            f"table from {x[0]:.9g} to {x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
-            f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
-            out.any(axis=-1) if out.ndim > 1 else None,
-        )
-
-
 def repeats_first_row(angle, period):
-    """Whether the last row stands at the angle of the first, a period later, but for rounding."""
+    """Whether the last row repeats the first one a period later, to rounding."""
     return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)
 
 
 def angle_problem(angle, value, period):
-    """What is wrong with rows of a table in order, or None."""
+    """Problem of the rows of a table over the angle, in rising order, as a sentence, or None."""
     if angle.size < 3:
         return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
     step, span = np.diff(angle), angle[-1] - angle[0]
@@ -155,11 +112,11 @@ def angle_problem(angle, value, period):
         if turns > 8:
             remedy = "are they degrees under a heading of rad?"
         return f"the angles span {_degrees(span)}, more than the period of {_degrees(period)}; {remedy}"
-    return _missing(angle, value, period, step)
+    return _distance_problem(angle, value, period, step)
 
 
-def _missing(angle, value, period, step):
-    """What is wrong with the distances between rows, or None."""
+def _distance_problem(angle, value, period, step):
+    """Problem of the distances between rows, as a sentence, or None."""
     rest = period - (angle[-1] - angle[0])
     if rest > 1.5 * step.max():
         return (
@@ -182,7 +139,7 @@ def _degrees(angle):
 
 
 def unit_of(values):
-    """Unit of values that are quantities, "" of plain numbers."""
+    """Unit of values that are pint quantities, "N" or "N*m"; "" of plain numbers."""
     for unit in ("N", "N*m"):
         try:
             return "" if checks.to_plain(values, unit) is values else unit
@@ -191,30 +148,78 @@ def unit_of(values):
     return ""
 
 
+# Look-up
+
+
+def lookup_arrays(place, returning):
+    """Array library for the look-up, and `place` and `returning` as its arrays: NumPy, except while JAX traces."""
+    try:
+        return np, np.asarray(place, dtype=float), returning if returning is None else np.asarray(returning)
+    except (TypeError, ValueError):
+        return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
+
+
+def piece_index(xp, x, place):
+    """Number of the piece that each place lies in; the first or last piece beyond the rows."""
+    return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
+
+
+def piece_lines(xp, x, strokes, piece, back=None):
+    """Start, value there and slope of pieces, of the first stroke, or of the second where `back` is true."""
+    place = piece if back is None else piece + (x.size - 1) * back
+    values = np.concatenate([y[:-1] for y in strokes])
+    slopes = np.concatenate([np.diff(y) / np.diff(x) for y in strokes])
+    return tuple(xp.asarray(part)[at] for part, at in ((x, piece), (values, place), (slopes, place)))
+
+
+def is_outside(x, place):
+    """Whether places lie beyond the rows, by more than rounding."""
+    room = TRAVEL_TOLERANCE * (x[-1] - x[0])
+    return (place < x[0] - room) | (place > x[-1] + room)
+
+
+def require_inside(x, place, motion):
+    """Raise `ParameterError` where a slider goes beyond the rows."""
+    out = is_outside(x, place)
+    if out.any():
+        angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
+        raise ParameterError(
+            f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
+            f"table from {x[0]:.9g} to {x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
+            f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
+            out.any(axis=-1) if out.ndim > 1 else None,
+        )
+
+
+# Kinks
+
 KINK_TOLERANCE = 1e-5
-"""Share of the largest value by which a table may be off a polynomial and bend nothing that one would see."""
+"""Distance of a table from a smooth curve below which it has no kink, relative to its largest value."""
 SMOOTH_DEGREE = 5
-"""Of these polynomials: less than those have that reductions take."""
+"""Degree of the polynomials that count as smooth: lower than that of the polynomials of reductions over a turn."""
 SMOOTH_STRETCHES = 32
-"""Stretches in half a turn, or in a table over travel, on which a smooth curve is such a polynomial."""
+"""Number of such polynomials in half a turn, or in a table over travel, that make a smooth curve."""
 CHEBYSHEV_POINTS = chebyshev.chebpts1(32)
-"""Places on a stretch, from -1 to 1, of which the polynomial is made: so that it swings nowhere, however rows lie."""
+"""Places on a stretch, from -1 to 1, at which the polynomial is fitted."""
 CHEBYSHEV_FIT = np.linalg.pinv(chebyshev.chebvander(CHEBYSHEV_POINTS, SMOOTH_DEGREE))
-"""Coefficients of the polynomial from values at these."""
+"""Matrix that gives the coefficients of the polynomial from values at these places."""
 
 
 @lru_cache(maxsize=32)
-def kink_rows(table, straight=KINK_TOLERANCE):
-    """Rows at which a table bends by more than a share of its largest value; over the travel inner ones."""
-    room = straight * abs(table.largest)
+def kink_rows(table, tolerance=KINK_TOLERANCE):
+    """Numbers of the rows at which a table kinks, (K,); over the travel only inner rows.
+
+    `tolerance` is relative to the largest value.
+    """
+    room = tolerance * abs(table.largest)
     if table.over == "angle":
-        return _around(table.x, table.y, table.period, room)
+        return _kink_rows_of_period(table.x, table.y, table.period, room)
     curve = Curve(table.x, table.strokes, room)
-    return curve.sharp(curve.joints(0, table.x.size - 1), (table.x[-1] - table.x[0]) / SMOOTH_STRETCHES)
+    return curve.kinks(curve.stretch_ends(0, table.x.size - 1), (table.x[-1] - table.x[0]) / SMOOTH_STRETCHES)
 
 
-def largest_ignored_kink(table, straight=KINK_TOLERANCE):
-    """Share of its largest value by which a table bends at the rows that count as straight, one by one."""
+def largest_ignored_kink(table, tolerance=KINK_TOLERANCE):
+    """Largest kink at a single row that `kink_rows` leaves out, relative to the largest value."""
     x, strokes = table.x, table.strokes
     if table.over == "angle":
         x, strokes = (
@@ -224,35 +229,35 @@ def largest_ignored_kink(table, straight=KINK_TOLERANCE):
     share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
     off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
     inner = off if table.over == "angle" else np.pad(off, 1)
-    return float(np.delete(inner, kink_rows(table, straight)).max(initial=0.0) / (abs(table.largest) or 1.0))
+    return float(np.delete(inner, kink_rows(table, tolerance)).max(initial=0.0) / (abs(table.largest) or 1.0))
 
 
-def _around(angle, value, period, room):
-    """Of all rows, as they repeat after a period."""
+def _kink_rows_of_period(angle, value, period, room):
+    """Numbers of the rows of a periodic table at which it kinks."""
     count = angle.size
     order = (np.arange(count) + int(np.argmax(np.abs(value)))) % count
     around = angle[order] + period * (order < order[0])
     curve = Curve(np.concatenate([around - period, around, around + period]), [np.tile(value[order], 3)], room)
-    joints = [count, *curve.joints(count, 2 * count)]
-    return order[curve.sharp(joints, 0.5 * TURN / SMOOTH_STRETCHES) - count]
+    ends = [count, *curve.stretch_ends(count, 2 * count)]
+    return order[curve.kinks(ends, 0.5 * TURN / SMOOTH_STRETCHES) - count]
 
 
 class Curve(NamedTuple):
-    """Rows of one or two strokes, and how far they may be off what is smooth."""
+    """Rows of one or two strokes, and the distance from a smooth curve at which they kink."""
 
     x: Any
     strokes: Any
     room: float
 
-    def joints(self, first, last):
-        """Rows between two others at which one longest smooth stretch ends, and the next begins."""
+    def stretch_ends(self, first, last):
+        """Rows between two others that part the curve into smooth stretches, each as long as possible."""
         found, row = [], first
-        while (row := self._reached(row, last)) < last:
+        while (row := self._stretch_end(row, last)) < last:
             found.append(row)
         return found
 
-    def _reached(self, row, last):
-        """Up to which row the curve is smooth from one on."""
+    def _stretch_end(self, row, last):
+        """Last row up to which the curve is smooth from `row` on."""
 
         def breaks(end):
             return not self._is_smooth(self.x[row], self.x[end])
@@ -263,14 +268,14 @@ class Curve(NamedTuple):
         ends = range(row + count // 2 + 1, min(row + count, last + 1))
         return ends.start - 1 + bisect_left(ends, True, key=breaks)
 
-    def sharp(self, rows, reach):
-        """Those rows around which no stretch is smooth that reaches so far."""
+    def kinks(self, rows, reach):
+        """Rows at which the curve kinks: it is not smooth from `reach` before the row to `reach` behind it."""
         x = self.x
         found = [row for row in rows if not self._is_smooth(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
         return np.array(found, dtype=int)
 
     def _is_smooth(self, low, high):
-        """Whether a polynomial is near all strokes between two places, at rows and besides."""
+        """Whether a polynomial approximates every stroke between two places, at the rows and between them."""
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         some = slice(np.searchsorted(self.x, low), np.searchsorted(self.x, high, side="right"))
         places = np.concatenate([CHEBYSHEV_POINTS, (self.x[some] - middle) / half])
@@ -282,29 +287,31 @@ class Curve(NamedTuple):
         return True
 
 
+# Stops and crossings of a slider
+
 STOP_SAMPLES = 720
-"""Crank angles a turn between which a slider turns back once at most."""
+"""Crank angles a turn between which a slider stops at most once."""
 SAMPLE_OFFSET = 1e-3
-"""Crank angle from 0, rad, so that no sample meets a dead centre."""
+"""First of these crank angles, rad: none meets a dead centre."""
 MIN_STEP = 1e-13
-"""Step of a crank angle, rad, that is the last."""
+"""Step of a crank angle, rad, at which iterations end."""
 MAX_STEPS = 60
-"""Steps after which a bracket cannot be halved any more."""
+"""Number of halvings that a bracket in double precision allows."""
 
 
 def stops_and_crossings(motion, slider, levels):
-    """Crank angles at which a slider stands still, (designs, E), and passes levels, (designs, K), until it all repeats.
+    """Crank angles at which a slider stops, (designs, E), and passes levels, (designs, K), in its period, rad.
 
-    NaN stands where a design has fewer than another, or does not close. Between two stops a slider passes each level
-    once, so those are found first, and none is missed however near to a stop.
+    Rows end with NaN where a design has fewer than another. Between two stops a slider passes each level once, so stops
+    come first and no crossing near a stop is missed.
 
     Parameters
     ----------
     motion : Motion
-        Whatever its crank angles.
+        Its crank angles have no effect.
     slider : str
     levels : array (R,)
-        Coordinates along its guide, rising.
+        Coordinates along its guide, rising, m.
     """
     turns = motion.mechanism.turns
 
@@ -330,7 +337,7 @@ def stops_and_crossings(motion, slider, levels):
 
 
 def _crossing_brackets(travel, levels, knots):
-    """Coordinate and rate as a function, between which of some angles it passes a level, and the levels."""
+    """Coordinate and rate as a function, angles on both sides of each crossing, and the level crossed there."""
 
     def places(angle):
         at = travel(angle)
@@ -350,7 +357,7 @@ def _crossing_brackets(travel, levels, knots):
 
 
 def pad_rows(design, count, *values):
-    """Values of designs, which stand one after the other, as arrays (designs, most of one), NaN where one has fewer."""
+    """Values listed design by design as arrays (count, K), K the most of one design; NaN pads the rows."""
     number = np.bincount(design, minlength=count)
     rows = np.full((len(values), count, number.max(initial=0)), np.nan)
     rows[:, design, np.arange(design.size) - (np.cumsum(number) - number)[design]] = values
@@ -358,9 +365,9 @@ def pad_rows(design, count, *values):
 
 
 def _roots(function, low, high, level):
-    """Where a function, given with its slope, is at a level, between angles on both sides: by Newton's method.
+    """Angles between `low` and `high` at which a function equals `level`; `function` returns values and slopes.
 
-    A step that leaves the bracket gives way to halving.
+    By Newton's method; a step that leaves the bracket is replaced by halving.
     """
     if not low.size:
         return low
@@ -373,25 +380,27 @@ def _roots(function, low, high, level):
         step = angle - (value - level) / slope
         following = np.where((low <= step) & (step <= high), step, 0.5 * (low + high))
         far = np.abs(following - angle) > MIN_STEP
-        angle = np.where(moving, following, angle)  # no root hangs on how many steps others take
+        angle = np.where(moving, following, angle)  # a root must not depend on the steps that others need
         moving &= far
         if not moving.any():
             break
     return angle
 
 
+# Rounding errors
+
 BOUND_FACTOR = 1.0 + 1e-9
-"""What a bound is enlarged by for products of roundings."""
+"""Factor of a bound that covers products of roundings."""
 MIN_BOUND = 2.0**-1000
-"""More than what a product or quotient too small for a double loses."""
+"""Error that covers the underflow of a product or quotient."""
 
 
 def rounding_bound(table, motion):
-    """Bound on the error of values read by crank angle, N or N m.
+    """Bound on the error of values of a table over the angle at the crank angles, (..., N), N or N m.
 
     A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
-    Each piece is taken as if all of it were risen. The end of the last one is rounded as well, and a turn more or less
-    moves every row, so that another piece may be read where one is near.
+    The bound of a piece is that at its end. The end of the last piece is rounded too. In other turns all rows move by
+    rounding, so near a row the next piece may be read.
     """
     x, slope, own = _piece_errors(table)
     angle = np.asarray(motion.crank_angle)
@@ -411,7 +420,7 @@ def rounding_bound(table, motion):
 
 @lru_cache(maxsize=64)
 def _piece_errors(table):
-    """Ends of the pieces of a table by angle; of each its slope and the error of values in the first turn."""
+    """Rows of a table over the angle with the first one repeated, and slope and error bound of each piece."""
     x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
     rise = np.abs(np.diff(y))
     slope = rise / np.diff(x)
@@ -421,33 +430,37 @@ def _piece_errors(table):
     return x, slope, BOUND_FACTOR * UNIT_ROUNDOFF * own + MIN_BOUND
 
 
-def _steepest(x, y):
-    return float(np.max(np.abs(np.diff(y) / np.diff(x))))
-
-
 def _row_distance(x, place):
-    """Of each place from the row that is nearest."""
+    """Distance of each place from the nearest row."""
     row = np.clip(np.searchsorted(x, place), 1, x.size - 1)
     return np.minimum(np.abs(place - x[row - 1]), np.abs(place - x[row]))
 
 
 def kink_bounds(table, motion):
-    """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
+    """Bounds of kinks and jumps of a table over travel near each place, for error bounds (see `engines.record`).
 
-    By how much the slope may change at the row beside each place, N/m or N m/m, how far the value may jump there, how
-    near, m or m a radian, a row or the end of a stroke must be for it not to be zero, and how far, m, the row is.
+    Returns
+    -------
+    change : array (..., N)
+        Change of the slope at a row nearer than `near`, N/m or N m/m; else 0.
+    jump : array (..., N)
+        Jump of the value between both strokes where the rate is less than `near`, N or N m; else 0.
+    near : float
+        m, of the rate m/rad.
+    distance : array (..., N)
+        Distance of the nearest row, m.
     """
     near = 1e-6 * float(table.x[-1] - table.x[0])
     place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
-    sides = [table.y] if table.back is None else [table.y, table.back]
-    change, distance = 2.0 * max(_steepest(table.x, side) for side in sides), _row_distance(table.x, place)
+    steepest = max(float(np.max(np.abs(np.diff(y) / np.diff(table.x)))) for y in table.strokes)
+    change, distance = 2.0 * steepest, _row_distance(table.x, place)
     jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)
     standing = np.abs(rate) <= near
     return np.where(distance <= near, change, 0.0), np.where(standing, jump, 0.0), near, distance
 
 
 def _largest_within(x, y, place, near):
-    """Bound on the magnitude of a polygon so near to each place."""
+    """Bound on the magnitude of a polygon within `near` of each place."""
     largest = np.max(np.abs(y))
     if np.min(np.diff(x)) < 2.0 * near:  # more than one row may be so near
         return largest

@@ -1,4 +1,7 @@
-"""Couples on links: torques, torsion springs and dampers, against the frame or another link."""
+"""Couples on links against the frame or another link: torques, torsion springs and dampers.
+
+Couples are positive counter-clockwise on the link `on`, N m; `against` takes the opposite couple.
+"""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,12 +19,12 @@ from .load import Load, Symbol, value_rule
 from .table_pieces import TURN
 
 ANGLE_SAMPLES = 720
-"""Crank angles a turn at which the angle of a torsion spring is looked at."""
+"""Crank angles a turn at which the angle of a torsion spring is tested for half a turn."""
 TERMS = {
     "_angle.cosine": ("c", "cosine of the angle from where the spring is free"),
     "_angle.sine": ("s", "sine of that angle"),
 }
-"""What hand calculations call lines of the kernels, and what they are."""
+"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 class Couple(Load):
@@ -41,7 +44,7 @@ class Couple(Load):
         return f"{type(self).__name__} on {self.on!r}"
 
     def misplaced(self, mechanism):
-        """Say if there are no such links, or if both are one."""
+        """Sentences if there are no such links, or if both are the same."""
         owner = type(self).__name__
         yield checks.choice(f"{owner}: on", self.on, tuple(mechanism.links))
         if self.against is not None:
@@ -57,7 +60,7 @@ class Couple(Load):
             yield self._other, Wrench(None, minus(None, couple))
 
     def signs(self, motion):
-        """A sign at the link's reference joint."""
+        """Symbol at the reference joint of the link."""
         yield Symbol(self.SIGN, motion.position(motion.mechanism.references[self.on]), sense=self.sense(motion))
 
     @property
@@ -76,14 +79,14 @@ class Torque(Couple):
         N m, counter-clockwise on the link; an array has one value for each crank angle, a function takes the `Motion`
         and returns such values.
     on : str
-        The link it acts on: "rocker", "coupler", "crank" ...
+        Link that it acts on: "rocker", "coupler", "crank" ...
     against : str, optional
-        The link that takes the opposite torque; the frame unless told.
+        Link that takes the opposite torque; by default the frame.
 
     Raises
     ------
     ParameterError
-        A value is no number or not finite; when a scene is made: there is no such link, or both are one.
+        A value is not a finite number; when a scene is made: there is no such link, or both are the same.
 
     Examples
     --------
@@ -110,8 +113,8 @@ class Torque(Couple):
 class TorsionSpring(Couple):
     """Linear torsion spring between a link and the frame, or another link.
 
-    Its couple on the link is `moment` less `stiffness` times the angle of the link from `free_angle`, in (-pi, pi] and
-    counter-clockwise; of a link that passes half a turn from there that angle would jump.
+    Its couple on the link is `moment` less `stiffness` times the angle of the link from `free_angle`, counter-clockwise
+    and in (-pi, pi]; the angle would jump for a link that passes half a turn from there.
 
     Parameters
     ----------
@@ -122,7 +125,7 @@ class TorsionSpring(Couple):
     on, against : str
         As for `Torque`.
     moment : float or array
-        N m, a constant couple besides, as by a long spring wound up.
+        N m, a constant couple in addition, as from a long preloaded spring.
 
     Raises
     ------
@@ -162,35 +165,35 @@ class TorsionSpring(Couple):
         return minus(present(self.moment), self.stiffness * self._angle(motion))
 
     def potential(self, motion):
-        """Energy stored, J; none where it is free."""
+        """Strain energy, J; zero where the spring is free."""
         angle = self._angle(motion)
         return minus(0.5 * self.stiffness * angle * angle, product(present(self.moment), angle))
 
     def _angle(self, motion):
-        """Angle of the link from where the spring is free, to all digits near half a turn too."""
-        cosine, sine = self._leaning(motion.placement)
+        """Angle of the link from the free angle, rad; accurate near half a turn too."""
+        cosine, sine = self._link_direction(motion.placement)
         ahead = 1.0 + cosine
         return 2.0 * atan(2.0 * sine / (ahead * ahead + sine * sine))
 
-    def _leaning(self, placement):
-        """Unit vector of the link as seen from where the spring is free."""
+    def _link_direction(self, placement):
+        """Unit vector of the link in axes at the free angle."""
         axis = placement.links[self.on].direction
         axis = axis if self._other is None else rotate_back(axis, placement.links[self._other].direction)
         return axis if present(self.free_angle) is None else rotate_back(axis, ray(self.free_angle))
 
     def refusals(self, motion):
-        """Say if the link passes half a turn from where the spring is free, and at which crank angles."""
+        """Sentence on the crank angles at which the link passes half a turn from the free angle."""
         if not checks.has_known_values(self.free_angle):
             return ()
         known = _REFUSALS.setdefault(motion.mechanism, {})
         key = (self.on, self.against, np.asarray(self.free_angle).tobytes())
         if key not in known:
-            known[key] = tuple(self._passing(motion.mechanism))
+            known[key] = tuple(self._half_turn_problems(motion.mechanism))
         return known[key]
 
-    def _passing(self, mechanism):
+    def _half_turn_problems(self, mechanism):
         grid = np.linspace(0.0, TURN * mechanism.turns, ANGLE_SAMPLES * mechanism.turns + 1)
-        parts = self._leaning(mechanism.place(grid))
+        parts = self._link_direction(mechanism.place(grid))
         if not all(isinstance(part, float | np.ndarray) and checks.has_known_values(part) for part in parts):
             return
         angle = np.arctan2(*np.broadcast_arrays(*parts, grid)[1::-1])
@@ -202,7 +205,7 @@ class TorsionSpring(Couple):
         passing[..., -1] |= turning & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        full = "it makes full turns" if turning.any() else self._advice(angle, passing)
+        full = "it makes full turns" if turning.any() else self._free_angle_advice(angle, passing)
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
         yield checks.Problem(
@@ -211,10 +214,10 @@ class TorsionSpring(Couple):
             passing,
         )
 
-    def _advice(self, angle, passing):
-        """A free angle that keeps clear of half a turn wherever the mechanism closes, in words, for the first design.
+    def _free_angle_advice(self, angle, passing):
+        """Sentence that proposes a free angle from which the first refused design stays within half a turn.
 
-        `angle` is that of the link from the present free angle.
+        `angle` is the angle of the link from the present free angle, rad.
         """
         design = np.argmax(passing.any(axis=-1).ravel())
         here = angle.reshape(-1, angle.shape[-1])[design]
@@ -231,19 +234,19 @@ class TorsionSpring(Couple):
 
 
 _REFUSALS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
-"""By mechanism: what was found of torsion springs on it."""
+"""By mechanism: refusals of torsion springs, by link and free angle."""
 
 
 @dataclass(frozen=True, eq=False)
 class TorsionDamper(Couple):
-    """Viscous damper that turns: a couple against the angular velocity of a link, or against its change from another.
+    """Viscous torsional damper: a couple against the angular velocity of a link relative to the frame or another link.
 
     Parameters
     ----------
     coefficient : float or array
         N m s/rad.
     on, against : str
-        As for `Torque`; links that turn without limit may have one.
+        As for `Torque`; links may make full turns.
 
     Raises
     ------

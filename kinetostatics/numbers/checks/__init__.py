@@ -1,26 +1,8 @@
-"""Checks of the values a user hands in. Kernels trust what has passed here.
+"""Checks of a user's values: kernels trust a value that has passed here. It may import errors and numbers.
 
-measured
-    Quantities of pint, converted to the unit wanted.
-values
-    What a value is: a number, an array, a truth value, a text ...; copies that nobody writes to.
-meant
-    Which of the allowed words is meant by another: synonyms, and what is spelled alike.
-problems
-    What is wrong, as sentences, and the one `ParameterError` that lists them: ``require(owner, *problems)``.
-single
-    Single numbers, where no arrays of designs are taken.
-rules
-    What a value must be: `Number`, `Pair`, `Name` ...
-usual
-    What is beyond the sizes that a number usually has looks like a slip of units, and is asked about.
-checked
-    `Checked` dataclasses, whose fields keep to a table of `Rules`.
-
-A dataclass that is `Checked` says what its fields must be by a table of rules, field -> rule. Where every value is a
-plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is said at once, and the
-object keeps floats and locked copies of arrays, so nothing it holds changes behind its back. A traced JAX number or an
-`arb` enclosure passes as it is.
+``rules`` say what a value must be, ``values`` recognise and convert values, ``messages`` word the faults. A `Checked`
+dataclass declares a table of rules, field -> rule. All faults of an item are reported in one `ParameterError`. The item
+keeps floats and read-only copies of arrays; traced JAX numbers and `arb` enclosures pass unchanged.
 """
 
 from .messages import (
@@ -71,42 +53,42 @@ __all__ = [
     "UNDECIDED",
     "Checked",
     "DimensionError",
+    "HasMembers",
     "InstanceOf",
     "Name",
     "Number",
     "Optional",
     "OrFunction",
-    "HasMembers",
     "Pair",
+    "PlausibleRange",
     "Problem",
     "Rules",
     "Series",
     "Sign",
-    "PlausibleRange",
-    "case",
-    "choice",
-    "to_plain_named",
-    "count",
-    "check_values",
     "broadcast_problem",
-    "hint",
-    "is_quantity",
-    "snapshot",
+    "case",
+    "check_values",
+    "choice",
+    "count",
     "has_known_values",
+    "hint",
+    "implausibility",
+    "is_quantity",
     "mapping",
     "mechanism",
     "names",
     "nearest",
-    "to_plain",
+    "not_a_number",
+    "plausible_range_of",
     "quantity",
     "require",
     "seed",
     "shown",
     "single_number",
     "single_numbers",
+    "snapshot",
     "solution",
+    "to_plain",
+    "to_plain_named",
     "truth",
-    "not_a_number",
-    "implausibility",
-    "plausible_range_of",
 ]

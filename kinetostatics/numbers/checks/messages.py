@@ -1,6 +1,6 @@
-"""What is wrong with values, as sentences, and the one error that lists all of them.
+"""Faults of values as sentences, the one error that lists them, and "did you mean" by synonyms and spelling.
 
-Which of the allowed words is meant by one that is not: by what engineers call it elsewhere, else by its spelling.
+A function named after a kind of value (`count`, `truth`, `mapping` ...) returns the fault of such a value, or None.
 """
 
 import numbers
@@ -51,19 +51,19 @@ SYNONYMS = {
     "slider": ("piston", "crosshead", "ram"),
     "rocker": ("follower", "output_link"),
 }
-"""What is called otherwise elsewhere, by the library's word."""
+"""Words used elsewhere, by the library's word."""
 _WORDS_BY_SYNONYM: dict[str, list[str]] = {}
 for _word, _others in SYNONYMS.items():
     for _other in _others:
         _WORDS_BY_SYNONYM.setdefault(_other, []).append(_word)
 _UNIT = re.compile(r"\s*(?:\([^()]*\)|\[[^\[\]]*\])\s*$")
-"""A unit behind a name, as headings have it."""
+"""A unit after a name, as in headings."""
 _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")
-"""A word of a path or of an output, and the number of its label."""
+"""A word of a path or output, and the number of its label."""
 
 
 def nearest(value, allowed):
-    """The allowed word that is meant by, or is like, the one given without a unit and bars of a magnitude, or None."""
+    """The nearest allowed word by synonym or spelling, or None; units and bars of a magnitude are ignored."""
     import difflib
 
     text, allowed = _UNIT.sub("", str(value)[:100]).strip("|"), list(allowed)
@@ -75,15 +75,15 @@ def nearest(value, allowed):
 
 
 def _synonym_spellings(text):
-    """What a text may mean by the library's words: as a whole, else with each of its words as the library has it."""
+    """Spellings of a text in the library's words: replaced as a whole, then word by word."""
     yield from _WORDS_BY_SYNONYM.get(text, ())
     yield _PART.sub(lambda found: _WORDS_BY_SYNONYM.get(found[1], [found[1]])[0] + found[2], text)
 
 
 class Problem(str):
-    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all.
+    """Fault of a value, as a sentence; `designs` is the mask of the designs that have it, None for all.
 
-    `wrong` tells it of each value of an array (designs, N).
+    `wrong` is the mask of the values of an array (designs, N).
     """
 
     designs: Any
@@ -95,7 +95,7 @@ class Problem(str):
 
 
 def shown(value):
-    """How a value looks, short enough for a message."""
+    """Text of a value, short enough for a message."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 120 else f"{text[:80]} ... {text[-20:]}"
 
@@ -110,7 +110,7 @@ def require(owner, *problems):
 
 
 def broadcast_problem(**shapes):
-    """What is wrong with shapes, by what has them, that do not broadcast together, or None."""
+    """Fault of named shapes that do not broadcast together, or None."""
     if len(shapes) < 2:
         return None
     try:
@@ -122,13 +122,13 @@ def broadcast_problem(**shapes):
 
 
 MAX_TABLE_MEMORY = 10_000_000_000
-"""Bytes that no table of angles or designs may take."""
+"""Largest size of a table of angles or designs, bytes."""
 BYTES_PER_ANGLE = 1000
-"""Bytes that the results at a crank angle take, all forces in a table."""
+"""Size of the results at a crank angle with all forces in a table."""
 
 
 def count(name, value, *, size=None):
-    """What is wrong with a number of things, or None; with their `size` in bytes, they must have room in memory."""
+    """Fault of a whole number of at least 1, or None; ``value * size`` bytes must fit into memory."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
         return f"{name} must be a whole number of at least 1, got {value!r}"
     if size is not None and value * size > MAX_TABLE_MEMORY:
@@ -138,24 +138,24 @@ def count(name, value, *, size=None):
 
 
 def truth(name, value):
-    """What is wrong with a yes or no, as a sentence, or None."""
+    """Fault of a truth value, or None."""
     return None if isinstance(value, bool | np.bool_) else f"{name} must be True or False, got {shown(value)}"
 
 
 def mapping(name, value):
-    """What is wrong with what must give numbers by path, or None."""
+    """Fault of a mapping of path to number, or None."""
     found = isinstance(value, Mapping)
     return None if found else f'{name} must be a dict of path to number, as {{"crank_length": 0.3}}, got {shown(value)}'
 
 
 def names(name, value):
-    """What is wrong with what must be a name, or several, or None."""
+    """Fault of one or several names, or None."""
     several = isinstance(value, Iterable) and not isinstance(value, bytes | Mapping)
     return None if several else f"{name} must be a name, or several in a list, got {shown(value)}"
 
 
 def seed(name, value):
-    """What is wrong with what random numbers begin with, or None."""
+    """Fault of the seed of random numbers, or None."""
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 0:
@@ -164,7 +164,7 @@ def seed(name, value):
 
 
 def solution(name, value):
-    """What is wrong with what must be a `Solution`, or None."""
+    """Fault of a `Solution`, or None."""
     if hasattr(type(value), "power_residual"):
         return None
     return (
@@ -174,19 +174,19 @@ def solution(name, value):
 
 
 def case(name, value):
-    """What is wrong with what must be a `Case`, or None."""
+    """Fault of a `Case`, or None."""
     return None if hasattr(value, "variants") else f"{name} must be a Case, as ks.load_case, got {_described(value)}"
 
 
 def mechanism(name, value):
-    """What is wrong with what must be a `Mechanism`, or None."""
+    """Fault of a `Mechanism`, or None."""
     if hasattr(type(value), "references"):
         return None
     return f"{name} must be a Mechanism, as ks.crank_slider(...) and solution.mechanism are, got {_described(value)}"
 
 
 def quantity(value, *, function=False):
-    """What is wrong with what must name a quantity, or None."""
+    """Fault of the name of a quantity, or None."""
     if isinstance(value, str) or (function and callable(value)):
         return None
     other = ", or a function of a solution" if function else ""
@@ -194,19 +194,19 @@ def quantity(value, *, function=False):
 
 
 def _described(value):
-    """A value as errors show it: what it is, and short."""
+    """Short text of a value, or its type."""
     text = repr(value) if isinstance(value, str | int | float | None) else ""
     return text if 0 < len(text) < 80 else f"a {type(value).__name__}"
 
 
 def choice(name, value, allowed):
-    """What is wrong with a name that must be one of `allowed`; names the nearest."""
+    """Fault of a name that must be one of `allowed`, with the nearest one, or None."""
     if (type(value) is str and value in allowed) or any(value is word for word in allowed):
         return None
     return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed)) or 'none'}{hint(value, allowed)}"
 
 
 def hint(value, allowed):
-    """Question that names the nearest allowed word, empty if none is near."""
+    """Question "; did you mean ...?" with the nearest allowed word; empty if none is near."""
     near = nearest(value, allowed)
     return f"; did you mean {near!r}?" if near else ""

@@ -1,10 +1,7 @@
-"""Rules: what a value must be.
+"""Rules of values, dataclasses that keep to a table of rules, and the plausible range of numbers.
 
-Dataclasses whose fields keep to a table of rules.
-
-Single numbers: what takes one number by name, and no arrays of designs.
-
-Sizes that a number of a machine usually has: one beyond them looks like a slip of units.
+A rule has ``quick(value)``, which returns the value to keep or `UNDECIDED`, and ``check(value, field)``, which returns
+the value to keep and its fault as a sentence, or None.
 """
 
 import math
@@ -31,20 +28,20 @@ from .values import (
 
 
 class PlausibleRange(NamedTuple):
-    """Sizes, without sign, between which a number lies that is not zero.
+    """Plausible magnitudes of a nonzero number; one beyond looks like a slip of units.
 
     Attributes
     ----------
     most, least : float
-        In its SI unit, or in lengths of the machine's longest link.
+        Limits in the SI unit, or in lengths of the longest link.
     advice : str
-        What is asked about one that does not.
+        Question of the hint.
     factor : float
-        To SI from the unit that is asked about; 0 where it is none.
+        To SI from the unit that was probably meant; 0 if none.
     in_links : bool
-        Whether they are in lengths of the longest link.
+        Whether the limits are in lengths of the longest link.
     unit : str
-        SI unit, where the rule of the number has told it.
+        SI unit of the number.
     """
 
     most: float
@@ -56,22 +53,22 @@ class PlausibleRange(NamedTuple):
 
 
 MAX_LENGTH_IN_LINKS = 20.0
-"""Lengths of the longest link beyond which nobody puts anything: millimetres beside metres make 1000."""
+"""Largest plausible length in lengths of the longest link; millimetres among metres give 1000."""
 PLAUSIBLE_BY_UNIT = {
     "rad": PlausibleRange(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
     "m": PlausibleRange(MAX_LENGTH_IN_LINKS, "is it in mm?", 1e-3, in_links=True),
 }
-"""What holds for all numbers in a unit whose rule says nothing else."""
+"""Plausible range by unit, for rules without one of their own."""
 
 
 def plausible_range_of(rule):
-    """What is usual of a number by its rule; None where anything is."""
+    """Plausible range of a number by its rule; None if there is none."""
     found = rule.usual or PLAUSIBLE_BY_UNIT.get(rule.unit)
     return found and found._replace(unit=rule.unit)
 
 
 def implausibility(path, value, usual, longest=0.0):
-    """What is odd about a number, as a sentence, or None."""
+    """Why a number is implausible, as a sentence, or None; `longest` is the longest link, m."""
     most, advice, factor, least, in_links, si = usual
     unit = longest if in_links else 1.0
     if not has_known_values(value) or not unit:
@@ -90,21 +87,17 @@ def implausibility(path, value, usual, longest=0.0):
 
 
 MAX_NUMBER, MAX_LENGTH = 1e150, 1e75
-"""Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
+"""Bounds in double precision: of a number, whose square must not overflow, and of a length and its reciprocal."""
 UNDECIDED: Any = object()
-"""What a quick look at a value answers if it must be examined."""
+"""Result of ``quick`` for a value that needs ``check``."""
 
 
 @dataclass(frozen=True)
 class Number:
     """A number in a unit, or an array (designs, 1) of them; as a `table`, one for each crank angle.
 
-    The unit is "1" of a ratio and "" where nobody knows it; quantities of pint are converted to it.
-    What is beyond the `usual` is taken, and asked about.
-
-    A rule has ``quick(value)``, which answers what to keep or `UNSURE`, and ``taken(value, field)``, which gives what
-    to keep and what is wrong with it, if anything, as a sentence; ``plainly(value)`` may add the source of a condition
-    under which what is called so there is kept as it is, with the objects that it names.
+    The unit is "1" for a ratio and "" if unknown; pint quantities are converted to it.
+    A number beyond its `usual` range is kept, with a hint.
     """
 
     unit: str
@@ -127,10 +120,7 @@ class Number:
             return value
         return float(value) if type(value) is int and self.above < value < self.below else UNDECIDED
 
-    def plainly(self, value):
-        return f"{value}.__class__ is float and {self.above!r} < {value} < {self.below!r}", {}
-
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         name = self.name or field
         try:
             found = to_number(value, self.table, self.unit)
@@ -184,11 +174,7 @@ class Pair:
             return UNDECIDED if first is UNDECIDED else (first, 0.0)
         return UNDECIDED
 
-    def plainly(self, value):
-        parts = (self.rule.plainly(f"{value}[{place}]")[0] for place in range(2))
-        return f"{value}.__class__ is tuple and len({value}) == 2 and {' and '.join(parts)}", {}
-
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         name = self.name or field
         try:
             value = to_plain(value, self.unit) if is_quantity(value) else value
@@ -218,7 +204,7 @@ class Pair:
         return f"({', '.join(self.parts)})"
 
     def _examined(self, pair, name):
-        found = [self.rule.taken(value, f"{name} {part}") for value, part in zip(pair, self.parts, strict=True)]
+        found = [self.rule.check(value, f"{name} {part}") for value, part in zip(pair, self.parts, strict=True)]
         return tuple(value for value, _ in found), found[0][1] or found[1][1]
 
 
@@ -241,7 +227,7 @@ class Series:
         found = tuple(self._rule(place).quick(part) for place, part in enumerate(value))
         return UNDECIDED if any(part is UNDECIDED for part in found) else found
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         try:
             value = to_plain(value, self.unit) if is_quantity(value) else value
         except DimensionError as fault:
@@ -251,7 +237,7 @@ class Series:
             terms = f"({self.letter}{self.start}, {self.letter}{self.start + 1}, ...)"
             return value, f"{field} must be a tuple of numbers {terms}, got {shown(value)}"
         found = [
-            self._rule(place).taken(part, f"{field}.{place + self.start}".strip("."))
+            self._rule(place).check(part, f"{field}.{place + self.start}".strip("."))
             for place, part in enumerate(value)
         ]
         return tuple(part for part, _ in found), next((problem for _, problem in found if problem), None)
@@ -267,37 +253,33 @@ class Series:
 
 @dataclass(frozen=True)
 class Optional:
-    """What another rule says, or None."""
+    """None, or a value by another rule."""
 
     rule: Any
 
     def quick(self, value):
         return value if value is None else self.rule.quick(value)
 
-    def plainly(self, value):
-        condition, objects = self.rule.plainly(value)
-        return f"({value} is None or {condition})", objects
-
-    def taken(self, value, field=""):
-        return (value, None) if value is None else self.rule.taken(value, field)
+    def check(self, value, field=""):
+        return (value, None) if value is None else self.rule.check(value, field)
 
 
 @dataclass(frozen=True)
 class OrFunction:
-    """What another rule says, or a function."""
+    """A function, or a value by another rule."""
 
     rule: Any
 
     def quick(self, value):
         return value if callable(value) else self.rule.quick(value)
 
-    def taken(self, value, field=""):
-        return (value, None) if callable(value) else self.rule.taken(value, field)
+    def check(self, value, field=""):
+        return (value, None) if callable(value) else self.rule.check(value, field)
 
 
 @dataclass(frozen=True)
 class InstanceOf:
-    """An object of a class, described in words for the message."""
+    """An instance of a class; the message says `words`."""
 
     kind: type
     words: str
@@ -305,16 +287,13 @@ class InstanceOf:
     def quick(self, value):
         return value if type(value) is self.kind else UNDECIDED
 
-    def plainly(self, value):
-        return f"{value}.__class__ is kind_of_{value}", {f"kind_of_{value}": self.kind}
-
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         return value, None if isinstance(value, self.kind) else f"{field} must be {self.words}, got {shown(value)}"
 
 
 @dataclass(frozen=True)
 class HasMembers:
-    """An object of the library or of the user's own that has some members; the user's own is kept as it is now."""
+    """An object of the library or the user with some members; of a user's object a snapshot is kept."""
 
     members: tuple[str, ...]
     words: str
@@ -323,7 +302,7 @@ class HasMembers:
         own = not type(value).__module__.startswith(f"{LIBRARY}.")
         return UNDECIDED if own or not all(hasattr(value, name) for name in self.members) else value
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         lacking = [name for name in self.members if not hasattr(value, name)]
         if isinstance(value, type) or len(lacking) == len(self.members):
             made = "; it is a class, make one of it" if isinstance(value, type) else ""
@@ -339,14 +318,10 @@ class Name:
 
     may_be_empty: bool = False
 
-    def plainly(self, value):
-        filled = "" if self.may_be_empty else f" and {value}"
-        return f"{value}.__class__ is str and {value}.isprintable(){filled}", {}
-
     def quick(self, value):
         return value if type(value) is str and value.isprintable() and (value or self.may_be_empty) else UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, str) and value.isprintable() and (value or self.may_be_empty):
             return str(value), None
         return value, f"{field} must be a name, a text of one line, got {shown(value)}"
@@ -361,7 +336,7 @@ class Sign:
     def quick(self, value):
         return value if type(value) is int and (value == 1 or value == -1) else UNDECIDED
 
-    def taken(self, value, field=""):
+    def check(self, value, field=""):
         if isinstance(value, int | float | np.integer | np.floating) and type(value) is not bool and value in (1, -1):
             return int(value), None
         if isinstance(value, str) and value in self.words:
@@ -371,15 +346,25 @@ class Sign:
 
 
 class Rules:
-    """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
+    """Rules by field of a dataclass; ``also(item)`` yields faults of several fields together."""
 
     def __init__(self, owner, also=None, **rules):
-        """`are_well(values)` tells of a mapping if all values are surely well, and puts in what is kept of them."""
         self.owner, self.also, self.rules = owner, also, rules
-        self.are_well = _write_fast_path(rules)
+        self._quick = tuple((field, rule.quick) for field, rule in rules.items())
+
+    def are_well(self, values):
+        """Whether all values by field are certainly right; replaces them by the values to keep."""
+        for field, quick in self._quick:
+            value = values[field]
+            kept = quick(value)
+            if kept is UNDECIDED:
+                return False
+            if kept is not value:
+                values[field] = kept
+        return True
 
     def admit(self, item):
-        """Put into the fields what is to be kept of them, or raise `ParameterError`."""
+        """Put the values to keep into the fields, or raise `ParameterError`."""
         self.keep(vars(item), self.owner)
         if self.also is not None:
             require(self.owner, *self.also(item))
@@ -388,24 +373,6 @@ class Rules:
         """The same in a mapping of field to value."""
         if not self.are_well(values):
             values.update(check_values(owner, self.rules, values))
-
-
-def _write_fast_path(rules):
-    """Function for values by field that are mostly well, written for the rules as a hand would write it."""
-    scope: dict[str, Any] = {"UNSURE": UNDECIDED}
-    lines = ["def look(values):"]
-    for field, rule in rules.items():
-        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else ("False", {})
-        scope |= objects | {f"quick_at_{field}": rule.quick}
-        lines += [
-            f"    {field} = values[{field!r}]",
-            f"    if not ({condition}):",
-            f"        kept = quick_at_{field}({field})",
-            "        if kept is UNSURE: return False",
-            f"        if kept is not {field}: values[{field!r}] = kept",
-        ]
-    exec("\n".join([*lines, "    return True"]), scope)
-    return scope["look"]
 
 
 class Checked:
@@ -420,10 +387,10 @@ class Checked:
 
 
 def check_values(owner, rules, values, *others):
-    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong, `others` too."""
+    """Values to keep by name, each by its rule; one `ParameterError` with all faults, also `others`."""
     found, problems = {}, list(others)
     for field, rule in rules.items():
-        found[field], problem = rule.taken(values[field], field)
+        found[field], problem = rule.check(values[field], field)
         problems.append(problem)
     if not any(problems):
         problems.append(broadcast_problem(**dict(_shapes(found))))
@@ -432,7 +399,7 @@ def check_values(owner, rules, values, *others):
 
 
 def _shapes(values):
-    """Name and shape of each array of designs among values and pairs of them."""
+    """Name and shape of each array of designs in values and pairs."""
     for name, value in values.items():
         for part in value if type(value) is tuple else (value,):
             if len(shape := getattr(part, "shape", ())) > 1:
@@ -440,8 +407,8 @@ def _shapes(values):
 
 
 def single_number(name, value, unit, *, high=None, unequal=None, **rule):
-    """One number in a unit as a float, and what is wrong with it, as a sentence, or None; `rule` as for `Number`."""
-    found, problem = Number(unit, name, **rule).taken(value)
+    """One number in a unit as a float, and its fault as a sentence, or None; `rule` as for `Number`."""
+    found, problem = Number(unit, name, **rule).check(value)
     if isinstance(value, list | tuple) or (problem is None and (not has_known_values(found) or np.ndim(found))):
         problem = f"{name} must be one number, got {shown(value)}"
     if problem is None and high is not None and not found < high:
@@ -452,9 +419,9 @@ def single_number(name, value, unit, *, high=None, unequal=None, **rule):
 
 
 def single_numbers(owner, *problems, **given):
-    """Single numbers by name, each given as (value, unit, rule); one `ParameterError` for all that is wrong.
+    """Single numbers by name, each given as (value, unit, rule); one `ParameterError` with all faults.
 
-    A rule may have another name for messages. About numbers beyond what their rules call usual one warning asks.
+    A rule may give another name for messages. One `HintWarning` asks about implausible numbers.
     """
     found = {
         field: single_number(value=value, unit=unit, **{"name": field} | rule)

@@ -1,9 +1,7 @@
-"""What a value is: a number, an array of numbers, or something else, and what to hand in instead.
+"""Recognition and conversion of values: numbers, arrays, pint quantities; why a value is no number.
 
-Quantities of pint as plain numbers in the unit wanted; pint is not imported for it.
-
-Whoever hands in a quantity has imported pint, and its own registry converts it. As in case files, an angle is no plain
-number: a quantity must count as many radians as the unit wanted does, so 5 Hz is no crank speed.
+pint is not imported for it: the caller who passes a quantity has imported pint, and its own registry converts it. As in
+case files an angle is no plain number: a quantity must contain as many radians as the unit, so 5 Hz is no crank speed.
 """
 
 import datetime as dt
@@ -22,11 +20,11 @@ from .messages import MAX_TABLE_MEMORY
 
 
 class DimensionError(Exception):
-    """A quantity of another dimension than is wanted; the message says of which."""
+    """A quantity has another dimension than the unit wanted; the message names both."""
 
 
 def to_plain(value, unit):
-    """A quantity, or each that a list or array of objects holds, as numbers in a unit; all else as it is.
+    """Quantities, also in lists and object arrays, as numbers in a unit; other values unchanged.
 
     Raises
     ------
@@ -53,7 +51,7 @@ def to_plain(value, unit):
 
 
 def to_plain_named(owner, name, value, unit):
-    """The same, with a `ParameterError` that calls the value by its name."""
+    """The same with a `ParameterError` that names the value."""
     try:
         return to_plain(value, unit)
     except DimensionError as fault:
@@ -61,7 +59,7 @@ def to_plain_named(owner, name, value, unit):
 
 
 def is_quantity(value):
-    """Whether a value is a quantity itself."""
+    """Whether a value is a pint quantity."""
     pint = sys.modules.get("pint")
     return isinstance(value, getattr(pint, "Quantity", ()))
 
@@ -76,7 +74,8 @@ def _converted(quantity, unit):
         wanted = registry.parse_units("" if unit == "1" else unit)
     except UndefinedUnitError as fault:
         raise DimensionError(
-            f"must be a number in {unit}, got {_quantity_text(quantity)}, in whose registry {fault}; give the plain number"
+            f"must be a number in {unit}, got {_quantity_text(quantity)}, in whose registry {fault}; "
+            "give the plain number"
         ) from None
     given, expected = (_dimension(registry, units) for units in (quantity.units, wanted))
     if given != expected:
@@ -94,15 +93,15 @@ _NO_NUMBER = "; an angle is no plain number here: give .to('{}') where that is m
 
 
 def _dimension(registry, units):
-    """Powers of the dimensions, the angle's among them."""
+    """Powers of the dimensions, including the angle."""
     return {**registry.get_dimensionality(units), ANGLE: registry.get_root_units(units)[1]._units.get("radian", 0)}
 
 
 def _magnitude_in(quantity, wanted):
-    """The magnitude in a unit of the same dimension."""
+    """Magnitude in a unit of the same dimension."""
     magnitude = quantity.magnitude
     if isinstance(magnitude, bool | complex | str) or getattr(magnitude, "dtype", np.dtype(float)).kind not in "iufO":
-        return magnitude  # is refused for what it is
+        return magnitude  # `to_number` refuses it
     if getattr(magnitude, "dtype", np.dtype(float)) in (np.float16, np.float32):  # else converted in so few digits
         quantity = quantity._REGISTRY.Quantity(magnitude.astype(float), quantity.units)
     try:
@@ -122,7 +121,7 @@ def _dimension_text(dimension):
 
 
 def _quantity_text(quantity):
-    """The quantity, short."""
+    """Short text of a quantity."""
     if np.ndim(quantity.magnitude):
         return f"an array in {quantity.units}"
     text = " ".join(str(quantity).split())
@@ -133,11 +132,11 @@ NUMBER_TYPES = (int, float, np.integer, np.floating, Fraction, Decimal)
 
 
 class NotANumberError(Exception):
-    """A value that is no number; the message says what it is and what to hand in."""
+    """A value is no number; the message says what it is and what to pass instead."""
 
 
 def has_known_values(value):
-    """Whether the values can be looked at now."""
+    """Whether the value can be compared now; False for traced numbers and enclosures."""
     if isinstance(value, np.ndarray):
         return value.dtype != object
     return value is None or isinstance(value, numbers.Real | str | list | tuple)
@@ -145,7 +144,7 @@ def has_known_values(value):
 
 @cache
 def _type_problem(kind: Any):
-    """Why no value of this type is a number, and what to hand in; None if it may be one."""
+    """Why no value of this type is a number, and what to pass instead; None if it may be one."""
     for kinds, words in (
         ((bool, np.bool_), "a truth value; give a number"),
         ((complex, np.complexfloating), "a complex number; give a real one"),
@@ -169,16 +168,13 @@ def _type_problem(kind: Any):
 
 
 def not_a_number(value):
-    """Why a value is no number, and what to hand in; None if it may be one."""
+    """Why a value is no number, and what to pass instead; None if it may be one."""
     kind: Any = type(value)
     return _type_problem(kind)
 
 
 def to_number(value, table, unit=""):
-    """The value as a float or a locked array of floats; as it came if its values cannot be looked at now.
-
-    A quantity with its unit is converted to the one wanted.
-    """
+    """The value as a float or read-only array of floats, in a unit; traced numbers unchanged."""
     value = to_plain(value, unit)
     if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
         value = to_plain(value.to_numpy(), unit)
@@ -208,7 +204,7 @@ def to_number(value, table, unit=""):
 
 
 def _as_designs(values):
-    """What to write for a list or tuple where an array of designs may stand."""
+    """Advice for a list or tuple in place of an array of designs."""
     short = repr(values) if len(repr(values)) <= 60 else "..."
     kind, axis = type(values).__name__, "" if values and isinstance(values[0], list | tuple) else "[:, None]"
     return f"a {kind}; for a batch of designs write np.array({short}){axis}"
@@ -226,7 +222,7 @@ def _array_of_list(values):
 
 
 def _read_only_copy(array):
-    """A copy of an array as floats that nobody writes to; of objects if they are numbers of another kind."""
+    """Read-only copy of an array as floats; as objects if they are numbers of another kind."""
     if array.dtype == float and array.flags.owndata and not array.flags.writeable:
         return array
     if array.size * 8 > MAX_TABLE_MEMORY:
@@ -249,7 +245,7 @@ def _read_only_copy(array):
 
 
 def snapshot(item):
-    """An object of the user's own as it is now: what is changed of it later is not seen."""
+    """Copy of a user's object, so that later changes have no effect; the object itself if it is immutable."""
     values = getattr(item, "__dict__", {})
     arrays = {name: part.copy() for name, part in values.items() if isinstance(part, np.ndarray)}
     frozen = getattr(type(item), "__dataclass_params__", None)

@@ -1,17 +1,31 @@
-"""The library's own path under study: NumPy, compiled, JAX, each in single precision too; torque by powers alone."""
+"""The library's own engines as methods (NumPy, compiled, JAX, single precision), and approximations that run on them.
+
+Approximations: derivatives of the joint positions by finite differences or by FFT, joint paths as truncated Fourier
+series, and the coupler as two point masses.
+"""
 
 import warnings
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from ...engines.engines import COMPILED, NUMPY
+from ...engines.engines import COMPILED, NUMPY, Kernels
 from ...engines.jax_backend import Backend
 from ...engines.numba_backend import require_numba
 from ...engines.program import program_of
+from ...errors import NotGivenError, ParameterError
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked_solution
-from .method import Method, NotGivenError
+from ..simplifications import (
+    harmonic_series,
+    joint_motions,
+    joint_positions,
+    paths_over_turn,
+    placement_from_joints,
+    two_mass_coupler,
+)
+from .method import Method, require_one_design
 
 
 def _solve(solution, angle):
@@ -22,16 +36,12 @@ def _numpy(solution, quantity, setting):
     return lambda: components(_solve(solution, solution.crank_angle), quantity)
 
 
-def compiled_function(solution, quantity):
+def compiled_function(solution, quantity, setting=None):
     """Function that computes a quantity by a compiled loop."""
     require_numba()
     state = solution.dynamics
     made, leaves = program_of(state, (quantity,))
     return lambda: tuple(made.run(state, leaves, compiled=True))
-
-
-def _compiled(solution, quantity, setting):
-    return compiled_function(solution, quantity)
 
 
 def _numpy_with_bounds(solution, quantity, setting):
@@ -49,12 +59,12 @@ def _with_bounds(solution, quantity, engine):
 
 
 def proven_bound(solution, quantity):
-    """Bound on the errors of a solution's values (N,), of a vector on their magnitude."""
+    """Bound on the rounding errors of a quantity, (N,), its unit; for a vector, of the error's magnitude."""
     return np.linalg.norm(np.reshape(solution.error_bound(quantity), (-1, *solution.shape)), axis=0)
 
 
 def _backend_method(engine, precision):
-    """The recorded program in a precision, or by JAX on the device that it finds, with the bounds that are proven."""
+    """Method of a recorded program by an engine in a precision, with proven bounds; JAX chooses its device."""
     backend = Backend(engine, precision)
     bounding = backend if engine == "jax" else Backend("numpy", precision)
 
@@ -94,11 +104,119 @@ def _by_power(solution, quantity, setting):
 
 METHODS = (
     Method("ours, NumPy", _numpy, ours=True, bound=proven_bound),
-    Method("ours, compiled", _compiled, ours=True, bound=proven_bound),
+    Method("ours, compiled", compiled_function, ours=True, bound=proven_bound),
     Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven_bound),
     Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven_bound),
     _backend_method("jax", "double"),
     *(_backend_method(engine, "single") for engine in ("numpy", "compiled", "jax")),
     Method("ours, torque by powers", _by_power, ours=True),
     Method("float32 crank angles", _single_angles),
+)
+
+
+STENCILS = {
+    2: ((-1, 0, 1), (-0.5, 0.0, 0.5), (1.0, -2.0, 1.0)),
+    4: ((-2, -1, 0, 1, 2), (1 / 12, -2 / 3, 0.0, 2 / 3, -1 / 12), (-1 / 12, 4 / 3, -5 / 2, 4 / 3, -1 / 12)),
+}
+"""By order: offsets in steps, weights of the first and of the second derivative (Fornberg 1988)."""
+
+
+def _differences(order, solution, quantity, step):
+    offsets, first, second = (np.array(row) for row in STENCILS[order])
+    require_one_design(solution)
+
+    def way(mechanism, angle):
+        position = joint_positions(mechanism, angle + step * offsets[:, None])
+        return placement_from_joints(
+            mechanism,
+            angle,
+            joint_motions(
+                mechanism,
+                position[:, :, offsets.size // 2],
+                np.tensordot(first / step, position, (0, 2)),
+                np.tensordot(second / step**2, position, (0, 2)),
+            ),
+        )
+
+    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
+
+
+def _spectral(solution, quantity, samples):
+    """Joint positions sampled over the turn, differentiated and interpolated to the crank angles by FFT."""
+    require_one_design(solution)
+    angle = solution.crank_angle
+    if not _is_even_turn(angle):
+        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn, its end excluded")
+    if samples > angle.size:
+        raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
+    sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
+    paths_over_turn(solution.mechanism, sampled)
+    harmonic = 1j * np.arange((samples + 1) // 2)
+    onward = np.exp(harmonic * angle[0])
+
+    def way(mechanism, angle):
+        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * (
+            onward * (angle.size / samples)
+        )
+        parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
+        return placement_from_joints(mechanism, angle, joint_motions(mechanism, *parts))
+
+    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
+
+
+def _report_coarse_motion(run):
+    """The function, with `NotGivenError` where a coarse motion leaves the range of a load's table."""
+
+    def approximated():
+        try:
+            return run()
+        except ParameterError as why:
+            raise NotGivenError(f"the motion found is too coarse: {why}") from why
+
+    return approximated
+
+
+def _is_even_turn(angle):
+    turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
+    return np.ndim(angle) == 1 and np.allclose(angle - angle[0], turn, atol=1e-9)
+
+
+def _series(solution, order):
+    """The solution with its kinematics as a truncated series."""
+    require_one_design(solution)
+    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
+
+
+def _two_mass(solution, setting):
+    """The solution with its couplers as two masses each."""
+    mechanism = two_mass_coupler(solution.mechanism)
+    if mechanism is None:
+        raise NotGivenError("there is no coupler mass to share out between its joints")
+    return replace(solution, mechanism=mechanism)
+
+
+def _eager(model, solution, quantity, setting):
+    """Method that computes a simpler model by NumPy."""
+    simpler = model(solution, setting)
+    return _report_coarse_motion(lambda: components(replace(simpler), quantity))
+
+
+def _compiled_model(model):
+    """Method that computes a simpler model by a compiled loop."""
+    return lambda solution, quantity, setting: _report_coarse_motion(
+        compiled_function(model(solution, setting), quantity)
+    )
+
+
+HARMONICS = (1, 2, 4, 6)
+APPROXIMATE_METHODS = (
+    Method("differences, 2nd order", partial(_differences, 2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
+    Method(
+        "differences, 4th order", partial(_differences, 4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)
+    ),
+    Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
+    Method("harmonic series", partial(_eager, _series), "harmonics", HARMONICS),
+    Method("harmonic series, compiled", _compiled_model(_series), "harmonics", HARMONICS),
+    Method("two-mass coupler", partial(_eager, _two_mass)),
+    Method("two-mass coupler, compiled", _compiled_model(_two_mass)),
 )

@@ -1,6 +1,7 @@
-"""What a method under study is: one way to a quantity, to be measured against the library's own.
+"""A method under study, the checks that methods share, and the measurement of computing times.
 
-How long a function takes, and on what machine and with what versions that was measured.
+A method is one way to compute a quantity of a solution; `precision` and `stability` compare its time and error with
+those of the library itself.
 """
 
 import os
@@ -19,11 +20,9 @@ from ...engines.numba_backend import forget_angles
 from ...errors import NotGivenError
 from ...machine.groups.change_points import SIDES
 
-__all__ = ["Method", "NotGivenError", "on_a_side", "require_frictionless", "require_moving", "require_one_design"]
-
 
 def with_numeric_side(mechanism):
-    """The mechanism with sides in place of the words "open" and "crossed", which formulas of one side do not know."""
+    """The mechanism with signs +1 and -1 as assemblies in place of the words "open" and "crossed"."""
     if mechanism.passes:
         raise NotGivenError(f"{mechanism.name} passes change points, but the formulas keep to one side of them")
     groups = tuple(
@@ -39,24 +38,23 @@ class Method:
     Attributes
     ----------
     name : str
-        What charts and tables call it.
+        In charts and tables.
     prepare : function
-        ``prepare(solution, quantity, setting)`` does whatever is done once for a mechanism and returns a function
-        without arguments that computes the quantity at the solution's crank angles, as a tuple of its components (see
-        `quantities.components`). It raises `NotGivenError` for what the method cannot give.
+        ``prepare(solution, quantity, setting)`` does the work needed once for a mechanism and returns a function
+        without arguments: it computes the quantity at the solution's crank angles, as a tuple of its components (see
+        `quantities.components`). `prepare` raises `NotGivenError` for quantities that the method cannot give.
     setting : str
-        What can be set, with its unit; empty if nothing.
+        Name of the parameter that trades time for accuracy, with its unit; empty if there is none.
     settings : tuple
         Values of the setting, from coarse to fine.
     ours : bool
         Whether it is the library's own path.
     bound : function, optional
-        ``bound(solution, quantity)``: what the method itself proves its error to be at most, (N,). Without, it does not
-        know how wrong it is.
+        ``bound(solution, quantity)``: the bound that the method proves on its own error, (N,); None if it proves none.
     precision : "double" or "single"
         Of the library's own path.
     device : function, optional
-        ``device()``: what computes, as "gpu: NVIDIA H100"; without, the processor, "cpu".
+        ``device()``: the device that computes, as "gpu: NVIDIA H100"; "cpu" without.
 
     Examples
     --------
@@ -79,33 +77,33 @@ class Method:
 
 
 def require_frictionless(solution):
-    """Raise `NotGivenError` for friction, whose forces depend on the reactions that they change."""
+    """Raise `NotGivenError` for a solution with friction."""
     if solution.friction:
         raise NotGivenError(f"its equations know no friction, but there is some in {', '.join(solution.friction)}")
 
 
 def require_moving(solution):
-    """Raise `NotGivenError` for friction where the crank rests, which has no sense then."""
+    """Raise `NotGivenError` for friction with the crank at rest: its direction is not defined."""
     if solution.friction and not np.all(solution.crank_speed):
         raise NotGivenError("friction of a crank at rest has no sense")
 
 
 def require_one_design(solution):
-    """Raise `NotGivenError` for a batch of designs, and for crank angles that are no row."""
+    """Raise `NotGivenError` unless the solution is of one design at crank angles (N,)."""
     if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
         raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
 
 
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 MIN_MEASURED_TIME = 2e-3
-"""Shortest stretch of time, s, that is taken to be measured well; a faster function is repeated within it."""
+"""Shortest time, s, that the clock measures well; a faster function is called repeatedly within it."""
 
 
 def seconds(*runs, repeats=5):
     """Median time of one call of each function, s.
 
-    All take turns, so that a machine that is slow for a while is slow for all of them; first calls, which may compile,
-    are not counted. Sines of the crank angles are computed in each call.
+    The functions take turns, so a busy machine slows all of them alike. First calls, which may compile, do not count.
+    Each call computes the sines of the crank angles again.
 
     Parameters
     ----------
@@ -134,7 +132,7 @@ def seconds(*runs, repeats=5):
 
 
 def _mean_time(run, calls):
-    for _ in range(calls // 2):  # after another function caches are cold
+    for _ in range(calls // 2):  # warm the caches after another function
         run()
     start = time.perf_counter()
     for _ in range(calls):
@@ -144,7 +142,7 @@ def _mean_time(run, calls):
 
 
 def _processor():
-    """Name of the processor as the system tells it, else its architecture."""
+    """Name of the processor from the system, else its architecture."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         return next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))

@@ -1,18 +1,17 @@
-"""Methods under study: the papers' own ways to a result, kept to be measured against the library's.
+"""Formulas and cams as the published studies print them, as methods to compare with the library's.
 
-Nothing in the library calls them; where they fail is counted by the tests. `printed` holds the formulas as the studies
-print them, groups put these in place of the library's, for every guide, pivot and assembly. One printed sign
-is wrong, that of the sawframe study's slot force: `by_the_papers` has it mended, `as_printed` keeps it.
-
-Formulas and cams as the published studies print them, each by itself.
+`by_the_papers` replaces the groups of a solution by these formulas, for every guide, pivot and assembly. The sawframe
+study prints one wrong sign, in the slot force: `by_the_papers` corrects it, `as_printed` keeps it.
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...engines.engines import KERNELS
+from ...errors import NotGivenError
 from ...machine.cams.cam_roller import CamRoller
 from ...machine.cams.cams import Circle, CosineLaw
 from ...machine.group import Resolved
@@ -22,7 +21,7 @@ from ...machine.links import Joint, LinkMotion, Wrench
 from ...machine.loads import ProcessForce, Spring
 from ...mechanics.quantities import components
 from ...numbers.planar import add_vectors, cross, dot, left, minus, scale_vector, subtract_vectors, vector_or_zero
-from .method import Method, NotGivenError, require_frictionless, require_one_design, with_numeric_side
+from .method import Method, require_frictionless, require_one_design, with_numeric_side
 
 
 def turned_to_length(vector, angle, length):
@@ -63,7 +62,7 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
 
     Steps as printed (Kotov 2024, figure 3): the perpendicular AC from A to the guide W1-W2, the angle CAB by acos, its
     side by the sign of a mixed product, and a special case for A on the guide. Near a dead centre of an inclined guide
-    the sign and the special case come from different roundings of the same zero and may disagree.
+    the sign and the special case round the same zero differently and may disagree.
 
     Parameters
     ----------
@@ -108,7 +107,7 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     """Coupler and rocker angle of the chain unit by atan and acos, and their rates by the two-component formulas.
 
     As in the Belarusian study of the chain unit, with phi = angle - phi_0 counted from the frame line O-O2, clockwise,
-    and B to the left of A-O2. The coupler angle holds only while A is left of O2, the rocker angle only while
+    and B to the left of A-O2. The coupler angle is right only while A is left of O2, the rocker angle only while
     b - r cos(phi) > 0: beyond, atan is off by half a turn.
 
     Parameters
@@ -154,7 +153,7 @@ def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, as
     """Coupler and rocker of any four-bar by the formulas of `chain_unit_by_atan_acos`, and their accelerations.
 
     The x axis is turned into the frame line O-O2, so that f2 and f5 of the study are the same; the rates are
-    differentiated once more, as the study says. All holds while b - r cos(phi) > 0.
+    differentiated once more, as the study says. The formulas hold while b - r cos(phi) > 0.
 
     Parameters
     ----------
@@ -290,7 +289,7 @@ class SliderByVectors(SliderGroup):
 
     TRUSTED = True
 
-    def found(self, A):
+    def pin_position(self, A):
         u, offset, length = self.guide.direction, self.guide.guide_offset, self.coupler_length
         foot = scale_vector(offset, left(u))
         W1, W2 = subtract_vectors(foot, scale_vector(length, u)), add_vectors(foot, scale_vector(length, u))
@@ -298,7 +297,7 @@ class SliderByVectors(SliderGroup):
 
     def place(self, placement):
         A, u, length = placement.joints[self.on], self.guide.direction, self.coupler_length
-        B = tuple(self.found(A.position))
+        B = tuple(self.pin_position(A.position))
         AB = subtract_vectors(B, A.position)
         n, along = left(u), dot(u, AB)
         ratio, speed = -dot(n, A.first) / along, dot(AB, A.first) / along
@@ -308,7 +307,7 @@ class SliderByVectors(SliderGroup):
         q = scale_vector(1 / length, AB)
         coupler, slider = LinkMotion(A, q, ratio, ratio_slope), LinkMotion(pin, u, None, None)
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
-        self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel))
+        self._enter(placement, SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel))
 
 
 class SliderByAsin(SliderByVectors):
@@ -316,7 +315,7 @@ class SliderByAsin(SliderByVectors):
 
     TRUSTED = True
 
-    def found(self, A):
+    def pin_position(self, A):
         u, n = self.guide.direction, left(self.guide.direction)
         angle = np.arcsin((self.guide.guide_offset - dot(n, A)) / self.coupler_length)
         along, across = self.assembly * np.cos(angle), np.sin(angle)
@@ -344,16 +343,16 @@ class RockerByAtanAcos(RockerGroup):
         pin = Joint(add_vectors(self.pivot, arm), scale_vector(swing, left(arm)), second)
         coupler = LinkMotion(placement.joints[self.on], q, ratio, ratio_slope)
         rocker, sine = LinkMotion(pivot, p, swing, swing_slope), cross(q, p)
-        self._set(placement, RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine))
+        self._enter(placement, RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine))
 
 
 def _convert(kind, original, **more):
-    """A group or cam with the same data but formulas of another kind."""
+    """A group or cam of another class with the same data."""
     return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
 
 
 def _groups(mechanism, sign):
-    """Groups of a mechanism as its study calculates them."""
+    """Groups of a mechanism with the formulas of its study."""
     groups = with_numeric_side(mechanism).groups
     kinds = [type(group) for group in groups]
     if kinds == [SliderGroup]:
@@ -369,12 +368,12 @@ def _groups(mechanism, sign):
 
 
 def by_the_papers(solution, sign=EQUILIBRIUM):
-    """The solution by the formulas of the study of such a mechanism, its wrong sign mended unless told.
+    """The solution by the formulas of the study of its mechanism, by default with the wrong sign corrected.
 
     Parameters
     ----------
     solution : Solution
-        Of a mechanism built as one of the cases.
+        Of a mechanism like one of the cases.
     sign : float
         Of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
 
@@ -472,26 +471,22 @@ def as_printed(solution):
     return by_the_papers(exactly_cancelled(solution), PRINTED)
 
 
-def _method(formulas):
+def _method(formulas, solution, quantity, setting=None):
     """Method that computes a solution by other formulas."""
+    require_one_design(solution)
+    require_frictionless(solution)
+    formulated = formulas(solution)
 
-    def prepare(solution, quantity, setting=None):
-        require_one_design(solution)
-        require_frictionless(solution)
-        formulated = formulas(solution)
+    def run():
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return components(replace(formulated), quantity)
 
-        def run():
-            with np.errstate(divide="ignore", invalid="ignore"):
-                return components(replace(formulated), quantity)
-
-        return run
-
-    return prepare
+    return run
 
 
-METHODS = (Method("papers' formulas", _method(by_the_papers)),)
-AS_PRINTED = Method("sawframe study as printed, wrong sign", _method(as_printed))
-"""Apart from the others, which are right but for rounding: its error, a fifth, is that of one sign."""
+METHODS = (Method("papers' formulas", partial(_method, by_the_papers)),)
+AS_PRINTED = Method("sawframe study as printed, wrong sign", partial(_method, as_printed))
+"""A method with a known error: the wrong sign changes the result by a fifth."""
 
 
 def __dir__():

@@ -1,26 +1,17 @@
-"""Ways to a motion over time, on benchmarks of multibody dynamics with published results.
+"""Methods for periodic running under a motor and for motions over time, with a study of time and error for each.
 
-Of the slider-crank of SUNDIALS (Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8)
-and the N-four-bar of IFToMM's library of benchmark problems (A02; through its singular positions), the crank angle
-after 10 s is asked for.
+Periodic running: the energy U(phi) solves dU/dphi = motor torque - load torque with U(0) = U(period). All methods use
+the library's inertia and load torque, so only the solution of this equation is compared.
 
-ours               `drive.coast`: the machine as one degree of freedom, DOP853 at the tightest tolerance
-reduced inertia    the same equation by other integrators of SciPy, and by fixed steps of Runge and Kutta
-constraint         all links by their coordinates: the constraint equations differentiated twice (index 1), drift held
-                   by Baumgarte's terms, DOP853
+stepping      integrate turn after turn until the speed repeats
+shooting      secant rule on the change of energy over one turn
+fixed steps   shooting with Runge-Kutta methods of order 4 or 8 (Hairer, Nørsett and Wanner, *Solving Ordinary
+              Differential Equations I*, II.5)
+collocation   SciPy's `solve_bvp` with periodic ends; trigonometric polynomials (Fourier) with Newton's iteration
 
-Ways to periodic running under a motor: the library's, and others, each at several accuracies.
-
-All others evaluate the library's inertia and load torque by its compiled program, where numba is there, and find the
-energy U over the crank angle, dU/dphi = motor torque - load torque. So what is compared is how running is found alone.
-
-stepping      the turn integrated again and again until it repeats
-shooting      secant rule on what a turn leaves of the energy at its start
-fixed steps   shooting by Runge and Kutta's four stages, or the twelve of order 8 (Hairer, Nørsett and Wanner,
-              *Solving Ordinary Differential Equations I*, II.5), inertia and load torque at all stages computed at once
-collocation   SciPy's `solve_bvp` with periodic ends; and trigonometric polynomials (Fourier), Newton's iteration
-
-Work against precision of the drive: periodic running, and motions over time that others published.
+Motions over time: the crank angle after 10 s of two published benchmarks, the slider-crank of SUNDIALS (Haug, *Computer
+Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8) and the N-four-bar of IFToMM (A02), by
+`drive.coast`, by other integrators of the same equation, and by constraint equations with Baumgarte's terms.
 """
 
 import math
@@ -54,7 +45,7 @@ DAMPING = 10.0
 
 @dataclass(frozen=True)
 class CoastDown:
-    """A scene that coasts from a crank angle and speed, rad, rad/s, for a time, s, and where it comes to, rad."""
+    """A scene that coasts from a crank angle, rad, and speed, rad/s, for a time, s, to an exact angle, rad."""
 
     scene: Any
     from_angle: float
@@ -78,7 +69,7 @@ def slider_crank():
 
 
 def n_four_bar(windows=2):
-    """Bars of 1 kg and 1 m: uprights on pivots 1 m apart, level ones between their ends; from the top with 1 m/s."""
+    """Bars of 1 kg and 1 m: uprights on pivots 1 m apart, level bars between their ends; start upright with 1 m/s."""
     bar = Link(1.0, 0.5, 1 / 12)
     groups = tuple(
         RockerGroup(
@@ -102,55 +93,49 @@ def n_four_bar(windows=2):
 BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N = 2": n_four_bar}
 
 
-def _coasting(engine):
-    def prepare(problem, quantity, setting):
-        if engine == "compiled" and not numba_available():
-            raise NotGivenError("numba is not installed")
+def _coasting(engine, problem, quantity, setting):
+    if engine == "compiled" and not numba_available():
+        raise NotGivenError("numba is not installed")
 
-        def run():
-            motion = coast(problem.scene, 0.0, problem.from_angle, problem.from_speed, problem.until, engine=engine)
-            return motion.crank_angle[-1]
+    def run():
+        motion = coast(problem.scene, 0.0, problem.from_angle, problem.from_speed, problem.until, engine=engine)
+        return motion.crank_angle[-1]
 
-        return run
-
-    return prepare
+    return run
 
 
 def _acceleration(problem):
-    """Crank acceleration at a crank angle and speed, by the library's compiled program where numba is there."""
+    """Function of crank angle and speed that returns the crank acceleration, rad/s^2."""
     driven = DrivenMachine("study", problem.scene, None, 0.0, "compiled" if numba_available() else "numpy")
 
     def acceleration(angle, speed):
-        inertia, slope, spare = driven.here(angle, speed)
+        inertia, slope, spare = driven.balance(angle, speed)
         return (spare - 0.5 * speed * speed * slope) / inertia
 
     return acceleration
 
 
-def _reduced_inertia(method):
-    def prepare(problem, quantity, tolerance):
-        from scipy.integrate import solve_ivp
+def _reduced_inertia(method, problem, quantity, tolerance):
+    from scipy.integrate import solve_ivp
 
-        acceleration = _acceleration(problem)
-        start = problem.from_angle, problem.from_speed
+    acceleration = _acceleration(problem)
+    start = problem.from_angle, problem.from_speed
 
-        def run():
-            found = solve_ivp(
-                lambda time, state: (state[1], acceleration(*state.tolist())),
-                (0.0, problem.until),
-                start,
-                method,
-                [problem.until],
-                rtol=max(tolerance, 3e-14),
-                atol=tolerance,
-            )
-            if found.status < 0:
-                raise NotGivenError(f"integration stops: {found.message}")
-            return found.y[0, -1]
+    def run():
+        found = solve_ivp(
+            lambda time, state: (state[1], acceleration(*state.tolist())),
+            (0.0, problem.until),
+            start,
+            method,
+            [problem.until],
+            rtol=max(tolerance, 3e-14),
+            atol=tolerance,
+        )
+        if found.status < 0:
+            raise NotGivenError(f"integration stops: {found.message}")
+        return found.y[0, -1]
 
-        return run
-
-    return prepare
+    return run
 
 
 def _runge_kutta(problem, quantity, steps):
@@ -218,24 +203,24 @@ def _constraints(problem, quantity, tolerance):
 
 MOTION_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 MOTION_METHODS = (
-    Method("ours, NumPy", _coasting("numpy"), ours=True),
-    Method("ours, compiled", _coasting("compiled"), ours=True),
-    Method("reduced inertia, DOP853", _reduced_inertia("DOP853"), "tolerance", MOTION_TOLERANCES),
-    Method("reduced inertia, RK45", _reduced_inertia("RK45"), "tolerance", MOTION_TOLERANCES[:-1]),
-    Method("reduced inertia, LSODA", _reduced_inertia("LSODA"), "tolerance", MOTION_TOLERANCES),
-    Method("reduced inertia, Radau", _reduced_inertia("Radau"), "tolerance", MOTION_TOLERANCES[:-2]),
+    Method("ours, NumPy", partial(_coasting, "numpy"), ours=True),
+    Method("ours, compiled", partial(_coasting, "compiled"), ours=True),
+    Method("reduced inertia, DOP853", partial(_reduced_inertia, "DOP853"), "tolerance", MOTION_TOLERANCES),
+    Method("reduced inertia, RK45", partial(_reduced_inertia, "RK45"), "tolerance", MOTION_TOLERANCES[:-1]),
+    Method("reduced inertia, LSODA", partial(_reduced_inertia, "LSODA"), "tolerance", MOTION_TOLERANCES),
+    Method("reduced inertia, Radau", partial(_reduced_inertia, "Radau"), "tolerance", MOTION_TOLERANCES[:-2]),
     Method("reduced inertia, fixed steps, RK4", _runge_kutta, "steps", (100, 300, 1000, 3000, 10_000)),
     Method("constraint equations, DOP853", _constraints, "tolerance", MOTION_TOLERANCES[:-1]),
 )
 
 
 MAX_TURNS = 2000
-"""Periods after which stepping is given up."""
+"""Periods after which stepping stops."""
 MAX_SECANT_STEPS = 30
 
 
 class PeriodicRunning:
-    """A machine under its motor, and the crank angles at which its speed is asked for, rising within its period."""
+    """A machine under its motor, and rising crank angles within its period at which to compute the speed."""
 
     def __init__(self, scene, motor, flywheel, angles):
         self.machine, self.angles = (scene, motor, flywheel), np.asarray(angles, dtype=float)
@@ -247,12 +232,12 @@ class PeriodicRunning:
             raise NotGivenError("rivals are for motors that turn the crank counter-clockwise")
 
     def energy(self, speed):
-        """Energy at crank angle 0 with a crank speed."""
+        """Kinetic energy, J, at crank angle 0 with a crank speed."""
         return 0.5 * float(self.inertia(np.zeros(1))[0]) * speed * speed
 
     @property
     def guess(self):
-        """Energy to start from, at the speed that the motor has without load."""
+        """Starting value of the energy, J: that at the motor's no-load speed."""
         idle = self.motor.field_speed or 0.5 * self.motor.top
         return self.energy(idle / abs(self.motor.transmission))
 
@@ -260,7 +245,7 @@ class PeriodicRunning:
         return self.driven.flywheel + self.driven.program(angle)["reduced_inertia"]
 
     def slope(self, angle, energy):
-        """dU/dphi at one crank angle."""
+        """dU/dphi, N m, at one crank angle."""
         found = self.driven.program(angle)
         inertia = self.driven.flywheel + float(found["reduced_inertia"])
         return self.motor.torque_at_crank(math.sqrt(2.0 * energy[0] / inertia)) - float(found["load_torque"])
@@ -274,17 +259,14 @@ class PeriodicRunning:
         return self.motor.torque_at_crank(speed) - found["load_torque"], by_energy
 
     def speeds(self, energies):
-        """Crank speeds at the angles asked for, with the energies there."""
+        """Crank speeds, rad/s, from the energies at `angles`."""
         return np.sqrt(2.0 * energies / self.inertia(self.angles))
 
 
-def _ours(engine):
-    def prepare(problem, quantity, setting):
-        if engine == "compiled" and not numba_available():
-            raise NotGivenError("numba is not installed")
-        return lambda: steady(*problem.machine, angles=problem.angles, engine=engine).speed
-
-    return prepare
+def _ours(engine, problem, quantity, setting):
+    if engine == "compiled" and not numba_available():
+        raise NotGivenError("numba is not installed")
+    return lambda: steady(*problem.machine, angles=problem.angles, engine=engine).speed
 
 
 def _integrate(problem, tolerance, method, energy, asked=None):
@@ -298,23 +280,20 @@ def _integrate(problem, tolerance, method, energy, asked=None):
     return found.y[0] if asked is not None else float(found.y[0, -1])
 
 
-def _stepping(method):
-    def prepare(problem, quantity, tolerance):
-        def run():
-            energy = problem.guess
-            for _ in range(MAX_TURNS):
-                before, energy = energy, _integrate(problem, tolerance, method, energy)
-                if abs(energy - before) < tolerance * energy:
-                    break
-            return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
+def _stepping(method, problem, quantity, tolerance):
+    def run():
+        energy = problem.guess
+        for _ in range(MAX_TURNS):
+            before, energy = energy, _integrate(problem, tolerance, method, energy)
+            if abs(energy - before) < tolerance * energy:
+                break
+        return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
 
-        return run
-
-    return prepare
+    return run
 
 
 def periodic_energy(after, guess, tolerance):
-    """Energy at the start of the period that a function gives back at its end, by the secant rule."""
+    """Fixed point of the map from the energy at the start of a period to that at its end, by the secant rule."""
     one, two = guess, 0.999 * guess
     first, second = after(one) - one, after(two) - two
     for _ in range(MAX_SECANT_STEPS):
@@ -325,19 +304,16 @@ def periodic_energy(after, guess, tolerance):
     return two
 
 
-def _shooting(method):
-    def prepare(problem, quantity, tolerance):
-        def run():
-            energy = periodic_energy(partial(_integrate, problem, tolerance, method), problem.guess, tolerance)
-            return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
+def _shooting(method, problem, quantity, tolerance):
+    def run():
+        energy = periodic_energy(partial(_integrate, problem, tolerance, method), problem.guess, tolerance)
+        return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
 
-        return run
-
-    return prepare
+    return run
 
 
 def _tableau(stages):
-    """Places, weights of the stages before, and weights of a step."""
+    """Nodes, coefficients of the earlier stages, and weights of a Runge-Kutta method."""
     if stages == 4:
         before = [[], [0.5], [0.0, 0.5], [0.0, 0.0, 1.0]]
         return [0.0, 0.5, 0.5, 1.0], before, [1 / 6, 1 / 3, 1 / 3, 1 / 6]
@@ -348,39 +324,35 @@ def _tableau(stages):
     return DOP853.C[:count].tolist(), before, DOP853.B.tolist()
 
 
-def _fixed_steps(stages):
+def _fixed_steps(stages, problem, quantity, steps):
     places, before, weights = _tableau(stages)
+    width, count = problem.period / steps, problem.angles.size
+    if steps % count or not np.allclose(problem.angles, problem.period * np.arange(count) / count):
+        raise NotGivenError("fixed steps end at crank angles spread evenly from 0, which divide them")
 
-    def prepare(problem, quantity, steps):
-        width, count = problem.period / steps, problem.angles.size
-        if steps % count or not np.allclose(problem.angles, problem.period * np.arange(count) / count):
-            raise NotGivenError("fixed steps end at crank angles spread evenly from 0, which divide them")
+    def run():
+        angle = width * (np.arange(steps)[:, None] + np.array(places))
+        found = problem.driven.program(angle.ravel())
+        inertia = (problem.driven.flywheel + found["reduced_inertia"]).reshape(angle.shape).tolist()
+        load = found["load_torque"].reshape(angle.shape).tolist()
+        drive, root = problem.motor.torque_at_crank, math.sqrt
 
-        def run():
-            angle = width * (np.arange(steps)[:, None] + np.array(places))
-            found = problem.driven.program(angle.ravel())
-            inertia = (problem.driven.flywheel + found["reduced_inertia"]).reshape(angle.shape).tolist()
-            load = found["load_torque"].reshape(angle.shape).tolist()
-            drive, root = problem.motor.torque_at_crank, math.sqrt
+        def followed(energy):
+            """Energies at the ends of all steps, the start included."""
+            path = [energy]
+            for inertias, loads in zip(inertia, load, strict=True):
+                slopes: list[float] = []
+                for own, asked, parts in zip(inertias, loads, before, strict=True):
+                    value = energy + width * sum(map(float.__mul__, parts, slopes))
+                    slopes.append(drive(root(2.0 * value / own)) - asked)
+                energy += width * sum(map(float.__mul__, weights, slopes))
+                path.append(energy)
+            return path
 
-            def followed(energy):
-                """Energies at the starts of all steps, and at the end."""
-                path = [energy]
-                for inertias, loads in zip(inertia, load, strict=True):
-                    slopes: list[float] = []
-                    for own, asked, parts in zip(inertias, loads, before, strict=True):
-                        value = energy + width * sum(map(float.__mul__, parts, slopes))
-                        slopes.append(drive(root(2.0 * value / own)) - asked)
-                    energy += width * sum(map(float.__mul__, weights, slopes))
-                    path.append(energy)
-                return path
+        path = followed(periodic_energy(lambda energy: followed(energy)[-1], problem.guess, 1e-15))
+        return problem.speeds(np.array(path[:-1])[:: steps // count])
 
-            path = followed(periodic_energy(lambda energy: followed(energy)[-1], problem.guess, 1e-15))
-            return problem.speeds(np.array(path[:-1])[:: steps // count])
-
-        return run
-
-    return prepare
+    return run
 
 
 def _scipy_bvp(problem, quantity, tolerance):
@@ -408,7 +380,7 @@ def _scipy_bvp(problem, quantity, tolerance):
 
 
 def _fourier(problem, quantity, points):
-    """`points` is odd."""
+    """Newton's iteration on trigonometric collocation at an odd number of points."""
     angle = problem.period * np.arange(points) / points
     apart = np.arange(points)[:, None] - np.arange(points)
     with np.errstate(divide="ignore"):
@@ -433,20 +405,20 @@ def _fourier(problem, quantity, points):
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 RUNNING_METHODS = (
-    Method("ours, NumPy", _ours("numpy"), ours=True),
-    Method("ours, compiled", _ours("compiled"), ours=True),
-    Method("stepping until it repeats, DOP853", _stepping("DOP853"), "tolerance", TOLERANCES),
-    Method("stepping until it repeats, LSODA", _stepping("LSODA"), "tolerance", TOLERANCES[:-1]),
-    Method("shooting, DOP853", _shooting("DOP853"), "tolerance", TOLERANCES),
-    Method("shooting, fixed steps, RK4", _fixed_steps(4), "steps a turn", (24, 72, 216, 648, 1944)),
-    Method("shooting, fixed steps, RK8", _fixed_steps(12), "steps a turn", (24, 48, 96, 192)),
+    Method("ours, NumPy", partial(_ours, "numpy"), ours=True),
+    Method("ours, compiled", partial(_ours, "compiled"), ours=True),
+    Method("stepping until it repeats, DOP853", partial(_stepping, "DOP853"), "tolerance", TOLERANCES),
+    Method("stepping until it repeats, LSODA", partial(_stepping, "LSODA"), "tolerance", TOLERANCES[:-1]),
+    Method("shooting, DOP853", partial(_shooting, "DOP853"), "tolerance", TOLERANCES),
+    Method("shooting, fixed steps, RK4", partial(_fixed_steps, 4), "steps a turn", (24, 72, 216, 648, 1944)),
+    Method("shooting, fixed steps, RK8", partial(_fixed_steps, 12), "steps a turn", (24, 48, 96, 192)),
     Method("collocation, SciPy solve_bvp", _scipy_bvp, "tolerance", (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)),
     Method("collocation, Fourier", _fourier, "points", (9, 17, 33, 65, 129, 257, 513)),
 )
 
 
 LONG_RUN_TIME = 0.2
-"""Time, s, of what need not be timed again."""
+"""Time, s, from which a run is timed only once."""
 COMPARED_ANGLES = 24
 """Crank angles at which speeds are compared."""
 
@@ -459,7 +431,7 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     scene, motor, flywheel
         As for `drive.steady`; loads must not depend on the speed, and the motor turn the crank counter-clockwise.
     methods : sequence of Method, optional
-        `RUNNING_METHODS` unless told.
+        `RUNNING_METHODS` by default.
     repeats : int
         Of each timing; the median counts.
     progress : function, optional
@@ -468,8 +440,8 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     Returns
     -------
     pandas.DataFrame
-        A row for each method and setting: time [ms] of all, largest error of the crank speed at 24 crank angles
-        relative to running at 30 digits, and for what a method cannot give the reason, with NaN for both.
+        A row for each method and setting: time [ms], largest error of the crank speed at 24 crank angles relative to
+        running at 30 digits; NaN for both, with the reason, where a method cannot give the result.
 
     Raises
     ------
@@ -487,8 +459,6 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     >>> bool(table.loc[0, "error"] < 1e-12)
     True
     """
-    import numpy as np
-
     driven = PeriodicRunning(scene, motor, flywheel, np.zeros(1)).driven
     angles = np.arange(COMPARED_ANGLES) * driven.period / COMPARED_ANGLES
     problem, exact = PeriodicRunning(scene, motor, flywheel, angles), exact_speed(driven, angles)
@@ -507,7 +477,7 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     name : str
         Of `BENCHMARKS`: "slider-crank of SUNDIALS", "N-four-bar of IFToMM, N = 2".
     methods : sequence of Method, optional
-        `MOTION_METHODS` unless told.
+        `MOTION_METHODS` by default.
     repeats, progress
         As for `study_running`.
 
@@ -542,7 +512,6 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
 
 
 def _study(problem, methods, error, label, unit, repeats, progress):
-    import numpy as np
     import pandas as pd
 
     rows: list[dict] = []

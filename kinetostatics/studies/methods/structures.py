@@ -1,13 +1,8 @@
-"""What groups declare of a mechanism, apart from its numbers: who is joined to whom, what slides, what a cam leads.
+"""What independent methods know of a mechanism and its loads, without the library's kernels.
 
-Independent methods are built from that, so that they know every group, a user's own too, by what it declares alone.
-
-Loads as forces at points and couples, by formulas of complex numbers that share nothing with the kernels.
-
-Friction as forces at points and couples, for equations that hold all reactions, by formulas of complex numbers.
-
-Reactions hang on the friction that they cause: the equations are solved anew, with the friction of the forces found
-last, until nothing changes. What is left of an error each time is about the coefficient of friction.
+`structure` lists the joints, straight pairs and cams that groups declare, so users' own groups are covered too.
+`LoadForces` gives loads as forces at points and couples, `FrictionForces` gives the friction of joints; both use
+complex numbers for vectors in the plane.
 """
 
 from typing import Any, ClassVar, NamedTuple
@@ -20,17 +15,16 @@ from ...machine.group import FRAME
 from ...machine.links import Rolling, Sliding, Turning
 from ...machine.loads import Force, PointDamper, PointForce, PointSpring, Torque, TorsionDamper, TorsionSpring
 from ...machine.loads.points import point_on_link
-from .method import NotGivenError
 
 LINK_NUMBERS = "mass", "along", "across", "inertia"
 CURVE_NAMES = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
-"""Cams with a formula of their own, by what that is called."""
+"""Cams with closed formulas, and the names of these."""
 SAMPLED_CURVE = "given"
-"""What any other curve is called: its values and derivatives are taken as it gives them."""
+"""Name of any other curve: its values and derivatives are computed by the curve itself."""
 
 
 class PinReaction(NamedTuple):
-    """A reaction by name, on a link from another, where a joint holds both."""
+    """Reaction of a turning pair by name: on a link, from another, at their joint."""
 
     name: str
     link: str
@@ -39,9 +33,9 @@ class PinReaction(NamedTuple):
 
 
 class SlidingPair(NamedTuple):
-    """A straight pair: a joint of a link slides along another, whose force and couple about `about` act on the link.
+    """A straight pair: a joint of a link slides along another link; force and couple about `about` act on the first.
 
-    `vector` is the name of the force as a vector, if it has one; the link points against a slot in which it is a rod.
+    `vector` is the name of the force as a vector, or empty. A link that is a rod points against its slot.
     """
 
     link: str
@@ -55,7 +49,7 @@ class SlidingPair(NamedTuple):
 
 
 class CamPair(NamedTuple):
-    """What leads a link: a `Led`, and the formula of its curve, with how many terms of cosines and sines it has."""
+    """A cam that drives a link, the formula of its curve, and the numbers of cosines and sines in it."""
 
     link: str
     joint: str
@@ -67,20 +61,20 @@ class CamPair(NamedTuple):
 
 
 class PartStructure(NamedTuple):
-    """Crank or group: links with reference joints, joints with the links that own them, bars (start, end, link)."""
+    """Crank or group: links with reference joints, joints with their links, bars (start, end, link), and pairs."""
 
     kind: str
     outputs: tuple[str, ...]
     links: tuple[tuple[str, str], ...]
     joints: tuple[tuple[str, str], ...]
     bars: tuple[tuple[str, str, str], ...]
-    pinned: tuple[PinReaction, ...]
-    slid: tuple[SlidingPair, ...]
+    pins: tuple[PinReaction, ...]
+    slides: tuple[SlidingPair, ...]
     cams: tuple[CamPair, ...]
 
 
 class Structure(NamedTuple):
-    """A mechanism apart from its numbers, but for those that are zero."""
+    """A mechanism without its numbers; `zeros` names those that are zero."""
 
     parts: tuple[PartStructure, ...]
     zeros: frozenset[str]
@@ -92,7 +86,7 @@ def structure(mechanism):
     Raises
     ------
     NotGivenError
-        A group does not declare what holds its links.
+        A group does not declare the pairs of its links.
     """
     owners = {name: point.link for name, point in mechanism.joints.items()}
     parts = tuple(_part_structure(part, owners) for part in mechanism.parts)
@@ -146,7 +140,7 @@ def _curve(cam):
 
 
 def _geometry(part):
-    """Places of joints on links, lengths and slots."""
+    """Places of joints on links, lengths and slots, by name."""
     values: dict[str, Any] = {}
     for name, point in part.joints.items():
         values |= {f"{name}_along": point.along, f"{name}_across": point.across}
@@ -159,7 +153,7 @@ def _geometry(part):
 
 
 def cam_numbers(group, angle):
-    """Numbers of the cams of a group by name; of one without a formula what it gives at the crank angles."""
+    """Numbers of the cams of a group by name; values at the crank angles for a cam without a formula."""
     values: dict[str, Any] = {}
     for led in group.led:
         cam, link = group.cam, led.link
@@ -187,10 +181,10 @@ def cam_numbers(group, angle):
 
 
 class LoadForces:
-    """What loads do on links in one posture; derived classes say where links are, in their own numbers.
+    """Loads as forces at points and couples on links, in one posture; derived classes give the posture.
 
-    They give ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; ``number`` and
-    ``value`` (of a load) of what loads hold; and ``expj``, ``arg`` and ``where`` of their numbers.
+    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; ``number`` of
+    a load's parameter and ``value`` of a load; and ``expj``, ``arg`` and ``where`` for their kind of numbers.
     """
 
     mechanism: Any
@@ -211,7 +205,7 @@ class LoadForces:
         return link, joint + offset * axis, shift + 1j * spin * offset * axis
 
     def of(self, item):
-        """Force, the link and point it acts at, and the couple on that link, of each effect of a load."""
+        """Effects of a load: tuples of link, force, point of action, and couple on the link."""
         if isinstance(item, Force):
             link, position, _ = self.point(item.at)
             axis = 1.0 if item.along is None else self.at(item.along)[1]
@@ -227,7 +221,7 @@ class LoadForces:
         raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
 
     def couple(self, item):
-        """Couple of a load on its link."""
+        """Couple of a load on its link, N m."""
         if isinstance(item, Torque):
             return self.value(item)
         fixed = item.against in (None, FRAME)
@@ -239,7 +233,7 @@ class LoadForces:
         return self.number(item.moment) - self.number(item.stiffness) * angle
 
     def pull(self, item, apart, opening):
-        """Force of a load between points on the first, by the vector between them and its rate."""
+        """Force on the first point of a load between two points, by the vector between them and its rate."""
         distance = abs(apart)
         if isinstance(item, PointDamper):
             unit = self.where(distance > 0, apart, opening)
@@ -253,11 +247,14 @@ class LoadForces:
 
 
 MAX_FRICTION_ITERATIONS = 2000
-"""How often forces are found anew, at most."""
+"""Largest number of repeated solutions with friction."""
 
 
 class FrictionForces:
-    """What friction does in one posture, from reactions.
+    """Friction of joints as forces and couples, from the reactions in one posture.
+
+    Friction depends on the reactions and changes them: `converge` repeats the solution with the last friction until
+    nothing changes. Each repetition reduces the error by about the coefficient of friction.
 
     Parameters
     ----------
@@ -273,19 +270,19 @@ class FrictionForces:
         self._number, self._speed = acting.number, acting.number(solution.crank_speed)
         self._numbers = structure(acting.mechanism)[1] if self._friction else {}
 
-    def settled(self, solve, named, largest, limit):
-        """Unknowns of equations that are solved with the very friction that their forces cause.
+    def converge(self, solve, named, largest, limit):
+        """Unknowns of the equations, consistent with the friction that their forces cause.
 
         Parameters
         ----------
         solve : function
-            ``solve(effects)`` with forces, the links and points they act at, and couples added.
+            ``solve(effects)`` solves the equations with added effects: link, force, point and couple.
         named : function
-            Forces by name of what `solve` returns.
+            Forces by name from the unknowns.
         largest : function
-            Size of the largest of such unknowns.
+            Largest magnitude of the unknowns.
         limit : number
-            How much the last ones may still change, relative to the largest.
+            Largest change in the last repetition, relative to the largest unknown.
         """
         found = solve(())
         for _ in range(MAX_FRICTION_ITERATIONS if self._friction else 0):
@@ -297,7 +294,7 @@ class FrictionForces:
         return found
 
     def along(self, forces):
-        """Force of friction on what slides, which is part of the reaction, by pair."""
+        """Friction force of each sliding pair by name; it is part of the reaction."""
         pairs = self._acting.mechanism.pairs
         slides = {name: item for name, item in self._friction.items() if isinstance(pairs[name], Sliding)}
         return {name: self._sliding(name, pairs[name], item, forces)[0][1] for name, item in slides.items()}
@@ -333,7 +330,7 @@ class FrictionForces:
         return [(pair.link, force, place, 0.0), (pair.against, -force, place, 0.0)]
 
     def _rolling(self, name, pair, friction, forces):
-        """On the pin of the roller, whose contact pulls along the curve as much as its pin holds it back."""
+        """Effects at the pin of a roller: its friction couple, balanced by a force along the curve."""
         _, place, moving = self._acting.point(pair.joint)
         way = moving / abs(moving) * self._sign(self._speed)
         radius, mu = self._number(friction.roller_radius), self._number(friction.mu)
@@ -350,7 +347,7 @@ class FrictionForces:
         return (0.0, 1.0, 0.0, 0.0) if link == FRAME else self._acting.at(link)
 
     def _moving(self, link, place):
-        """Velocity of what is at a place of a link."""
+        """Velocity of the point of a link at a place."""
         joint, _, shift, spin = self._at(link)
         return shift + 1j * spin * (place - joint)
 

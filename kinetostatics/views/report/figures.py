@@ -1,6 +1,6 @@
-"""Figures to zoom and read, made with Bokeh: curves over the crank angle, hodographs.
+"""Interactive figures by Bokeh: curves over the crank angle, hodographs.
 
-In each, `line 0`, `line 1` ... are the machines; `cursor` is the chosen crank angle, `tip 0` ... their points there.
+In each, `line 0`, `line 1` ... are the machines, `cursor` is the chosen crank angle, `tip 0` ... the points there.
 """
 
 from typing import Any
@@ -15,15 +15,15 @@ from ..canvas import display_unit, drawn_limit, with_peaks
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
 """Quiet colours of the machines, in their order."""
 DASHES = ("solid", "dashed", "dotdash", "dotted", "dashdot", "solid", "dashed", "dotdash")
-"""Line styles of the machines, so that curves differ in print too."""
+"""Line styles of the machines; they distinguish curves in print without colour."""
 SVG_DASHES = ("", "6", "2 4 6 4", "2 4", "6 4 2 4", "", "6", "2 4 6 4")
-"""The same as in SVG, in keys."""
+"""The same line styles as dash arrays of SVG, for the keys."""
 FONT = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
 
 
 def require_bokeh():
-    """Bokeh, or an error that says how to get it."""
+    """Import Bokeh; an error with the install command if it is missing."""
     try:
         import bokeh
     except ImportError:
@@ -34,14 +34,14 @@ def require_bokeh():
 
 
 def bokeh_script():
-    """Bokeh's own script, to stand in the page."""
+    """Bokeh's script, to embed in the page."""
     from bokeh.resources import Resources
 
     return "\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])
 
 
 def over_turn(solutions, name, height=300):
-    """A quantity of those machines that have it over the crank angle, of a vector its size."""
+    """A quantity over the crank angle, for the machines that have it; of a vector the magnitude."""
     have = _having(solutions, name)
     known = quantity(next(iter(have.values())), name)
     found = {row: values(s, name) for row, s in have.items()}
@@ -54,12 +54,12 @@ def over_turn(solutions, name, height=300):
 
 
 def _having(solutions, name):
-    """Solutions that have a quantity, by their row, at the crank angles of its extremes too."""
+    """Solutions that have a quantity, by their row, with the crank angles of its extremes added."""
     return with_peaks({row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}, name)
 
 
 def curves_over(names, curves, label, height=300):
-    """Curves, angles in degrees from 0 and values by the row of their machine, over the longest of their periods."""
+    """Figure of curves (degrees, values) by the row of their machine, over the longest period."""
     from bokeh.models.annotations import Span
 
     plot = _plot(height, "crank angle [°]", label)
@@ -81,7 +81,7 @@ def _period(angle):
 
 
 def _repeat(angle, value, period):
-    """A curve over as many of its periods as make a longer one, closed."""
+    """A closed curve over as many of its periods as the longest one contains."""
     own = _period(angle)
     turns = np.arange(max(1, round(period / own)))
     return np.append((own * turns[:, None] + angle).ravel(), own * len(turns)), np.append(
@@ -90,7 +90,7 @@ def _repeat(angle, value, period):
 
 
 def hodograph(solutions, name, height=420):
-    """The curve that the tip of a vector draws over the turn, of those machines that have it."""
+    """Hodograph of a vector over the turn, for the machines that have it."""
     have = _having(solutions, name)
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]

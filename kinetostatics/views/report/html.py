@@ -1,6 +1,6 @@
-"""The page: data, tables and figures of a subject, put into the template; it holds all that it needs.
+"""The HTML page of a report: data, tables and figures in its template, without external files; and its PDF.
 
-The page as PDF, printed by a browser without a window.
+A browser without a window prints the PDF.
 """
 
 import datetime as dt
@@ -29,17 +29,17 @@ QUANTITY_GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),
     "Motion": ("slider", "motion", "rate"),
 }
-"""Kinds of quantities by the heading under which their values stand."""
+"""Kinds of quantities by the heading of their values."""
 PROGRESS_STEPS = 9
-"""Of the work, of each of which `progress` is told."""
+"""Steps of the work, each announced by `progress`."""
 WIDE_RATIO = 1.7
-"""Width over height of drawings from which on two of them fill a line."""
+"""Width over height above which two drawings fill a line."""
 
 
 def page(subject, progress=lambda text: None):
-    """Text of the page of a subject; `progress` is told what is at work.
+    """HTML text of the page of a subject, with the warnings of its computation.
 
-    What was warned of on the way stands in the page.
+    ``progress(text)`` announces each step.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -49,7 +49,7 @@ def page(subject, progress=lambda text: None):
 
 
 def _contents(subject, progress):
-    """What the template is filled with."""
+    """Contents of the template."""
     from markupsafe import Markup
 
     progress("movement")
@@ -57,14 +57,14 @@ def _contents(subject, progress):
     progress("values")
     values = readings(subject.machines)
     progress("extremes")
-    tables = {"glance": tables.glance(subject), "extremes": tables.extremes(subject)}
+    contents = {"glance": tables.glance(subject), "extremes": tables.extremes(subject)}
     progress("comparisons")
-    tables["comparisons"] = tables.comparisons(subject)
+    contents["comparisons"] = tables.comparisons(subject)
     progress("certainty")
-    tables |= {"certainty": tables.certainty(subject), "losses": tables.losses(subject)}
+    contents |= {"certainty": tables.certainty(subject), "losses": tables.losses(subject)}
     progress("drive")
-    runs, tables["drive"], reasons = tables.driven(subject)
-    tables["inputs"] = tables.inputs(subject)
+    runs, contents["drive"], reasons = tables.drive_tables(subject)
+    contents["inputs"] = tables.inputs(subject)
     progress("formulas")
     turning = _turning(subject)
     calculations = tables.calculations(subject, turning["start"])
@@ -73,7 +73,7 @@ def _contents(subject, progress):
     box = moving["box"]
     return {
         "subject": subject,
-        "tables": tables,
+        "tables": contents,
         "figures": drawn,
         "reasons": reasons,
         "calculations": {name: Markup(text) for name, text in calculations.items()},
@@ -99,7 +99,7 @@ def _contents(subject, progress):
 
 
 def _published(subject):
-    """Where published figures are printed and how to read them, as paragraphs."""
+    """Paragraphs on the source and the reading of published figures."""
     if subject.case is None:
         return []
     printed = subject.case.published
@@ -108,7 +108,7 @@ def _published(subject):
 
 
 def _same_torque_text(subject):
-    """Sentence about machines whose torque is the same, so that their curves lie on one another; "" without any."""
+    """Sentence on machines with equal torque, whose curves coincide; "" if there are none."""
     groups: list[list] = []
     for machine in subject.machines.values():
         group = next((group for group in groups if _same(group[0], machine)), None)
@@ -128,7 +128,7 @@ def _same(first, second):
 
 
 def _turning(subject):
-    """Angles that can be chosen, the first that is shown, and which way the crank turns."""
+    """Selectable angles, the first one shown, and the sense of the crank."""
     machines = list(subject.machines.values())
     first = subject.reference.solution
     torque = np.abs(first.balancing_torque)
@@ -155,7 +155,7 @@ def _speed(machine):
 
 
 def _figures(subject, values, runs):
-    """Figures as Bokeh takes them in the page, by the place where they stand."""
+    """Figures as Bokeh's JSON items, and their places in the page."""
     from bokeh.embed import json_item
 
     solutions = subject.solutions
@@ -181,7 +181,7 @@ def _figures(subject, values, runs):
 
 
 def _drive_figures(subject, runs):
-    """Speed and torque of the motor, at the crank, in periodic running."""
+    """Figures of crank speed and of motor torque at the crank in periodic running."""
     names = list(subject.machines)
 
     def curves(values):
@@ -221,11 +221,11 @@ BROWSERS = (
     "msedge",
     "microsoft-edge",
 )
-"""Names of browsers that print without a window, the first found is taken."""
+"""Browsers that print without a window, in order of preference."""
 BROWSER_TIMEOUT = 120.0
-"""Seconds after which a browser that does not end is given up."""
+"""Seconds after which a running browser is stopped."""
 RENDER_TIME = 20_000
-"""Milliseconds, of the browser's own clock, that figures have to be drawn in."""
+"""Milliseconds of the browser's virtual clock for drawing the figures."""
 
 
 def browser():

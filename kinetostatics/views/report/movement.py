@@ -1,7 +1,7 @@
-"""Drawings of machines as data: strokes that move as rigid bodies, joints, mass centres, and arrows to one scale.
+"""Drawings of machines as data for the page: strokes that move as rigid bodies, joints, mass centres, arrows.
 
-Arrays go as base64 of little-endian numbers. A stroke has the points of its first pose, and if it moves its place and
-angle in each; one that changes its shape, as springs do, has all its points.
+Arrays are base64 of little-endian numbers. A stroke has the points of its first pose; if it moves, also place and angle
+in each pose; if it changes shape, as springs do, all its points.
 """
 
 import base64
@@ -17,9 +17,9 @@ from ..strokes import Shape, Stroke
 ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
 MAX_ARROW = 1.2 * ARROW_REACH
-"""Length at which an arrow ends that would be longer, where a reaction grows without bound."""
+"""Length limit of an arrow where a reaction grows without bound."""
 RIGID_TOLERANCE = 1e-5
-"""Deviation from a rigid body, over the largest extent of the joints, that nobody sees."""
+"""Invisible deviation from a rigid body, over the largest extent of the joints."""
 FILLED_KINDS = ("counterweight", "plate", "block", "ground")
 """Kinds of strokes that are closed and filled."""
 
@@ -30,12 +30,12 @@ def to_base64(values, kind="<f4"):
 
 
 def from_base64(text, kind="<f4"):
-    """Numbers that were packed, in one row."""
+    """Numbers from base64, (N,)."""
     return np.frombuffer(base64.b64decode(text), dtype=kind)
 
 
 def movements(machines):
-    """Drawings of machines by name, the box that holds them all, m, and the scales of forces and torques."""
+    """Drawings of machines by name, their common bounding box, m, and the scales of forces and torques."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}
     size = max(shape.size for shape in shapes.values())
     solutions = [machine.solution for machine in machines.values()]
@@ -57,7 +57,7 @@ def movements(machines):
 
 
 def _largest(solution, joint):
-    """Largest size of a reaction, of one that grows without bound most of them."""
+    """Largest magnitude of a reaction; a quantile if it grows without bound."""
     size = magnitude(solution.reaction(joint))
     size = size[np.isfinite(size)]
     if not size.size:
@@ -66,7 +66,7 @@ def _largest(solution, joint):
 
 
 def _arrow(vector, size):
-    """Vectors to the scale of the drawing, none longer than the longest arrow by much."""
+    """Vectors at the scale of the drawing, limited to `MAX_ARROW`."""
     length = magnitude(vector)
     with np.errstate(invalid="ignore", divide="ignore"):
         return vector * np.minimum(1.0, MAX_ARROW * size / np.where(length > 0, length, 1.0))
@@ -96,17 +96,17 @@ def _drawing(name, shape, scale, boxes):
 
 
 def _fixed_strokes(shape):
-    """What does not move: ground under pivots, guides, paths of joints on curves, circles of cranks."""
-    made, turn, unit = shape.made, shape.turn, shape.unit
+    """Fixed strokes: ground under pivots, guides, paths of joints on curves, circles of cranks."""
+    mechanism, turn, unit = shape.mechanism, shape.turn, shape.unit
 
     def still(kind, points):
         return Stroke(kind, np.asarray(points, dtype=float)[..., None])
 
-    for joint in made.curves:
+    for joint in mechanism.curves:
         yield still("curve", _closed(turn.position(joint)))
-    for bar in made.crank.bars:
+    for bar in mechanism.crank.bars:
         yield still("circle", _closed(turn.position(bar.end)))
-    for slider, guide in made.guides.items():
+    for slider, guide in mechanism.guides.items():
         along = np.asarray(guide.direction, dtype=float)
         below, reach = 0.6 * unit * strokes.left(along), 1.5 * unit * along
         start, end = shape.ways[slider].T
@@ -123,7 +123,7 @@ def _closed(path):
 
 
 def _stroke_data(stroke, size):
-    """A stroke as the page takes it."""
+    """A stroke as data for the page."""
     points = np.asarray(stroke.points, dtype=float)
     sent = {"kind": stroke.kind, "filled": stroke.kind in FILLED_KINDS, "points": to_base64(points[..., 0].T)}
     if points.shape[2] == 1 or _same(points, points[..., :1], size):
@@ -142,7 +142,7 @@ def _same(points, others, size):
 
 
 def _poses(points):
-    """Shift and angle, (3, N), that come nearest to carrying the points of the first pose to those of each."""
+    """Best-fit shift and angle, (3, N), from the points of the first pose to those of each pose."""
     middles = np.nanmean(points, axis=1)
     first, others = points[..., 0] - middles[:, :1], points - middles[:, None]
     cross = np.nansum(first[0][:, None] * others[1] - first[1][:, None] * others[0], axis=0)

@@ -1,7 +1,4 @@
-"""What is reported: machines side by side, solved at the angles that a reader can choose, and where they come from.
-
-The public door: a report of a case or of scenes, written whole or not at all.
-"""
+"""A report of a case or of scenes: the public function, and the machines solved at the selectable angles."""
 
 import hashlib
 from collections import Counter
@@ -24,7 +21,7 @@ from ..canvas import angles_between
 from . import figures, html
 
 MAX_ANGLES = 1440
-"""Angles over the period that a reader can choose, at most."""
+"""Largest number of selectable angles over the period."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,9 +33,9 @@ class Machine:
     name : str
     scene : Scene
     step : int
-        Between the angles that a reader can choose, degrees.
+        Step between the selectable angles, degrees.
     given : mapping of path to (value, unit)
-        What it is made of: numbers in SI, or words for what is derived.
+        Parameters: numbers in SI, or words for derived ones.
     variant : Variant or None
     """
 
@@ -63,7 +60,7 @@ class Machine:
 
     @cached_property
     def between(self):
-        """The solution at 0 and at what lies between the angles to choose: extremes of tables, kinks, jumps."""
+        """The solution at 0 and at angles between the selectable ones: extremes of tables, kinks, jumps."""
         ends = np.reshape([row.ends for row in self.extremes.values()], (-1, 2))
         angles = angles_between(self.solution, np.radians(ends[np.isfinite(ends).all(axis=1), 1]))
         return self.solution.at(np.append(0.0, angles))
@@ -75,13 +72,13 @@ class Machine:
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What is reported.
+    """The machines of a report, with their title and source.
 
     Attributes
     ----------
     title, source : str
     machines : mapping of name to Machine
-        That which the others are compared with first.
+        The reference first.
     command : str
         What made the report.
     case : Case or None
@@ -95,7 +92,7 @@ class Subject:
 
     @property
     def reference(self):
-        """The machine that others are compared with."""
+        """The first machine, with which the others are compared."""
         return next(iter(self.machines.values()))
 
     @property
@@ -108,10 +105,7 @@ class Subject:
         return {name: machine.solution for name, machine in self.machines.items()}
 
     def comparison(self, machine):
-        """Table of dynamic coefficients of a machine against the reference, with published figures if there are.
-
-        And a table of the bounds on the errors of its numbers.
-        """
+        """Table of dynamic coefficients against the reference, with published figures, and a table of error bounds."""
         names = self.reference.name, machine.name
         found = Comparison(self.reference.solution, machine.solution, names)
         table = found.frame()
@@ -119,18 +113,18 @@ class Subject:
 
     @cached_property
     def files(self):
-        """Name and SHA-256 of each file that the case is made from."""
+        """Name and SHA-256 of each file of the case."""
         paths = [] if self.case is None else list(dict.fromkeys(map(Path, self.case.files)))
         return [(path.name, hashlib.sha256(path.read_bytes()).hexdigest()) for path in paths]
 
     @property
     def text(self):
-        """The case file as it stands, its comments tell where numbers come from; "" without one."""
+        """Text of the case file with its comments; "" without a case."""
         return "" if self.case is None else Path(self.case.path).read_text(encoding="utf-8-sig")
 
 
 def subject_of(what, variant=None, title=None, command="") -> Subject:
-    """What is to be reported, from a case, the name or path of one, a scene, or a mapping of label to scene."""
+    """Subject of a report, from a case, its name or path, a scene, or a mapping of label to scene."""
     if isinstance(what, Scene):
         what = {what.mechanism.name: what}
     if isinstance(what, Mapping):
@@ -146,6 +140,7 @@ def subject_of(what, variant=None, title=None, command="") -> Subject:
 
 
 def _of_scenes(scenes, variant, title, command):
+    labels = Counter(map(str, scenes))
     checks.require(
         "report",
         None if scenes else "there are no scenes to report",
@@ -154,7 +149,7 @@ def _of_scenes(scenes, variant, title, command):
             None if isinstance(scene, Scene) else f"{name!r} must be a Scene, got a {type(scene).__name__}"
             for name, scene in scenes.items()
         ),
-        *(f"{name!r} labels several scenes; give each its own" for name in _duplicates(map(str, scenes))),
+        *(f"{name!r} labels several scenes; give each its own" for name, count in labels.items() if count > 1),
     )
     several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
     if several:
@@ -164,20 +159,13 @@ def _of_scenes(scenes, variant, title, command):
         )
     step = _step(scenes.values())
     machines = {str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()}
-    return Subject(title or " and ".join(dict.fromkeys(_kinds(machines))), "", machines, command)
-
-
-def _duplicates(names):
-    return [name for name, count in Counter(names).items() if count > 1]
+    kinds = dict.fromkeys(scene.mechanism.name for scene in scenes.values())
+    return Subject(title or " and ".join(kinds), "", machines, command)
 
 
 def _numbers(scene):
     units = scene.units
     return {path: (value, units[path]) for path, value in scene.parameters.items()}
-
-
-def _kinds(machines):
-    return [machine.scene.mechanism.name for machine in machines.values()]
 
 
 def _of_variant(name, variant, step):
@@ -192,12 +180,12 @@ def _of_variant(name, variant, step):
 
 
 def _number_or_word(path, value, derived):
-    """A number; what the file has a word for, or leaves to be derived, as that number where it is one."""
+    """The value, or the derived number for a parameter that the file leaves open or gives as a word."""
     return derived.get(path, value) if value is None or isinstance(value, str) else value
 
 
 def _step(scenes):
-    """Degrees between the angles that can be chosen, of which a turn holds a whole number."""
+    """Step between the selectable angles, degrees, a divisor of 360."""
     longest = max(period_of(scene.loads, scene.mechanism.turns) for scene in scenes)
     return next(
         step for step in range(1, 361) if 360 % step == 0 and (step * MAX_ANGLES >= np.degrees(longest) or step == 360)
@@ -205,32 +193,32 @@ def _step(scenes):
 
 
 PROGRESS_DELAY = 1.0
-"""Seconds of work after which a bar appears."""
+"""Seconds before a progress bar appears."""
 
 
 def report(what, path, *, variant=None, title=None, pdf=None, command="", progress=False):
-    """Write a report: one HTML file that needs no other and makes no request, to read, to turn by hand and to print.
+    """Write a report: one HTML file without external files or requests, to read, to turn by hand and to print.
 
-    In it the mechanism turns by slider, play button or arrow keys, with its reactions as arrows; beside it stand
-    figures to zoom, values at the chosen angle, extremes, comparison with published figures, certainty, friction,
-    drive, and what the machines are made of.
+    The mechanism turns by slider, play button or arrow keys, with its reactions as arrows. The page also shows figures
+    to zoom, values at the chosen angle, extremes, comparison with published figures, certainty, friction, drive, and
+    the parameters of the machines.
 
     Parameters
     ----------
     what : Case, str, path, Scene or mapping of label to Scene
-        A case, the name or path of one, or scenes; the first scene is what the others are compared with.
+        A case, its name or path, or scenes; the first scene is the reference of the others.
     path : path
         File to write, .html.
     variant : str, optional
-        Of a case, only this variant beside the reference.
+        Of a case, show only this variant beside the reference.
     title : str, optional
-        In place of the case's title, or of the names of the mechanisms.
+        By default the case's title, or the names of the mechanisms.
     pdf : path, optional
-        File to print the report to as well, .pdf, by a browser that is installed.
+        File for the report as PDF too, printed by an installed browser.
     command : str
-        What made it, as it stands in the report.
+        Command that made the report, shown in it.
     progress : bool
-        Whether a bar shows how far it has come, when it takes over a second.
+        Show a progress bar after one second.
 
     Returns
     -------
@@ -282,7 +270,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
 
         text = html.page(subject, tell)
         with files.write_atomically(path) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8", errors="replace")  # names of files may be no text
+            Path(temporary).write_text(text, encoding="utf-8", errors="replace")  # names of files may be invalid UTF-8
         if pdf is not None:
             tell("PDF")
             with files.write_atomically(pdf) as temporary:
@@ -291,7 +279,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
 
 
 def _read_case(what):
-    """The case that is meant, read; scenes as they are."""
+    """The case of a name or path; cases and scenes as they are."""
     if isinstance(what, Case | Scene) or hasattr(what, "items"):
         return what
     try:

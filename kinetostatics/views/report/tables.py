@@ -1,8 +1,6 @@
-"""Tables of a report: frames as text, units readable, published figures beside ours, bars for shares.
+"""Tables of a report as text: values with units and significant digits, published figures in brackets.
 
-Every quantity at every angle that the reader can choose, with its unit and as many digits as are known.
-
-Which tables a subject has: at a glance, comparisons, extremes, certainty, friction, drive, inputs.
+`readings` gives every quantity at every selectable angle; the other functions give one table of the page each.
 """
 
 import math
@@ -13,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import CaseError, DriveError, KinetostaticsError, NotGivenError, ParameterError
-from ...mechanics.quantities import components, is_still, largest_term, of_scene, unit_of
+from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
 from ...results.comparison import left_out
@@ -24,7 +22,7 @@ from ..canvas import display_unit, drawn_limit, ordinary_size
 from .movement import to_base64
 
 number = partial(formatting.number, infinity="∞")
-"""A number as text, as all tables of the report show it."""
+"""A number as text in all tables of the report."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +34,12 @@ class Table:
     caption : str
     columns : list of str
     rows : list of list of str or (str, str)
-        A pair is a text with another below it, smaller.
+        A pair is a text with a smaller one below.
     words : int
-        Columns from the left that hold words, not numbers.
+        Number of columns from the left with words.
     note : str
     code : bool
-        Whether the first column holds names as in files.
+        Whether the first column contains names from files.
     """
 
     caption: str
@@ -53,7 +51,7 @@ class Table:
 
 
 def table_of_frame(frame, caption, note=""):
-    """Table of a frame whose index says what its rows are, and whose column `unit`, if any, their units."""
+    """Table of a frame with an index of row names, and a column `unit` if rows have units."""
     columns = [str(name) for name in frame.columns]
     rows = []
     for name, values in zip(frame.index, frame.itertuples(index=False), strict=True):
@@ -72,7 +70,7 @@ def table_of_frame(frame, caption, note=""):
 
 
 def with_published(frame, published, path, caption, note=""):
-    """Table of a frame, the published figure behind ours in brackets where there is one."""
+    """Table of a frame, with published figures in brackets after ours."""
     require_places(frame, published, path)
     table = table_of_frame(frame, caption, note)
     places = {str(name): row for row, name in enumerate(frame.index)}
@@ -86,7 +84,7 @@ def with_published(frame, published, path, caption, note=""):
 
 
 def require_places(frame, published, path):
-    """Every published figure has a row and a column to stand in."""
+    """Raise an error for published figures without a row or column."""
     problems = [checks.choice("published: row", quantity, tuple(frame.index)) for quantity in published] + [
         checks.choice(f"published: column of {quantity!r}", column, tuple(frame.columns))
         for quantity, entries in published.items()
@@ -98,18 +96,18 @@ def require_places(frame, published, path):
 
 
 def ratio_text(ratio, bound=0.0):
-    """How many times, in words; "" for NaN."""
+    """A ratio as text, "3.2 ×"; "" for NaN."""
     return "" if np.isnan(ratio) else f"{number(ratio, 4, bound)} ×"
 
 
 READING_DIGITS = 6
-"""Digits of the largest value that are shown, at most."""
+"""Largest number of digits shown of the largest value."""
 KINDS = ("force", "reaction", "friction", "slider", "motion", "whole", "rate")
-"""Kinds of quantities in the order in which they are listed."""
+"""Kinds of quantities in the order of the page."""
 
 
 def readings(machines):
-    """What the page needs of each quantity that any of the machines has, in the order of their kinds."""
+    """Values of each quantity of any machine, as data for the page, in the order of their kinds."""
     found: dict[str, dict] = {}
     for machine in machines.values():
         for name, quantity in of_scene(machine.solution).items():
@@ -127,11 +125,11 @@ def readings(machines):
 
 
 def _is_still(solution, quantity):
-    return quantity.kind == "rate" and is_still(solution.placement.links[quantity.owner].ratio)
+    return quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio is None
 
 
 def _values(machine, solution, name):
-    """Values over the angles of a solution, (1 or 2, N), or None of a machine that lacks the quantity."""
+    """Values over the angles of a solution, (1 or 2, N), or None if the machine lacks the quantity."""
     if name not in of_scene(solution) or _is_still(machine.solution, of_scene(solution)[name]):
         return None
     shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(machine.solution, name)))
@@ -158,23 +156,23 @@ def _reading_data(quantity, of, between, text):
 
 
 def decimals(largest):
-    """Decimals with which a value of this size has as many digits as are shown."""
+    """Decimals that give a value of this size `READING_DIGITS` digits."""
     if not largest > 0:
         return 0
     return min(12, max(0, READING_DIGITS - 1 - math.floor(math.log10(largest))))
 
 
 DOUBLE_DIGITS = 15.95
-"""Digits of a double number."""
+"""Significant digits of a double."""
 OUTLIER_RATIO = 1e4
-"""Times the usual bound of a rounding error from which on a bound is told apart, with its place."""
+"""Ratio to the median rounding-error bound above which a bound is listed alone, with its angle."""
 ZERO_NOTE = (
     "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
 )
 
 
 def glance(subject):
-    """A row for each machine: torque, support reaction, what it gains on the reference, power balance."""
+    """Overview table: torque, ratio to the reference, support reaction and power balance of each machine."""
     rows: list[list[str]] = []
     base = None
     for machine in subject.machines.values():
@@ -198,14 +196,14 @@ def glance(subject):
 
 
 def _largest(row):
-    """The largest magnitude of a quantity over the turn, with the digits that are known."""
+    """Largest magnitude of a quantity over the turn, with its certain digits."""
     low, _, high, _ = row.ends
     value, error = max((low, row.errors[0]), (high, row.errors[2]), key=lambda end: abs(end[0]))
     return number(abs(value), 5, error)
 
 
 def _without_empty(table):
-    """The table without columns in which nothing stands."""
+    """The table without empty columns."""
     kept = [place for place in range(len(table.columns)) if place < 1 or any(row[place] for row in table.rows)]
     rows = [[row[place] for place in kept] for row in table.rows]
     columns = [table.columns[place] for place in kept]
@@ -213,7 +211,7 @@ def _without_empty(table):
 
 
 def comparisons(subject):
-    """Dynamic coefficients of each machine against the reference, and what a case tells besides; published figures."""
+    """Tables of dynamic coefficients against the reference, and of a case's counterweights and linkage."""
     tables = [_coefficients(subject)] if subject.others else []
     case = subject.case
     if case is not None and set(case.variants) == set(subject.machines):
@@ -228,7 +226,7 @@ def comparisons(subject):
 
 
 def _coefficients(subject):
-    """One table of all machines: values, with what the reference has over them below."""
+    """Table of all machines: values, with the ratio of the reference to each below."""
     name = subject.reference.name
     frames, bounds = {}, {}
     for machine in subject.others:
@@ -256,7 +254,7 @@ def _coefficients(subject):
 
 
 def _value_and_ratio(row, errors, name):
-    """A machine's value and its ratio, with the digits that are known; what is nothing beside the reference is 0."""
+    """A machine's value and its ratio with certain digits; "0" if it is negligible beside the reference."""
     value, ratio = row[name], row["ratio"]
     if np.isinf(ratio):
         return "0"
@@ -266,7 +264,7 @@ def _value_and_ratio(row, errors, name):
 
 
 def extremes(subject):
-    """True extremes of every quantity of each machine, with the digits that are known."""
+    """Tables of the extremes of every quantity of each machine, with certain digits."""
     return [_of_extremes(machine) for machine in subject.machines.values()]
 
 
@@ -287,7 +285,7 @@ def _of_extremes(machine):
 
 
 def _proven_digits(*ends):
-    """Significant digits of values that their bounds prove; None where a bound is not known."""
+    """Significant digits that error bounds prove; None if a bound is unknown."""
     shares = [error / abs(value) for value, error in ends if value]
     if np.isnan(shares).any() or not np.isfinite([value for value, _ in ends]).all():
         return None
@@ -296,12 +294,12 @@ def _proven_digits(*ends):
 
 
 def _digits(solution, name, degrees):
-    """Significant digits of a quantity's extremes by condition; None of places, and where no condition is given."""
+    """Significant digits of a quantity's extremes by condition; None for positions, and without a condition."""
     if unit_of(solution, name) == "m":
         return None
     try:
         lost = np.max(solution.at(np.radians(degrees)).condition_of(name))
-    except (NotGivenError, ParameterError):  # a load that is a table over the angles asked for
+    except (NotGivenError, ParameterError):  # a load may be a table over the angles
         return None
     return 0 if np.isnan(lost) else int(np.clip(np.floor(DOUBLE_DIGITS - np.log10(lost)), 0, 15))
 
@@ -337,7 +335,7 @@ def _certainty(solution):
 
 
 def _bound(solution, name):
-    """Largest bound of a rounding error over the turn; below it where some stand out, or where none can be proven."""
+    """Largest rounding-error bound over the turn; below it notes on outliers and on angles without a bound."""
     try:
         bounds = solution.error_bound(name)
     except NotGivenError:
@@ -345,7 +343,7 @@ def _bound(solution, name):
     proven = np.isfinite(bounds)
     if not proven.any():
         return "not proven"
-    apart = proven & (bounds > OUTLIER_RATIO * np.median(bounds[proven]))  # at a jump, a value may be the one beyond it
+    apart = proven & (bounds > OUTLIER_RATIO * np.median(bounds[proven]))  # at a jump, the bound covers both sides
     notes = []
     if apart.any():
         place = int(np.argmax(np.where(apart, bounds, -1.0)))
@@ -359,19 +357,19 @@ def _bound(solution, name):
 
 
 def calculations(subject, row):
-    """Hand calculation of the torque of each machine at an angle, its place among those of the reference, as HTML."""
+    """Hand calculation of each machine's torque as HTML, at the reference's angle with index `row`."""
     angle = subject.reference.solution.crank_angle[row]
     found = {}
     for name, machine in subject.machines.items():
         try:
             found[name] = machine.solution.explain("balancing_torque", angle)._repr_html_()
-        except KinetostaticsError:  # a load or group of the user's own, that no formula is known of
+        except KinetostaticsError:  # a user's own load or group without formulas
             continue
     return found
 
 
 def losses(subject):
-    """Power lost by joint of each machine that rubs."""
+    """Tables of power lost by joint, for machines with friction."""
     tables = []
     for machine in subject.machines.values():
         if lose(machine.solution):
@@ -381,7 +379,7 @@ def losses(subject):
 
 
 def drive_tables(subject):
-    """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
+    """Periodic running by machine under the motor of the case, its tables, and reasons for failures."""
     from ...drive.savings import energy_table, running_table, speed_hint
     from ...drive.steady import steady
     from ...drive.transient import start
@@ -408,7 +406,7 @@ def drive_tables(subject):
 
 
 def inputs(subject):
-    """What the machines are made of: what they have in common, and what tells them apart."""
+    """Tables of parameters: those common to all machines, and those that differ."""
     machines = list(subject.machines.values())
     paths = list(dict.fromkeys(path for machine in machines for path in machine.given))
     common, apart = [], []
@@ -436,7 +434,7 @@ def inputs(subject):
 
 
 def _in_unit(unit, values):
-    """Unit as shown, and values in it as text."""
+    """Readable unit, and values in it as text."""
     factor = 180.0 / np.pi if unit == "rad" else 1.0
     return ("°" if unit == "rad" else pretty_unit(unit)), [_cell(value, factor) for value in values]
 
@@ -451,6 +449,5 @@ def _cell(value, factor):
 
 
 def remarks(caught):
-    """What was warned of while the report was made, each once."""
-    told = (str(item.message) for item in caught if issubclass(item.category, UserWarning))
-    return list(dict.fromkeys(told))
+    """Texts of warnings during the report, each once."""
+    return list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))

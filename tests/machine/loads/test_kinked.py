@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import Table, is_bent, kinked, period_on
+from kinetostatics.machine.loads import Table, has_significant_kinks, kink_sources, period_on
 from support.sweeping import sweep
 
 PUMP = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
@@ -53,9 +53,9 @@ LOADS = {"value": ks.ProcessForce(Pulse()), "load": Knock()}
 
 def test_what_declares_kinks_is_found_and_nothing_else():
     table = ks.ProcessForce(ks.Table([0.0, 1.0, 2.0, 2 * np.pi], [0.0, 1.0, 0.0, 0.0]))
-    found = kinked([ks.Gravity(), table, ks.ProcessForce(push), *LOADS.values()])
+    found = kink_sources([ks.Gravity(), table, ks.ProcessForce(push), *LOADS.values()])
     assert found == [table.force, LOADS["value"].force, LOADS["load"]]
-    assert is_bent(found[1], 1e-5)
+    assert has_significant_kinks(found[1], 1e-5)
     assert period_on(found[1], PUMP) == 2 * np.pi
 
 

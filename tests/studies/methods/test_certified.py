@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.errors import KinetostaticsError, MissingLibraryError, QuantityError
+from kinetostatics.errors import KinetostaticsError, MissingLibraryError, NotGivenError, QuantityError
 from kinetostatics.machine.cams import cam_roller
 from kinetostatics.machine.groups import rocker, slider
 from kinetostatics.mechanics.quantities import components
@@ -18,7 +18,6 @@ from kinetostatics.studies.methods.high_precision.certified import (
     independent,
     relative_errors,
 )
-from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import ANGLES, KINDS, Machine
 
 pytestmark = pytest.mark.slow

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.precision import METHODS
 from support.studied import torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")

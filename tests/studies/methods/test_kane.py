@@ -7,11 +7,11 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
+from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods import papers
 from kinetostatics.studies.methods.kane import equations
-from kinetostatics.studies.methods.method import NotGivenError
 from support import followers
 from support.machines import ANGLES, CLOSE, FourBar, Machine, largest
 

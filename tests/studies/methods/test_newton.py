@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.group import MEMBERS, Group
 from kinetostatics.mechanics import quantities
 from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.global_system import constraints, newton
-from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import CLOSE, KINDS, LINKS, Machine, largest
 
 TURN = np.linspace(0.2, 0.2 + 2 * np.pi, 72, endpoint=False)

@@ -11,7 +11,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, magnitude
-from kinetostatics.studies.methods import METHODS, papers
+from kinetostatics.studies.methods import papers
+from kinetostatics.studies.precision import METHODS
 from support.case_files import shipped
 
 CASE = shipped("sawframe_2r63")

@@ -126,6 +126,6 @@ def test_failed_browser_is_reported(tmp_path, monkeypatch):
 
 def test_a_browser_that_does_not_end_is_given_up(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "exec sleep 30")
-    monkeypatch.setattr(html, "PATIENCE", 0.2)
+    monkeypatch.setattr(html, "BROWSER_TIMEOUT", 0.2)
     with pytest.raises(FileError, match="could not print the report"):
         html.print_page(page, tmp_path / "page.pdf")

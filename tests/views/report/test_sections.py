@@ -118,10 +118,10 @@ def test_unknown_formula_has_no_calculation(monkeypatch):
 
 
 def test_losses_are_listed_with_their_sum():
-    tables = tables.losses(RUBBING())
-    assert [table.caption for table in tables] == list(RUBBING().machines)
-    assert table_of(tables[0], "all")[2] == "100"
-    assert tables[0].note.startswith("Of 42948.7 W put in")
+    listed = tables.losses(RUBBING())
+    assert [table.caption for table in listed] == list(RUBBING().machines)
+    assert table_of(listed[0], "all")[2] == "100"
+    assert listed[0].note.startswith("Of 42948.7 W put in")
     assert tables.losses(subject("pumpjack")) == []
 
 

@@ -1,136 +1,33 @@
-"""What loads put on links besides their weight, as arguments of equations that were made without them.
-
-Plain numbers, of springs too, are known once; tables and functions, which read the library's motion as a user's own
-would read theirs, and loads at points are computed each time.
-
-Constraint equations of followers on a cam that turns with the crank: the distance from its pitch curve is zero.
-
-The roller centre p, seen from the crank, is at C = n . (p - c) outside the nearest point c of the pitch curve. The unit
-normal n there is the derivative of C by p, and kappa t t^T, with the curvature of the curve, the second. A flat face
-keeps the distance h(psi) from O, by the angle psi of the cam from the face's normal. Multipliers are contact forces.
-
-Constraint equations of a whole mechanism, from which follow its motion, and all its forces by one linear system.
+"""Constraint equations of a whole mechanism: motion from their derivatives, all forces from one linear system.
 
 Every moving link has three coordinates in q: x and y of its reference joint, and its angle theta. Joints, guides,
-slot, cam and drive give as many constraint equations C(q, phi) = 0 with Jacobian J = dC/dq (Nikravesh, *Computer-Aided
+slots, cams and the drive give as many equations C(q, phi) = 0 with Jacobian J = dC/dq (Nikravesh, *Computer-Aided
 Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*):
 
     J qdot = -omega dC/dphi        J qddot = gamma - alpha dC/dphi        J^T lambda = M qddot - Q
 
-Each equation is written so that its multiplier in lambda is a reaction, signed as in the library, or the drive torque.
-
-Other ways to the motion of the joints: differences, spectra, harmonic series; and the coupler as two masses.
-
-Configurations: constraint equations at given coordinates, their derivatives, and what loads do there.
+Each equation is signed so that its multiplier in lambda is a reaction as the library gives it, or the drive torque.
+A follower on a cam that turns with the crank keeps its distance from the pitch curve at zero: `cam_distance`.
 """
 
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....engines.engines import Kernels
-from ....errors import NotGivenError, ParameterError
+from ....errors import NotGivenError
 from ....machine.followers.translating import FlatFollower
 from ....machine.group import FRAME
-from ....machine.loads import Gravity, ProcessForce, Spring
+from ....machine.loads import Gravity, Spring
 from ....mechanics.load_values import evaluate_load, slider_push
-from ....mechanics.quantities import components
 from ....numbers.lazy import cached_property
 from ....numbers.planar import left
-from ...simplifications import (
-    harmonic_series,
-    joint_motions,
-    joint_positions,
-    paths_over_turn,
-    placement_from_joints,
-    two_mass_coupler,
-)
-from ..engines import compiled_function
-from ..method import Method, NotGivenError, require_one_design
 from ..structures import FrictionForces, LoadForces, structure
-
-PARTS = "x", "y", "moment"
-
-
-class Applied(LoadForces):
-    """Loads of a solution. Called, it gives by name what depends on the motion; ``numbers`` are the others.
-
-    Under a link's name with "_load_x", "_load_y", "_load_moment" are force and moment about its reference joint, under
-    a slider's with "_push" the force along its guide, with "_stiffness", "_free" and "_cubic" the numbers of a spring.
-
-    Parameters
-    ----------
-    solution : Solution
-    result : function
-        ``result(name)`` is a function that computes a result of the equations' own motion.
-    """
-
-    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
-
-    def __init__(self, solution, result):
-        self.solution, self.mechanism = solution, solution.mechanism
-        links, sliders, loads = self.mechanism.links, self.mechanism.guides, solution.loads
-        self.numbers: dict[str, Any] = {f"{link}_load_{part}": 0 for link in links for part in PARTS}
-        self.numbers |= {f"{slider}_{part}": 0 for slider in sliders for part in ("push", "stiffness", "free", "cubic")}
-        pushes = [item for item in loads if hasattr(item, "push")]
-        self.springs, self.pushes = [], []
-        for item in pushes:
-            if isinstance(item, Spring):
-                self.springs.append(item)
-            elif isinstance(item, ProcessForce) and isinstance(item.force, int | float):
-                self.numbers[f"{item.on}_push"] += item.force
-            else:
-                self.pushes.append(item)
-        for item in {item.on: item for item in reversed(self.springs)}.values():
-            parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
-            self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
-            self.springs.remove(item)
-        self.others = [item for item in loads if not hasattr(item, "push") and not isinstance(item, Gravity)]
-        self.travels = {item.on: result(f"{item.on}_position") for item in self.springs}
-        self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}
-        self.fixed = self.numbers
-        moving = self()
-        self.numbers = {name: value for name, value in self.fixed.items() if name not in moving}
-
-    def __call__(self):
-        found: dict[str, Any] = {}
-
-        def add(name, amount):
-            found[name] = found.get(name, self.fixed[name]) + amount
-
-        for item in self.springs:
-            (travel,) = self.travels[item.on]()
-            away = travel - item.free_position
-            add(f"{item.on}_push", -item.stiffness * away - item.cubic * away**3)
-        for item in self.pushes:
-            add(f"{item.on}_push", slider_push(item, self.solution))
-        self.places = {link: run() for link, run in self.motions.items()}
-        for item in self.others:
-            for link, force, at, couple in self.of(evaluate_load(item, self.solution)):
-                if link in self.places:
-                    turning = couple + np.imag(np.conj(at - self.at(link)[0]) * force)
-                    for part, amount in zip(PARTS, (np.real(force), np.imag(force), turning), strict=True):
-                        add(f"{link}_load_{part}", amount)
-        return found
-
-    def number(self, value):
-        return value
-
-    def value(self, item):
-        return item.value_now
-
-    def at(self, link):
-        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
-        x, y, cosine, sine, to_x, to_y, spin = self.places[link]
-        return x + 1j * y, cosine + 1j * sine, to_x + 1j * to_y, spin
-
 
 MAX_FOOT_ITERATIONS = 30
 
 
 class CamEquation(NamedTuple):
-    """Equation `row`: a point of a link, so far along it, stays on the cam of a group that is fixed to the crank."""
+    """Equation `row`: the point of a link at `along` stays on a cam that turns with the crank."""
 
     row: int
     crank: int
@@ -140,7 +37,7 @@ class CamEquation(NamedTuple):
 
 
 class CamDistance(NamedTuple):
-    """A distance, its derivatives by the coordinates of link and crank, x and y as one, and its second terms."""
+    """Distance from a cam, its derivatives by the coordinates of link and crank (x + iy as one), and second terms."""
 
     distance: Any
     normal: Any
@@ -150,7 +47,7 @@ class CamDistance(NamedTuple):
 
 
 def cam_distance(at, item, rates=None):
-    """How far a follower is off its cam in a configuration, and with velocities its acceleration by them alone."""
+    """Distance of a follower from its cam; with rates also its second derivative without accelerations."""
     k = at.model.size
     spins = [0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link)]
     ray, axis = (at.cosine[..., place] + 1j * at.sine[..., place] for place in (item.crank, item.link))
@@ -223,16 +120,16 @@ class SlotEquation(NamedTuple):
 class Model:
     """Constraint equations and masses of a mechanism with k links, in coordinates q (..., 3k): all x, all y, all theta.
 
-    Apart from those of slots and cam, which the configuration fills in, the equations are linear in the terms
-    (q, cos theta, sin theta, 1, phi).
+    The equations are linear in the terms (q, cos theta, sin theta, 1, phi), except those of slots and cams, which
+    `Configuration` fills in.
 
     Attributes
     ----------
     equations : array (3k, 5k + 2)
         Coefficients of these terms.
     readings : dict
-        By quantity: what it is read from, POSITION q, RATE qdot, ACCELERATION qddot or FORCE lambda, and the
-        coefficients (components, 3k) that make it.
+        By quantity: its source, POSITION q, RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients
+        (components, 3k) of the source.
     """
 
     def __init__(self, mechanism):
@@ -261,11 +158,11 @@ class Model:
         made, self.numbers = structure(self.mechanism)
         bars = {(end, link) for part in made.parts for _, end, link in part.bars}
         for part, group in zip(made.parts[1:], self.mechanism.groups, strict=True):
-            for pinned in part.pinned:
-                one, other = (self._on(link, pinned.joint, bars) for link in (pinned.link, pinned.other))
-                self._add(pinned.name, *(one - other))
-            for slid in part.slid:
-                self._slide(slid)
+            for pin in part.pins:
+                one, other = (self._on(link, pin.joint, bars) for link in (pin.link, pin.other))
+                self._add(pin.name, *(one - other))
+            for slide in part.slides:
+                self._slide(slide)
             for cam in part.cams:
                 self._follow(cam, group)
         for name in self.names:
@@ -287,7 +184,7 @@ class Model:
         return self._point(link, self.numbers[f"{link}_length"])
 
     def _slide(self, item):
-        """Keep a link on a guide; or on a slot of another, a rod the other way round, and at an angle to it."""
+        """Keep a link on a guide, or in the slot of another link; a rod in reverse."""
         if item.other == FRAME:
             self._guide(item)
             return
@@ -315,7 +212,7 @@ class Model:
             self.readings[f"{slider}_{name}"] = (order, (along @ pin)[None, : 3 * self.size])
 
     def _follow(self, led, group):
-        """Keep a joint on the cam of a group, which is fixed to the frame or to the crank."""
+        """Keep a joint on the cam of a group, fixed to the frame or to the crank."""
         if led.body == FRAME:
             self.cam, self.block, self.contact = group.cam, self.names.index(led.link), len(self.equations)
         else:
@@ -333,7 +230,7 @@ class Model:
         return found
 
     def _point(self, link, along=0.0, across=0.0):
-        """Point of a link at so far along it and across it, to the left, (2, terms)."""
+        """Point of a link, by distances along it and to its left, (2, terms)."""
         x, y, _, cosine, sine = (term[self.names.index(link)] for term in self._terms)
         return np.array([x + along * cosine - across * sine, y + along * sine + across * cosine])
 
@@ -341,7 +238,7 @@ class Model:
         return self._terms[2][self.names.index(link)]
 
     def start(self, angle):
-        """The library's position at one crank angle as coordinates, from which continuation starts."""
+        """Coordinates q of the library's position at one crank angle, to start continuation."""
         links = self.mechanism.place(np.array(angle)).links
         x, y, ahead, aside = np.array([(*links[k].joint.position, *links[k].direction) for k in self.names], float).T
         theta = _nearest_angle(np.arctan2(aside, ahead), angle)
@@ -353,128 +250,16 @@ class Model:
 
 
 def _nearest_angle(angle, wanted):
-    """The angle less or plus whole turns, next to another."""
+    """The angle, shifted by whole turns to be nearest to another."""
     return angle + 2 * np.pi * np.rint((wanted - angle) / (2 * np.pi))
 
 
-STENCILS = {
-    2: ((-1, 0, 1), (-0.5, 0.0, 0.5), (1.0, -2.0, 1.0)),
-    4: ((-2, -1, 0, 1, 2), (1 / 12, -2 / 3, 0.0, 2 / 3, -1 / 12), (-1 / 12, 4 / 3, -5 / 2, 4 / 3, -1 / 12)),
-}
-"""By order: offsets in steps, weights of the first and of the second derivative (Fornberg 1988)."""
-
-
-def _differences(order):
-    offsets, first, second = (np.array(row) for row in STENCILS[order])
-
-    def prepare(solution, quantity, step):
-        require_one_design(solution)
-
-        def way(mechanism, angle):
-            position = joint_positions(mechanism, angle + step * offsets[:, None])
-            return placement_from_joints(
-                mechanism,
-                angle,
-                joint_motions(
-                    mechanism,
-                    position[:, :, offsets.size // 2],
-                    np.tensordot(first / step, position, (0, 2)),
-                    np.tensordot(second / step**2, position, (0, 2)),
-                ),
-            )
-
-        return _approximated(lambda: components(replace(solution, engine=Kernels(way)), quantity))
-
-    return prepare
-
-
-def _spectral(solution, quantity, samples):
-    """Joint positions sampled over the turn, differentiated and interpolated to the crank angles by FFT."""
-    require_one_design(solution)
-    angle = solution.crank_angle
-    if not _is_even_turn(angle):
-        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn, its end excluded")
-    if samples > angle.size:
-        raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
-    sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
-    paths_over_turn(solution.mechanism, sampled)
-    harmonic = 1j * np.arange((samples + 1) // 2)
-    onward = np.exp(harmonic * angle[0])
-
-    def way(mechanism, angle):
-        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * (
-            onward * (angle.size / samples)
-        )
-        parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
-        return placement_from_joints(mechanism, angle, joint_motions(mechanism, *parts))
-
-    return _approximated(lambda: components(replace(solution, engine=Kernels(way)), quantity))
-
-
-def _approximated(run):
-    """The same function, which cannot give what loads have no value for where a coarse motion takes the slider."""
-
-    def approximated():
-        try:
-            return run()
-        except ParameterError as why:
-            raise NotGivenError(f"the motion found is too coarse: {why}") from why
-
-    return approximated
-
-
-def _is_even_turn(angle):
-    turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
-    return np.ndim(angle) == 1 and np.allclose(angle - angle[0], turn, atol=1e-9)
-
-
-def _series(solution, order):
-    """The solution with its kinematics as a truncated series."""
-    require_one_design(solution)
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
-
-
-def _two_mass(solution, setting):
-    """The solution with its couplers as two masses each."""
-    mechanism = two_mass_coupler(solution.mechanism)
-    if mechanism is None:
-        raise NotGivenError("there is no coupler mass to share out between its joints")
-    return replace(solution, mechanism=mechanism)
-
-
-def _eager(model):
-    """Method that computes a simpler model by NumPy."""
-
-    def prepare(solution, quantity, setting):
-        simpler = model(solution, setting)
-        return _approximated(lambda: components(replace(simpler), quantity))
-
-    return prepare
-
-
-def _compiled(model):
-    """Method that computes a simpler model by a compiled loop, its fastest."""
-    return lambda solution, quantity, setting: _approximated(compiled_function(model(solution, setting), quantity))
-
-
-HARMONICS = (1, 2, 4, 6)
-METHODS = (
-    Method("differences, 2nd order", _differences(2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
-    Method("differences, 4th order", _differences(4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)),
-    Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
-    Method("harmonic series", _eager(_series), "harmonics", HARMONICS),
-    Method("harmonic series, compiled", _compiled(_series), "harmonics", HARMONICS),
-    Method("two-mass coupler", _eager(_two_mass)),
-    Method("two-mass coupler, compiled", _compiled(_two_mass)),
-)
-
-
 FRICTION_TOLERANCE = 1e-15
-"""How much forces with friction may change the last time, relative to the largest."""
+"""Largest last change of forces with friction, relative to the largest force."""
 
 
 class Configuration:
-    """A model at coordinates q (..., 3k), whether they meet its equations or not, and crank angle phi (...)."""
+    """A model at coordinates q (..., 3k), which need not satisfy its equations, and crank angles phi (...)."""
 
     def __init__(self, model, q, phi):
         self.model, self.q, self.phi = model, q, np.asarray(phi)[..., None]
@@ -519,7 +304,7 @@ class Configuration:
         return jacobian
 
     def gamma(self, rates):
-        """What J qddot must be at constant crank speed: minus the terms of Cddot without qddot."""
+        """Right side of J qddot = gamma at constant crank speed: minus the terms of Cddot without qddot."""
         model = self.model
         square = rates[..., 2 * model.size :] ** 2
         gamma = (square * self.cosine) @ model.of_cosine.T + (square * self.sine) @ model.of_sine.T
@@ -543,7 +328,7 @@ class Configuration:
             name = self.model.mechanism.name
             raise NotGivenError(f"{name} passes change points, where constraint equations are singular") from None
 
-    def corrected(self):
+    def newton_step(self):
         """Coordinates after one Newton iteration."""
         return self.q - self.solve(self.residual)
 
@@ -577,7 +362,7 @@ class Configuration:
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _take(self, effects, force, moment):
-        """Take effects, forces at points of links with couples, from forces and moments at the reference joints."""
+        """Subtract effects of loads from forces and moments at the reference joints."""
         for name, applied, at, couple in effects:
             if name in self.model.names:
                 link = self.model.names.index(name)
@@ -585,7 +370,7 @@ class Configuration:
                 moment[..., link] -= couple + (np.conj(at - self._plane(self.q)[..., link]) * applied).imag
 
     def forces(self, rates, demand, solution):
-        """Reactions, complex, scalar forces and drive torque that supply a demand, and the friction they cause."""
+        """Complex reactions, scalar forces and the drive torque that balance a demand, with friction."""
         readings = {name: part for name, (order, part) in self.model.readings.items() if order == FORCE}
 
         def solve(effects):
@@ -598,9 +383,11 @@ class Configuration:
             parts = {name: part @ multipliers.T for name, part in readings.items()}
             return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
 
-        rubbing = FrictionForces(_LoadForces(self, rates), solution)
-        found = named(rubbing.settled(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE))
-        return found | {name: found[name] + force for name, force in rubbing.along(found).items() if name in found}
+        friction = FrictionForces(_LoadForces(self, rates), solution)
+        found = named(
+            friction.converge(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE)
+        )
+        return found | {name: found[name] + force for name, force in friction.along(found).items() if name in found}
 
     def _plane(self, part):
         """The x and y of all links as complex numbers."""
@@ -611,13 +398,13 @@ class Configuration:
         return item.way * (self.cosine[..., item.slotted] + 1j * self.sine[..., item.slotted])
 
     def _in_slot(self, item, part):
-        """From the slotted link's joint to that in the slot, in coordinates q or rates, along (real) and across."""
+        """Vector from the slotted link's joint to the joint in the slot, of q or rates: along it (real) and across."""
         plane = self._plane(part)
         return (plane[..., item.block] - plane[..., item.slotted]) * self._way(item).conj()
 
     @cached_property
     def _contact(self):
-        """How far the roller centre is inside the pitch curve, the inward unit normal and the curvature there."""
+        """Distance of the roller centre inside the pitch curve, the inward unit normal and the curvature there."""
         centre = self._plane(self.q)[..., self.model.block]
         distance = np.abs(centre)
         ray = centre / distance
@@ -629,7 +416,7 @@ class Configuration:
 
 
 class _LoadForces(LoadForces):
-    """What loads do in a configuration that moves at `rates`."""
+    """Loads in a configuration with velocities `rates`."""
 
     expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
 
@@ -651,7 +438,7 @@ class _LoadForces(LoadForces):
 
 
 def components(model, solution, quantity, q, rates=None):
-    """Components of a quantity at positions q (N, 3k), with velocities qdot of their own or those they imply."""
+    """Components of a quantity at positions q (N, 3k), with given velocities or those that the positions imply."""
     order, coefficients = model.readings[quantity]
     at = Configuration(model, q, solution.crank_angle)
     found = q

@@ -1,37 +1,36 @@
-"""Newton iteration on the constraint equations of the whole mechanism, and all its forces from one linear system.
+"""Newton iteration on the constraint equations, and constrained multibody integration over the turn.
 
-Constrained multibody integration over the turn at constant crank speed, drift held by Baumgarte terms or projection.
-
-The crank angle itself is the time, and the drive a constraint that depends on it. The equations of `constraints`,
-differentiated twice, make ordinary differential equations (index 1; Hairer and Wanner, *Solving Ordinary Differential
-Equations II*), which DOP853 integrates:
+Integration takes the crank angle as time, at constant crank speed (index 1; Hairer and Wanner, *Solving Ordinary
+Differential Equations II*), by DOP853:
 
     [M J^T; J 0] [qddot; lambda] = [Q; gamma]
 
-The drive leaves no freedom, so J is square: the lower rows alone give qddot, the upper ones lambda where it is asked
-for. Integrated positions drift from C = 0:
+The drive leaves no freedom, so J is square: the lower rows give qddot, the upper rows lambda. Positions drift from C =
+0; two remedies are compared:
 
-Baumgarte   gamma becomes gamma - 2 a Cdot - a^2 C, so drift dies like exp(-a phi) (Baumgarte 1972)
-projection  where results are asked for, one Newton iteration puts q back and J gives qdot; with no freedom left, the
-            integration is then but a starting value
+Baumgarte   gamma becomes gamma - 2 a Cdot - a^2 C, so drift decays like exp(-a phi) (Baumgarte 1972)
+projection  one Newton iteration corrects q at each output angle, and J gives qdot
 """
+
+from functools import partial
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ..method import Method, NotGivenError, require_moving, require_one_design
+from ....errors import NotGivenError
+from ..method import Method, require_moving, require_one_design
 from .constraints import Configuration, Model, components
 
 TABLE_STEP = np.radians(15.0)
-"""Step, at most, of the table of positions from which iterations start: 24 over a turn."""
+"""Largest step, rad, of the table of starting positions: 24 in a turn."""
 CONTINUATION_STEPS = 4
 """Steps of continuation from one position of the table to the next."""
 CLOSURE_TOLERANCE = 1e-9
-"""Residual, relative to the largest coordinate, of a position that is found."""
+"""Largest residual of a position, relative to the largest coordinate."""
 
 
 def model_of(solution, quantity):
-    """Model of a solution's mechanism, which gives the quantity."""
+    """Model of a solution's mechanism; an error if it does not give the quantity."""
     require_one_design(solution)
     require_moving(solution)
     model = Model(solution.mechanism)
@@ -41,7 +40,7 @@ def model_of(solution, quantity):
 
 
 def position_table(model, angle):
-    """Crank angles that span those given, positions q there by continuation, and velocities dq / dphi."""
+    """Crank angles that span the given ones, positions q by continuation, and derivatives dq / dphi."""
     first, last = np.min(angle), np.max(angle)
     phi, step = np.linspace(
         first, last, 1 + CONTINUATION_STEPS * int(np.ceil((last - first) / TABLE_STEP)), retstep=True
@@ -50,7 +49,7 @@ def position_table(model, angle):
     for turned in phi:
         at = Configuration(model, q, turned)
         for _ in range(4):
-            at = Configuration(model, at.corrected(), turned)
+            at = Configuration(model, at.newton_step(), turned)
         if not np.abs(at.residual).max() < CLOSURE_TOLERANCE * max(1.0, np.abs(at.q).max()):
             raise NotGivenError(f"continuation finds no position of {model.mechanism.name} at {turned:.6g} rad")
         rows.append((at.q, at.rates(1.0)))
@@ -67,7 +66,7 @@ def _prepare(solution, quantity, iterations):
         nearest = np.searchsorted(between, angle)
         q = position[nearest] + slope[nearest] * (angle - phi[nearest])[:, None]
         for _ in range(iterations):
-            q = Configuration(model, q, angle).corrected()
+            q = Configuration(model, q, angle).newton_step()
         return components(model, solution, quantity, q)
 
     return run
@@ -77,42 +76,39 @@ NEWTON_METHODS = (Method("Newton iteration, global system", _prepare, "iteration
 
 
 DAMPING = 1.0
-"""Baumgarte's a = alpha = beta, per rad; in time, the crank speed. Over one turn drift stays near the tolerance even
-without; half or twice as much does as well, 10 takes four to ten times the work.
+"""Baumgarte's a = alpha = beta, per rad of crank angle. Over one turn 0.5 to 2 do as well; 10 takes 4 to 10 times the
+work.
 """
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
-def _integration(damping, projected):
-    def prepare(solution, quantity, tolerance):
-        model, angle = model_of(solution, quantity), solution.crank_angle
-        _require_constant_speed(solution)
-        _, position, slope = position_table(model, angle)
-        start = np.concatenate([position[0], slope[0]])
-        size = np.abs(position[0][: 2 * model.size]).max()
-        scale = np.tile(np.repeat([size, 1.0], [2 * model.size, model.size]), 2)
+def _integration(damping, projected, solution, quantity, tolerance):
+    model, angle = model_of(solution, quantity), solution.crank_angle
+    _require_constant_speed(solution)
+    _, position, slope = position_table(model, angle)
+    start = np.concatenate([position[0], slope[0]])
+    size = np.abs(position[0][: 2 * model.size]).max()
+    scale = np.tile(np.repeat([size, 1.0], [2 * model.size, model.size]), 2)
 
-        def derivative(phi, state):
-            q, rates = np.split(state, 2)
-            at = Configuration(model, q, phi)
-            right = at.gamma(rates)
-            if damping:
-                right -= 2 * damping * (at.jacobian @ rates - model.drive) + damping * damping * at.residual
-            return np.concatenate([rates, at.solve(right)])
+    def derivative(phi, state):
+        q, rates = np.split(state, 2)
+        at = Configuration(model, q, phi)
+        right = at.gamma(rates)
+        if damping:
+            right -= 2 * damping * (at.jacobian @ rates - model.drive) + damping * damping * at.residual
+        return np.concatenate([rates, at.solve(right)])
 
-        def run():
-            span, tolerances = angle[[0, -1]], {"rtol": tolerance, "atol": tolerance * scale}
-            found = solve_ivp(derivative, span, start, "DOP853", t_eval=angle, **tolerances)
-            if not found.success:
-                raise NotGivenError(f"integration stops: {found.message}")
-            q, rates = np.split(found.y.T, 2, axis=1)
-            if projected:
-                return components(model, solution, quantity, Configuration(model, q, angle).corrected())
-            return components(model, solution, quantity, q, rates * solution.crank_speed)
+    def run():
+        span, tolerances = angle[[0, -1]], {"rtol": tolerance, "atol": tolerance * scale}
+        found = solve_ivp(derivative, span, start, "DOP853", t_eval=angle, **tolerances)
+        if not found.success:
+            raise NotGivenError(f"integration stops: {found.message}")
+        q, rates = np.split(found.y.T, 2, axis=1)
+        if projected:
+            return components(model, solution, quantity, Configuration(model, q, angle).newton_step())
+        return components(model, solution, quantity, q, rates * solution.crank_speed)
 
-        return run
-
-    return prepare
+    return run
 
 
 def _require_constant_speed(solution):
@@ -124,6 +120,6 @@ def _require_constant_speed(solution):
 
 
 INTEGRATION_METHODS = (
-    Method("multibody integration, Baumgarte", _integration(DAMPING, False), "tolerance", TOLERANCES),
-    Method("multibody integration, projection", _integration(0.0, True), "tolerance", TOLERANCES),
+    Method("multibody integration, Baumgarte", partial(_integration, DAMPING, False), "tolerance", TOLERANCES),
+    Method("multibody integration, projection", partial(_integration, 0.0, True), "tolerance", TOLERANCES),
 )

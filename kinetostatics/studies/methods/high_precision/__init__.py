@@ -1,4 +1,4 @@
-"""Results to many digits: interval enclosures, closed forms and running to 30 digits and more.
+"""References to many digits: interval enclosures, independent formulas and exact running.
 
-May import the rooms above `studies` and `studies.methods.method`.
+May import the rooms above `studies`, and other modules of `studies.methods`.
 """

@@ -1,13 +1,9 @@
-"""The certified reference that all methods are measured against, to 30 digits or as many as are asked for.
+"""Certified references: quantities confirmed by two independent paths, and periodic running to many digits.
 
-Two paths that share no formula must agree: the library's kernels on intervals (`enclosures`), and mpmath with formulas
-of its own (`independent`).
-
-Periodic running at many digits: what methods for it are measured against.
-
-The library's kernels on arb numbers give inertia and load torque at Chebyshev points between the kinks of the loads;
-Newton's iteration on the energy U with dU/dphi = motor torque - load torque by collocation there, at `BITS` bits. The
-number of points is raised until the result stands still to `DIGITS`.
+The two paths share no formula: the library's kernels on intervals (`enclosures`), and mpmath with formulas of its own
+(`independent`). `exact_speed` solves periodic running by collocation at Chebyshev points between the kinks of the
+loads, with arb numbers of `WORKING_BITS` bits; Newton's iteration is on the energy U, dU/dphi = motor torque - load
+torque. The number of points rises until the speed changes by less than `SPEED_TOLERANCE`.
 """
 
 import itertools
@@ -20,7 +16,7 @@ from ....mechanics import energy_contact
 from ....mechanics.jamming import with_one_more_pass
 from ....mechanics.quantities import largest_term
 from ....numbers.parameter_tree import replace_unchecked
-from .enclosures import Enclosure, enclosure, location_text, magnitude, on_arb, require_library
+from .enclosures import Enclosure, enclosure, magnitude, on_arb, place_text, require_library
 from .independent import independent, working_digits
 
 __all__ = ["Enclosure", "certified", "differences", "enclosure", "independent", "relative_errors"]
@@ -36,9 +32,9 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     quantity : str
         As for `quantities.components`.
     digits : int
-        How small radius and disagreement must be: 10^-digits of the largest value.
+        Radius and disagreement are at most 10^-digits of the largest value.
     checks : int
-        At how many crank angles, evenly chosen, the two paths are compared.
+        Number of crank angles, evenly chosen, at which the two paths are compared.
 
     Returns
     -------
@@ -80,12 +76,12 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
 def relative_errors(found, reference: Enclosure):
     """Errors of computed components at each crank angle, relative to the largest value of the reference.
 
-    Each is the magnitude of the difference, which is taken exactly: double minus unrounded reference.
+    An error is the magnitude of the exact difference: double minus unrounded reference.
 
     Parameters
     ----------
     found : tuple of arrays (N,)
-        Components as of `quantities.components`; NaN and infinity stay what they are.
+        Components as of `quantities.components`; NaN and infinity stay.
     reference : Enclosure
 
     Returns
@@ -114,7 +110,7 @@ def relative_errors(found, reference: Enclosure):
 
 
 def differences(other: Enclosure, reference: Enclosure):
-    """Differences of two enclosures at each crank angle, relative to the largest value of the second, array (N,)."""
+    """Differences of two enclosures at each crank angle, relative to the largest value of the second, (N,)."""
     return _relative(other.exact, reference, lambda value, exact: float(value - exact))
 
 
@@ -131,20 +127,20 @@ def _relative(found, reference, difference):
 def _disagreement(mp, solution, quantity, index, own, other, gap, digits):
     own, other = (", ".join(mp.nstr(part, digits + 3) for part in parts) for parts in (own, other))
     return (
-        f"{location_text(solution, index)}: {quantity} is {own} by the library's kernels but {other} by the independent "
+        f"{place_text(solution, index)}: {quantity} is {own} by the library's kernels but {other} by the independent "
         f"path; they differ by {mp.nstr(gap, 3)} of the largest value, more than 1e-{digits}"
     )
 
 
 WORKING_BITS, SPEED_TOLERANCE = 300, 1e-22
 MIN_PIECES = 8
-"""Pieces of a period, besides those between kinks."""
+"""Equal pieces of a period, further divided at kinks."""
 MIN_PIECE_POINTS, MAX_PIECE_POINTS = 24, 96
-"""Points of a piece, at first and at last."""
+"""Collocation points of a piece, first and largest number."""
 
 
 def exact_speed(driven, angles):
-    """Crank speeds in periodic running at crank angles in (0, period), rad/s, rounded to the nearest double.
+    """Crank speeds of periodic running at crank angles in (0, period), rad/s, rounded to the nearest double.
 
     Parameters
     ----------
@@ -176,7 +172,7 @@ def exact_speed(driven, angles):
 
 
 def _collocate(flint, driven, angles, points):
-    """Speeds at crank angles, arb numbers, by so many points in each piece."""
+    """Speeds at crank angles, arb numbers, with a number of points in each piece."""
     arb = flint.arb
     edges = np.unique(np.concatenate([np.linspace(0.0, driven.period, MIN_PIECES + 1), driven.kinks]))
     pieces = [_CollocationPiece(flint, driven, low, high, points) for low, high in itertools.pairwise(edges)]
@@ -206,7 +202,7 @@ def _collocate(flint, driven, angles, points):
 
 
 class _CollocationPiece:
-    """Points of a piece as doubles, inertia and load torque there, and the matrix that integrates from its start."""
+    """Collocation points of a piece, inertia and load torque there, and the matrix that integrates from its start."""
 
     def __init__(self, flint, driven, low, high, points):
         self.flint, self.low, self.high = flint, flint.arb(low), flint.arb(high)
@@ -218,11 +214,8 @@ class _CollocationPiece:
         self.integral = integrals * self.inverse
         self.whole = flint.arb_mat([self._integrals(self.high, points)]) * self.inverse
 
-    def _place(self, angle):
-        return (2 * angle - self.low - self.high) / (self.high - self.low)
-
     def _basis(self, angle, points):
-        x, found = self._place(angle), [self.flint.arb(1)]
+        x, found = (2 * angle - self.low - self.high) / (self.high - self.low), [self.flint.arb(1)]
         found.append(x)
         while len(found) < points:
             found.append(2 * x * found[-1] - found[-2])
@@ -242,7 +235,7 @@ class _CollocationPiece:
         return [half * (end - begin) for end, begin in zip(primitive(angle), primitive(self.low), strict=True)]
 
     def step(self, energies, motor, way):
-        """Newton's linear equation u' = a u + g: its solutions from 1 without g, and from 0 with it, and their ends."""
+        """Newton's linear equation u' = a u + g: solutions from 1 without g and from 0 with it, and their ends."""
         flint, count = self.flint, len(energies)
         slopes, rests = [], []
         for value, inertia, load in zip(energies, self.inertia, self.load, strict=True):
@@ -272,7 +265,7 @@ class _CollocationPiece:
 
 
 def _inertia_and_load(arb, driven, angle):
-    """Inertia at the crank and load torque at crank angles, lists of arb numbers."""
+    """Inertia at the crank, kg m2, and load torque, N m, at crank angles, lists of arb numbers."""
     scene = replace_unchecked(driven.scene, crank_speed=1.0, crank_acceleration=0.0)
     run = on_arb(arb, scene.unsolved(angle))
     inertia, load = energy_contact.reduced_inertia(run), energy_contact.load_torque(run)

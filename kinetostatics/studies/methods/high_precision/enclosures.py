@@ -1,8 +1,8 @@
-"""Enclosures: the library's own kernels on `arb` numbers, intervals that hold what exact arithmetic would give.
+"""Interval enclosures: the library's own kernels on `arb` numbers, which contain the exact result.
 
-(Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism is the one
-whose numbers are the doubles that the solution holds, each taken exactly. Of a guide through two points only the
-direction of its unit vector counts: its length is 1 but for rounding.
+(Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism has the
+doubles of the solution as exact numbers. A guide through two points is exact in its direction only: its unit vector
+has length 1 but for rounding.
 """
 
 import importlib
@@ -26,7 +26,7 @@ MIN_BITS, MAX_BITS = 128, 4096
 
 @dataclass(frozen=True, eq=False)
 class Enclosure:
-    """A quantity at the crank angles of a solution, enclosed.
+    """Interval enclosures of a quantity at the crank angles of a solution.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Enclosure:
         Components of the quantity (see `quantities.components`) in its SI unit: midpoints of the enclosures, rounded to
         the nearest double.
     exact : tuple of arrays (N,) of `flint.arb`
-        The midpoints unrounded, as arb numbers of radius 0; `mpmath.mpf` takes them too.
+        The unrounded midpoints, as arb numbers of radius 0; `mpmath.mpf` converts them.
     radius : float
         Largest radius of an enclosure, relative to the largest value.
     bits : int
@@ -74,7 +74,7 @@ def require_one_design(solution):
 
 
 def enclosure(solution, quantity, digits=30) -> Enclosure:
-    """A quantity enclosed by the library's own kernels on arb numbers, at as many bits as it takes.
+    """Enclose a quantity by the library's own kernels on arb numbers; the bits double until `digits` are certain.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     quantity : str
         As for `quantities.components`.
     digits : int
-        No radius may exceed 10^-digits of the largest value.
+        The radius is at most 10^-digits of the largest value.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     Raises
     ------
     NotGivenError
-        A load or cam is computed in double precision only, or a crank angle lies at a limit position, or beyond.
+        A load or cam is computed in double precision only, or a crank angle lies at or beyond a limit position.
     MissingLibraryError
         python-flint is not installed.
 
@@ -110,7 +110,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     while True:
         with flint.ctx.workprec(bits):
             run = on_arb(flint.arb, solution)
-            closing = _closing(run, solution)
+            closing = _certainly_closes(run, solution)
             values = _evaluate_on_arb(quantity, lambda run=run: components(run, quantity))
             values = [np.array([flint.arb(value) for value in part], dtype=object) for part in values]
             exact = tuple(np.array([value.mid() for value in part], dtype=object) for part in values)
@@ -124,22 +124,22 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
             return replace(found, radius=found.radius / found.largest)
         if bits >= MAX_BITS:
             raise NotGivenError(
-                f"{location_text(solution, int(np.argmax(radii)))}: no enclosure of {quantity} as narrow as 1e-{digits} of "
-                f"its largest value, even with {bits} bits: it is at a limit position, or the quantity is zero "
+                f"{place_text(solution, int(np.argmax(radii)))}: no enclosure of {quantity} as narrow as 1e-{digits} "
+                f"of its largest value, even with {bits} bits: it is at a limit position, or the quantity is zero "
                 "throughout"
             )
         bits *= 2
 
 
-def _closing(run, solution):
-    """Whether each group certainly closes at each angle; an error where one certainly does not."""
+def _certainly_closes(run, solution):
+    """Whether all groups certainly close at each angle, (N,); an error where one certainly does not."""
     closing = np.ones(run.crank_angle.shape, dtype=bool)
     for group in run.mechanism.groups:
         margin = group.closure(run.placement)
         failing = np.flatnonzero(margin <= 0)
         if failing.size:
             raise NotGivenError(
-                f"{location_text(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
+                f"{place_text(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
                 f"(its closure margin is {margin[failing[0]].str(5)}), so there is nothing to certify"
             )
         closing &= margin > 0
@@ -147,7 +147,7 @@ def _closing(run, solution):
 
 
 def on_arb(arb, solution) -> Dynamics:
-    """The solution with arb numbers in place of its own, every table and function of its loads evaluated."""
+    """The solution with arb numbers as parameters, and tables and functions of its loads evaluated."""
     angle = _to_arb(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
     mechanism = _to_arb(solution.mechanism, arb)
     for cam in (group.cam for group in mechanism.groups if hasattr(group, "cam")):
@@ -180,7 +180,7 @@ def _load_on_arb(arb, item, what, motion, solution):
 
 
 def _to_arb(item, arb):
-    """The item with arb numbers in place of its own; guides through points by direction, not by its length."""
+    """The item with arb numbers as parameters; a guide through points keeps its exact direction."""
 
     def number(value):
         if isinstance(value, np.ndarray):
@@ -214,7 +214,7 @@ def _evaluate_on_arb(what, compute):
 
 
 def _require_exact(what, values, arb):
-    """Raise if values are neither enclosures nor one constant: on the way the angles were rounded to doubles."""
+    """Raise if values are neither enclosures nor one constant: then the angles were rounded to doubles."""
     if np.ndim(values) and not all(isinstance(value, arb) for value in np.ravel(values)):
         raise NotGivenError(f"no certificate: {what} is computed in double precision, whatever numbers it is given")
 
@@ -223,7 +223,7 @@ def magnitude(parts):
     return np.abs(parts[0]) if len(parts) == 1 else np.hypot(*parts)
 
 
-def location_text(solution, index):
+def place_text(solution, index):
     angle = float(np.ravel(solution.crank_angle)[index])
     return f"{solution.mechanism.name} at crank angle {angle!r} rad ({np.degrees(angle):.9g} deg)"
 

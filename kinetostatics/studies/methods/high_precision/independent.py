@@ -1,9 +1,7 @@
-"""Postures of the independent path: joints and links by angles in mpmath numbers, by formulas of their own.
+"""The independent path of the certified reference: mpmath with formulas of its own, all forces from one linear system.
 
-The independent path of the certified reference: mpmath, other formulas, all forces from one linear system.
-
-It knows of the mechanism only its joints and bodies: positions by angles, velocities and accelerations as difference
-quotients of positions, all forces at once from the Newton-Euler equations.
+It knows only joints and bodies of the mechanism: positions by angles, velocities and accelerations as difference
+quotients of positions, all forces together from the Newton-Euler equations. A plane vector is a complex number.
 """
 
 from collections.abc import Iterable
@@ -15,8 +13,8 @@ from ....errors import NotGivenError
 from ....machine.cams.cam_roller import CamRoller
 from ....machine.cams.cams import Circle, CosineLaw, Harmonic
 from ....machine.crank import Pin
-from ....machine.followers.follower import GuidedFollower
 from ....machine.followers.swinging import SwingingFollower
+from ....machine.followers.translating import GuidedFollower
 from ....machine.group import FRAME, TRAVELS
 from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parse_passage
 from ....machine.groups.cylinder import CylinderGroup
@@ -35,7 +33,7 @@ from .enclosures import on_arb, require_library, require_one_design
 
 
 class Posture:
-    """Where joints and links are; a planar vector is a complex number."""
+    """Positions of joints and links at a crank angle."""
 
     mp: Any
     mechanism: Any
@@ -49,7 +47,7 @@ class Posture:
         return self.mp.mpc(*map(self.number, pair))
 
     def along(self, guide):
-        """Unit vector of a guide: by its angle, which is given exactly, or by the direction that two points gave it."""
+        """Unit vector of a guide, by its exact angle or by the direction through two points."""
         if guide.exact is None:
             return self.mp.expj(self.number(guide.angle))
         direction = self.vector(guide.exact)
@@ -74,7 +72,7 @@ class Posture:
         return found
 
     def side(self, group):
-        """Side of a group, which changes at each change point that it passes."""
+        """Assembly sign of a group, which changes at each change point that it passes."""
         side = SIDES.get(group.assembly, group.assembly)
         if not group.passes:
             return side
@@ -145,16 +143,16 @@ class Posture:
 
     def add_guided(self, group, joints, links):
         (follower,) = group.links
-        joints[group.pin], direction = self.followed(group, self._angle)
+        joints[group.pin], direction = self.follower_pose(group, self._angle)
         links[follower] = group.pin, direction
 
     def add_swinging(self, group, joints, links):
         (arm,) = group.links
         joints[group.pivot_name] = self.vector(group.pivot)
-        joints[group.pin], direction = self.followed(group, self._angle)
+        joints[group.pin], direction = self.follower_pose(group, self._angle)
         links[arm] = group.pivot_name, direction
 
-    def followed(self, group, angle):
+    def follower_pose(self, group, angle):
         """Roller centre, or middle of the face, and direction of a follower at a crank angle."""
         law = group.cam.law
         if not isinstance(law, Cosine):
@@ -174,7 +172,7 @@ class Posture:
         if isinstance(cam, Circle):  # sine rule in the triangle of O, centre and A
             centre, radius = self.vector(cam.centre), self.number(cam.pitch_radius)
             return centre + radius * mp.expj(angle - mp.asin(cross(mp.expj(angle), centre) / radius))
-        if isinstance(cam, CosineLaw):  # at the critical length from B: radicand as it stands, root with a sign
+        if isinstance(cam, CosineLaw):  # coupler of critical length: signed root
             a, b = self.number(cam.amplitude), self.number(cam.mean)
             turning = mp.acos((mp.sqrt(b * b + 8 * a * a) - b) / (4 * a))
             length = (b + a * mp.cos(turning)) * mp.sin(turning)
@@ -202,11 +200,11 @@ PLACEMENT_METHODS: Any = {
     GuidedFollower: Posture.add_guided,
     SwingingFollower: Posture.add_swinging,
 }
-"""How each kind of group is placed."""
+"""Method that places each kind of group."""
 
 
 def entry_for_kind(table, group):
-    """Entry of a table by kind of group."""
+    """Entry of a table for a group's class or its nearest base class."""
     for kind in type(group).__mro__:
         if kind in table:
             return table[kind]
@@ -226,7 +224,7 @@ def cross(a, b):
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):
-    """A quantity at some of the crank angles by mpmath and other formulas, all forces from one linear system.
+    """A quantity at some crank angles by mpmath and independent formulas, all forces from one linear system.
 
     Parameters
     ----------
@@ -236,9 +234,9 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
         Balancing torque, a reaction, force or moment, rate or angular acceleration of a link, motion of a slider,
         shaking force or moment; named as for `quantities.components`.
     indices : iterable of int
-        Which of the solution's crank angles.
+        Indices of the solution's crank angles.
     digits : int
-        Digits wanted; far more are carried, for derivatives are difference quotients.
+        Digits of the result; the working precision is far higher, as derivatives are difference quotients.
 
     Returns
     -------
@@ -261,12 +259,12 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
 
 
 def working_digits(digits):
-    """Enough for second differences with a step of 10^-(2 digits), which lose 4 digits for each, even near a limit."""
+    """Working precision for second differences with a step of 10^-(2 digits), which lose 4 digits for each digit."""
     return 6 * digits + 60
 
 
 class Machine(Posture, LoadForces):
-    """A mechanism at one crank angle in mpmath numbers; a planar vector is a complex number.
+    """A mechanism at one crank angle in mpmath numbers.
 
     `position`, `velocity` and `acceleration` are tables by kind ("joint", "centre" of mass, "direction") and name.
     """
@@ -284,7 +282,7 @@ class Machine(Posture, LoadForces):
         self.acceleration = {key: (ahead[key] - 2 * here[key] + back[key]) / h**2 for key in here}
 
     def components(self, quantity):
-        """Components of a quantity."""
+        """Components of a quantity, by name."""
         links = self.mechanism.links
         ending = next((ending for ending in RATES if quantity.endswith(ending)), "")
         link = quantity.removesuffix(ending)
@@ -307,7 +305,7 @@ class Machine(Posture, LoadForces):
     # Forces, from the equations of all bodies at once
 
     def forces(self):
-        """Reactions, complex, and scalar forces and moments by name."""
+        """Complex reactions, and scalar forces and moments, by name."""
         mp, links, unknowns = self.mp, self.mechanism.links, self.unknowns()
         matrix, right = mp.matrix(3 * len(links), len(unknowns)), mp.matrix(3 * len(links), 1)
         for column, (_, force, moment, at, on, by) in enumerate(unknowns):
@@ -337,9 +335,9 @@ class Machine(Posture, LoadForces):
                 forces[name] = forces.get(name, 0) + size * force if name in self.solution.reactions else size
             return forces
 
-        rubbing = FrictionForces(self, self.solution)
-        found = named(rubbing.settled(solve, named, lambda sizes: mp.norm(sizes, mp.inf), self.step))
-        along = rubbing.along(found)
+        friction = FrictionForces(self, self.solution)
+        found = named(friction.converge(solve, named, lambda sizes: mp.norm(sizes, mp.inf), self.step))
+        along = friction.along(found)
         for group in self.mechanism.groups:
             for name in group.guides:
                 guide, across = "guide" + group.label, left(self.position["direction", name])
@@ -352,13 +350,13 @@ class Machine(Posture, LoadForces):
         }
 
     def apply(self, effects, right):
-        """Take effects, forces at points of links with couples, to the right side of the equations."""
+        """Move effects of loads to the right side of the equations."""
         for link, force, at, couple in effects:
             if link in self.mechanism.links:
                 self.enter(right, 0, link, self.position["centre", link] if force == 0 else at, -force, -couple)
 
     def enter(self, matrix, column, link, at, force, moment):
-        """Add a wrench to the three equations of a link, of moments about its mass centre; None is the ground."""
+        """Add a wrench to the three equations of a link, with moments about its mass centre; None is the ground."""
         if link is not None:
             row = 3 * list(self.mechanism.links).index(link)
             matrix[row, column] += self.mp.re(force)
@@ -366,15 +364,15 @@ class Machine(Posture, LoadForces):
             matrix[row + 2, column] += moment + cross(at - self.position["centre", link], force)
 
     def unknowns(self):
-        """Unit wrenches: name, force, moment, point, link it acts on, link it comes from (None: ground)."""
+        """Unit wrenches of the unknowns: name, force, moment, point, link acted on, acting link (None: ground)."""
         none = self.mp.mpc(0)
         at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
         found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", None)]
         made, numbers = structure(self.mechanism)
         for part in made.parts:
-            for pin in part.pinned:
+            for pin in part.pins:
                 found += [(pin.name, way, 0, at[pin.joint], pin.link, link_or_ground(pin.other)) for way in self.parts]
-            for pair in part.slid:
+            for pair in part.slides:
                 ends = at[pair.about], pair.link, link_or_ground(pair.other)
                 along = self.position["direction", pair.link]
                 if pair.other != FRAME:
@@ -382,12 +380,12 @@ class Machine(Posture, LoadForces):
                     along = self.position["direction", pair.other] * turned
                 found += [(pair.force, left(along), 0, *ends), (pair.couple, none, 1, *ends)]
             found += [
-                (cam.force, *self.pressed(cam, at[cam.joint]), cam.link, link_or_ground(cam.body)) for cam in part.cams
+                (cam.force, *self.contact(cam, at[cam.joint]), cam.link, link_or_ground(cam.body)) for cam in part.cams
             ]
         return found
 
-    def pressed(self, cam, at):
-        """Unit force of a cam on what it leads, without couple, and where it acts, by its way as seen from the cam."""
+    def contact(self, cam, at):
+        """Unit contact force of a cam, zero moment, and its point, from the relative motion of the follower."""
         ahead, back = (self.table(self.angle + step)["joint", cam.joint] for step in (self.step, -self.step))
         turning = 0 if cam.body == FRAME else 1
         way = (ahead - back) / (2 * self.step) - turning * left(at)
@@ -417,7 +415,7 @@ class Machine(Posture, LoadForces):
         return total
 
     def value(self, item):
-        """Force or moment of a load that may be a table or a function."""
+        """Force or moment of a load, N or N m, that may be a table or a function."""
         return self.given(self.solution.loads.index(item)) if callable(item.value_now) else self.number(item.value_now)
 
     def expj(self, angle):
@@ -436,7 +434,7 @@ class Machine(Posture, LoadForces):
         return self.position["joint", joint], axis, shift, cross(axis, self.velocity["direction", link])
 
     def given(self, place):
-        """Value of a load that is a function of the motion, which no formula but the user's own can give."""
+        """Value of a load that is a function of the motion, computed by the user's own function."""
         flint = require_library("flint")
         with flint.ctx.workprec(int(3.33 * self.mp.dps)):
             values = np.ravel(on_arb(flint.arb, self.solution).loads[place].value_now)
@@ -444,5 +442,5 @@ class Machine(Posture, LoadForces):
 
 
 def link_or_ground(link):
-    """The link, or None for the frame."""
+    """The link's name, or None for the frame."""
     return None if link == FRAME else link

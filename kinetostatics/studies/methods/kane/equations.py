@@ -1,14 +1,10 @@
-"""SymPy's Kane method, lambdified: the fastest way an expert would otherwise take.
+"""SymPy's Kane method, lambdified: the fastest alternative that an expert would choose.
 
-The crank angle is the only coordinate; directions of links and travels of sliders are closed forms of it. Auxiliary
-speeds part each link from its neighbours, so that their equations hold the reactions there (Kane and Levinson,
-*Dynamics: Theory and Applications*, 1985: bringing noncontributing forces into evidence); the drive torque needs none.
-`KanesMethod` derives the equations in symbols from what the groups declare, once for each structure. What is asked for,
-and only that, goes through `lambdify` with common subexpressions taken out, once for each pattern of parameters that
-are 0, 1 or -1, which are written in; all others are arguments. Tables, functions and loads at points are the user's own
-numbers, computed of the motion before.
-
-Equations of a mechanism in symbols by SymPy's Kane method, made of what its groups declare (see `kane`).
+The crank angle is the only coordinate; directions of links and travels of sliders are closed forms of it (`motion`).
+Each link has auxiliary speeds, so the equations contain the reactions (Kane and Levinson, *Dynamics: Theory and
+Applications*, 1985: bringing noncontributing forces into evidence). `KanesMethod` derives the equations once for each
+structure. `lambdify` compiles the quantities asked for, with common subexpressions, once for each pattern of parameters
+that are 0, 1 or -1. `AppliedLoads` computes tables, functions and loads at points as numbers before each call.
 """
 
 from functools import cache
@@ -19,14 +15,16 @@ import numpy as np
 import sympy as sp
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
 
+from ....errors import NotGivenError
 from ....machine.group import FRAME
-from ....machine.loads import Gravity
-from ..method import Method, NotGivenError, require_frictionless, require_one_design, with_numeric_side
-from ..structures import LINK_NUMBERS, cam_numbers, structure
+from ....machine.loads import Gravity, ProcessForce, Spring
+from ....mechanics.load_values import evaluate_load, slider_push
+from ..method import Method, require_frictionless, require_one_design, with_numeric_side
+from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, structure
 from .motion import PHI, SPEED, TORQUE, Motion, N, left, linear, planar, rate
 
 MAX_EQUATIONS_TOGETHER = 3
-"""Equations, at most, that are solved together."""
+"""Largest number of reaction equations solved together."""
 
 
 class Equations(Motion):
@@ -40,8 +38,8 @@ class Equations(Motion):
 
     @property
     def forces(self):
-        told = {"balancing_torque", *(name for part in self.structure.parts for name in part.outputs)}
-        return {name: parts for name, parts in self.reactions.items() if name in told}
+        outputs = {"balancing_torque", *(name for part in self.structure.parts for name in part.outputs)}
+        return {name: parts for name, parts in self.reactions.items() if name in outputs}
 
     @property
     def results(self):
@@ -60,15 +58,15 @@ class Equations(Motion):
                 self._part(link, body)
         self.loads.append((self.frames["crank"], TORQUE * N.z))
         for part in self.structure.parts:
-            for pinned in part.pinned:
-                self._pin(pinned)
-            for slid in part.slid:
-                self._slide(slid)
+            for pin in part.pins:
+                self._pin(pin)
+            for slide in part.slides:
+                self._slide(slide)
             for cam in part.cams:
                 self._press(cam)
 
     def _part(self, link, body):
-        """Give a link speeds of its own, its weight and what is applied to it."""
+        """Give a link its auxiliary speeds, its weight and its applied loads."""
         own = dynamicsymbols([f"{link}_{name}" for name in ("to_x", "to_y", "spin")])
         body.shift = own[0] * body.ways[0] + own[1] * body.ways[1]
         if link == "crank":
@@ -86,7 +84,7 @@ class Equations(Motion):
         self.loads.append((centre, mass * planar(*sp.symbols("gravity_x gravity_y"))))
         x, y, moment = sp.symbols([f"{link}_load_{part}" for part in ("x", "y", "moment")])
         force = planar(x, y)
-        if link in self.slid and self.slid[link].other == FRAME:
+        if link in self.slides and self.slides[link].other == FRAME:
             names = "push", "stiffness", "free", "cubic"
             push, stiffness, free, cubic = sp.symbols([f"{link}_{name}" for name in names])
             deflection = self.travels[link] - free
@@ -101,7 +99,7 @@ class Equations(Motion):
         return symbol
 
     def _push(self, link, position, force, couple=0):
-        """Force and couple of a joint: they move auxiliary speeds alone, for joints take no power."""
+        """Apply force and couple of a joint; they do work on auxiliary speeds only."""
         if link != FRAME:
             point, frame = Point("P"), ReferenceFrame("F")
             point.set_vel(N, self.bodies[link].at(position))
@@ -132,7 +130,7 @@ class Equations(Motion):
         self._act(item.link, item.other, self.places[item.about], force * across, couple)
 
     def _press(self, cam):
-        """Contact of a cam, by its way along the curve as seen from what the curve is fixed to."""
+        """Apply the contact force of a cam, normal to the relative motion along its curve."""
         body, base, force = self.bodies[cam.link], self.bodies[cam.body], self._unknown(cam.force)
         joint = self.places[cam.joint]
         passing = rate(joint) - base.turning * left(joint - base.joint)
@@ -145,8 +143,8 @@ class Equations(Motion):
         normal = left(x * body.frame.x + y * body.frame.y) / sp.sqrt(x**2 + y**2)
         self._act(cam.link, cam.body, joint, force * normal)
 
-    def solved(self):
-        """The same with the unknown forces among the steps."""
+    def with_forces(self):
+        """These equations with the unknown forces added to `steps`."""
         method = KanesMethod(N, [PHI], [SPEED], [PHI.diff() - SPEED], u_auxiliary=self.speeds)
         active, inertial = method.kanes_equations(self.rigid, self.loads)
         power, *equations = active + inertial
@@ -155,7 +153,7 @@ class Equations(Motion):
         return self
 
     def _eliminate(self, equations):
-        """Solve equations one by one where each holds one more unknown, else as few as possible together."""
+        """Solve the equations in turn, in the smallest groups that determine further unknowns."""
         left_over = [(equation, equation.free_symbols & self.found) for equation in equations]
         known: set[Any] = set()
         while known < self.found:
@@ -175,7 +173,7 @@ class Equations(Motion):
             known |= chosen[1]
 
     def _solve(self, equations, wanted):
-        """By Cramer's rule."""
+        """Solve linear equations by Cramer's rule."""
         rows = [linear(equation, *wanted) for equation in equations]
         matrix, right = sp.Matrix([row[:-1] for row in rows]), sp.Matrix([-row[-1] for row in rows])
         for column, name in enumerate(wanted):
@@ -184,21 +182,97 @@ class Equations(Motion):
             self.steps[name] = replaced.det(method="berkowitz") / matrix.det(method="berkowitz")
 
 
+LOAD_PARTS = "x", "y", "moment"
+
+
+class AppliedLoads(LoadForces):
+    """Loads of a solution besides gravity: constants in ``numbers``, values that depend on the motion by a call.
+
+    Keys: a link's name with "_load_x", "_load_y", "_load_moment" for force and moment about its reference joint; a
+    slider's name with "_push" for the force along its guide, and "_stiffness", "_free", "_cubic" for its spring.
+
+    Parameters
+    ----------
+    solution : Solution
+    result : function
+        ``result(name)`` returns a function that computes a result of the equations' own motion.
+    """
+
+    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
+
+    def __init__(self, solution, result):
+        self.solution, self.mechanism = solution, solution.mechanism
+        links, sliders, loads = self.mechanism.links, self.mechanism.guides, solution.loads
+        self.numbers: dict[str, Any] = {f"{link}_load_{part}": 0 for link in links for part in LOAD_PARTS}
+        self.numbers |= {f"{slider}_{part}": 0 for slider in sliders for part in ("push", "stiffness", "free", "cubic")}
+        pushes = [item for item in loads if hasattr(item, "push")]
+        self.springs, self.pushes = [], []
+        for item in pushes:
+            if isinstance(item, Spring):
+                self.springs.append(item)
+            elif isinstance(item, ProcessForce) and isinstance(item.force, int | float):
+                self.numbers[f"{item.on}_push"] += item.force
+            else:
+                self.pushes.append(item)
+        for item in {item.on: item for item in reversed(self.springs)}.values():
+            parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
+            self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
+            self.springs.remove(item)
+        self.others = [item for item in loads if not hasattr(item, "push") and not isinstance(item, Gravity)]
+        self.travels = {item.on: result(f"{item.on}_position") for item in self.springs}
+        self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}
+        self.fixed = self.numbers
+        moving = self()
+        self.numbers = {name: value for name, value in self.fixed.items() if name not in moving}
+
+    def __call__(self):
+        found: dict[str, Any] = {}
+
+        def add(name, amount):
+            found[name] = found.get(name, self.fixed[name]) + amount
+
+        for item in self.springs:
+            (travel,) = self.travels[item.on]()
+            away = travel - item.free_position
+            add(f"{item.on}_push", -item.stiffness * away - item.cubic * away**3)
+        for item in self.pushes:
+            add(f"{item.on}_push", slider_push(item, self.solution))
+        self.places = {link: run() for link, run in self.motions.items()}
+        for item in self.others:
+            for link, force, at, couple in self.of(evaluate_load(item, self.solution)):
+                if link in self.places:
+                    turning = couple + np.imag(np.conj(at - self.at(link)[0]) * force)
+                    for part, amount in zip(LOAD_PARTS, (np.real(force), np.imag(force), turning), strict=True):
+                        add(f"{link}_load_{part}", amount)
+        return found
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        x, y, cosine, sine, to_x, to_y, spin = self.places[link]
+        return x + 1j * y, cosine + 1j * sine, to_x + 1j * to_y, spin
+
+
 SUBSTITUTED_VALUES = 0, 1, -1
-"""Numbers that are written into the equations."""
+"""Parameter values that are substituted into the equations."""
 
 
 @cache
 def equations_of(made):
     """Equations of a structure, solved."""
-    return Equations(made).solved()
+    return Equations(made).with_forces()
 
 
 @cache
 def compiled_results(made, names, written):
     """Function for some results of a structure, and the names of its arguments.
 
-    `written` are pairs of a parameter's name and the value that is written in.
+    `written` are pairs of a parameter's name and its substituted value.
     """
     equations = equations_of(made)
     values = {sp.Symbol(name): sp.Integer(int(value)) for name, value in written}
@@ -216,7 +290,7 @@ def compiled_results(made, names, written):
 
 
 def sorted_steps(steps, results):
-    """The steps that results take, each after those it takes itself."""
+    """The steps that results need, each after the steps that it needs."""
     ordered: dict = {}
 
     def take(expression):
@@ -230,7 +304,7 @@ def sorted_steps(steps, results):
 
 
 def structure_and_numbers(solution):
-    """Structure of the mechanism, and its numbers by name, without those of loads but for gravity."""
+    """Structure of the mechanism, and its numbers by name; of the loads only gravity."""
     require_one_design(solution)
     require_frictionless(solution)
     mechanism = with_numeric_side(solution.mechanism)
@@ -254,9 +328,9 @@ def structure_and_numbers(solution):
 
 
 def function_of(made, names, values):
-    """Function that computes results by name with one call of a lambdified function, as a list of components.
+    """Function that returns results as a list of components (N,), by one call of a lambdified function.
 
-    It takes what is known only when it is called, by name.
+    Numbers that change from call to call are its keyword arguments.
     """
     plain = {name: value for name, value in values.items() if isinstance(value, int | float)}
     function, arguments = compiled_results(

@@ -1,11 +1,7 @@
-"""Motion of a mechanism in symbols, made of what its groups declare: closed forms of loops, and their derivatives.
+"""Motion of a mechanism in symbols, from what its groups declare: closed forms of loops and cams, and derivatives.
 
-The crank angle is the only coordinate. Angles of links and travels of sliders are functions of it: closed forms where
-the loop of a group is met by one angle, one travel, or two angles; rates and accelerations come of its derivatives.
-
-Symbols and small operations that all equations of `kane` share.
-
-Curves of cams in symbols: what leads a link, as a function of the crank angle.
+The crank angle is the only coordinate. A loop has a closed form if it contains one angle, one travel, one of each, or
+two angles; rates and accelerations are derivatives by the crank angle.
 """
 
 from typing import Any
@@ -13,8 +9,8 @@ from typing import Any
 import sympy as sp
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
+from ....errors import NotGivenError
 from ....machine.group import FRAME
-from ..method import NotGivenError
 
 PHI, SPEED = dynamicsymbols("phi speed")
 ANGLE, OMEGA, ALPHA, TORQUE = sp.symbols("crank_angle crank_speed crank_acceleration balancing_torque")
@@ -31,7 +27,7 @@ def left(vector):
 
 
 def unknown_functions(*names):
-    """Unknown functions of the crank angle."""
+    """Functions of the crank angle, still undefined."""
     return [sp.Function(name)(PHI) for name in names]
 
 
@@ -46,14 +42,14 @@ def rate(vector):
 
 
 def linear(expression, *unknowns):
-    """Coefficients of what an expression is linear in, and the rest."""
+    """Coefficients of unknowns in an expression that is linear in them, and the rest."""
     names = {unknown: sp.Dummy() for unknown in unknowns}
     named = expression.xreplace(names)
     return *(named.diff(name) for name in names.values()), named.xreplace(dict.fromkeys(names.values(), sp.S.Zero))
 
 
 def circle(equations, radius, prefix, terms):
-    """Radius of a pitch circle with any centre."""
+    """Define the radius of a pitch circle with any centre."""
     (root,) = unknown_functions(f"root_{prefix}")
     x, y, size = sp.symbols([f"{prefix}_{name}" for name in ("x", "y", "radius")])
     square = size**2 - (y * sp.cos(PHI) - x * sp.sin(PHI)) ** 2
@@ -62,7 +58,7 @@ def circle(equations, radius, prefix, terms):
 
 
 def cosine_law(equations, radius, prefix, terms):
-    """Radius by the cosine law as the sawframe study has it, with a root that changes sign at the singular angle."""
+    """Define the radius by the sawframe study's cosine law, with a root that changes sign at the singular angle."""
     height, root = unknown_functions(f"height_{prefix}", f"root_{prefix}")
     names = "mean", "amplitude", "angle", "length", "singular"
     mean, amplitude, guide, length, singular = sp.symbols([f"{prefix}_{name}" for name in names])
@@ -75,7 +71,7 @@ def cosine_law(equations, radius, prefix, terms):
 
 
 def harmonic(equations, radius, prefix, terms):
-    """Sum of cosines and sines."""
+    """Define the radius as a sum of cosines and sines."""
     cosines, sines = terms
     angle = PHI - sp.Symbol(f"{prefix}_angle")
     parts = [sp.Symbol(f"{prefix}_cosine{k}") * sp.cos(k * angle) for k in range(cosines)]
@@ -84,7 +80,7 @@ def harmonic(equations, radius, prefix, terms):
 
 
 def sampled(equations, function, prefix, terms):
-    """Values and derivatives that a curve gives itself."""
+    """Define a curve by its computed values and derivatives."""
     value, first, second = sp.symbols([f"{prefix}_{order}" for order in range(3)])
     equations.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
     equations.steps[symbol] = value
@@ -95,9 +91,9 @@ CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "giv
 
 
 class Body:
-    """A link: reference joint, direction, its turning by the crank angle, and auxiliary speeds of both.
+    """A link: reference joint, direction, derivative of its angle by the crank angle, and auxiliary speeds.
 
-    `ways` are the directions along which it is parted from its neighbours.
+    `ways` are the directions of its auxiliary speeds.
     """
 
     def __init__(self, joint, frame, axis, turning, ways):
@@ -105,7 +101,7 @@ class Body:
         self.shift, self.spin = 0 * N.x, 0
 
     def at(self, position):
-        """Auxiliary velocity of its point at a position."""
+        """Auxiliary velocity of the link's point at a position."""
         return self.shift + self.spin * left(position - self.joint)
 
 
@@ -115,14 +111,14 @@ class Motion:
     Attributes
     ----------
     steps : dict of Symbol to expression
-        What results are computed from; a step may use others, in any order.
+        Intermediate values; a step may use others, in any order.
     motions : dict of str to tuple of expressions
         Results by name, in components.
     symbols : dict of expression to Symbol
-        What stands for time and crank angle, functions of them and their derivatives in steps and results.
+        Symbols for the crank angle, functions of it and their derivatives in steps and results.
     sides : dict of str to link
-        Signs of roots, which belong to the assembly, and the links whose angles they choose. Of the two results of that
-        name and the link's direction, a sin(theta) - b cos(theta) has the sign.
+        Signs of roots, set by the assembly, and the links whose angles they choose: the sign of a sin(theta) -
+        b cos(theta), with the two results a, b of that name.
     """
 
     def __init__(self, structure):
@@ -134,7 +130,7 @@ class Motion:
         self.bodies: dict[str, Body] = {FRAME: Body(0 * N.x, N, N.x, 0, (N.x, N.y))}
         self.owners = dict(item for part in structure.parts for item in part.joints)
         self.bars = {(end, link): link for part in structure.parts for _, end, link in part.bars}
-        self.slid = {item.link: item for part in structure.parts for item in part.slid}
+        self.slides = {item.link: item for part in structure.parts for item in part.slides}
         self.led = {cam.link: cam for part in structure.parts for cam in part.cams}
         self.angles: dict[str, Any] = {}
         self.rays: dict[Any, Any] = {}
@@ -144,7 +140,7 @@ class Motion:
         self._report()
 
     def number(self, name):
-        """Symbol of a length or angle; those that are zero are left out."""
+        """Symbol of a length or angle, or 0 if it is zero."""
         return sp.S.Zero if name in self.structure.zeros else sp.Symbol(name)
 
     # Where everything is
@@ -156,27 +152,28 @@ class Motion:
             self._place(joint)
         for link, joint in part.links:
             self.bodies[link].joint = self._place(joint)
-        loops = [gap for item in part.pinned if (gap := self._gap(item)) != 0]
-        lines = [gap for item in part.slid if (gap := self._off(item)) is not None]
+        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
+        loops = [gap for gap in gaps if gap != 0]
+        lines = [gap for item in part.slides if (gap := self._off(item)) is not None]
         self._close(part, loops, lines)
 
     def _point(self, link):
-        """Direction of a link: of the crank, of what it slides along, or unknown."""
+        """Body of a link, with the direction of the crank, of its slot or guide, or an unknown angle."""
         if link in self.bodies:
             return self.bodies[link]
         ways: Any = (N.x, N.y)
         if link == "crank":
             frame, turning = self._frame(link, PHI), sp.S.One
-        elif link in self.slid:
-            frame, turning = self._slot(self.slid[link])
-            if self.slid[link].other == FRAME:
+        elif link in self.slides:
+            frame, turning = self._slot(self.slides[link])
+            if self.slides[link].other == FRAME:
                 ways = frame.x, frame.y
         else:
             (theta,) = unknown_functions(f"theta_{link}")
             self.angles[link] = theta
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
-        axis = -frame.x if link in self.slid and self.slid[link].rod else frame.x
+        axis = -frame.x if link in self.slides and self.slides[link].rod else frame.x
         self.bodies[link] = Body(None, frame, axis, turning, ways)
         return self.bodies[link]
 
@@ -187,7 +184,7 @@ class Motion:
         return frame
 
     def _slot(self, item):
-        """Frame along which a link slides, and its turning."""
+        """Frame of the guide or slot of a link, and the derivative of its angle by the crank angle."""
         if item.other == FRAME:
             return self._frame(f"{item.link} guide", sp.Symbol(f"{item.link}_guide_angle"), turning=0), sp.S.Zero
         body = self._point(item.other)
@@ -195,7 +192,7 @@ class Motion:
         return (self._frame(f"{item.link} slot", angle, body.frame, 0) if angle else body.frame), body.turning
 
     def _foot(self, item):
-        """Point of the line of a pair that is nearest to the reference joint of what is slid on, or to O."""
+        """Foot of the perpendicular on the line of a pair, from the slotted link's reference joint or from O."""
         frame = self.bodies[item.link].frame
         if item.other == FRAME:
             return sp.Symbol(f"{item.link}_guide_offset") * frame.y
@@ -210,10 +207,10 @@ class Motion:
                 along, across = (self.number(f"{joint}_{part}") for part in ("along", "across"))
                 position = body.joint + along * body.axis + across * left(body.axis)
                 self.places[joint] = position.express(N) if link == "crank" else position
-            elif link in self.slid and self.slid[link].joint == joint:
+            elif link in self.slides and self.slides[link].joint == joint:
                 (travel,) = unknown_functions(f"travel_{link}")
                 self.travels[link] = travel
-                self.places[joint] = self._foot(self.slid[link]) + travel * body.frame.x
+                self.places[joint] = self._foot(self.slides[link]) + travel * body.frame.x
             else:
                 reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
                 if reference == joint:
@@ -223,18 +220,14 @@ class Motion:
         return self.places[joint]
 
     def _on(self, link, joint):
-        """Position of a joint as that of a point of a link."""
+        """Position of a joint as a point of a link."""
         if self.owners[joint] == link or link == FRAME or (joint, link) not in self.bars:
             return self.places[joint]
         body = self.bodies[link]
         return body.joint + self.number(f"{link}_length") * body.axis
 
-    def _gap(self, item):
-        """From where one link of a joint has it to where the other has it."""
-        return self._on(item.link, item.joint) - self._on(item.other, item.joint)
-
     def _off(self, item):
-        """How far a joint is off the line that it slides along; None where it was placed on that."""
+        """Distance of a joint from its line of sliding; None if the joint is placed on the line."""
         if item.link in self.travels:
             return None
         body = self.bodies[item.link]
@@ -243,7 +236,7 @@ class Motion:
     # Loops
 
     def _close(self, part, loops, lines):
-        """Closed forms of the unknown functions of a group from its loops, and their derivatives."""
+        """Define the unknown functions of a group and their derivatives from its loops."""
         links = [link for link, _ in part.links]
         for link in links:
             if link in self.led:
@@ -268,7 +261,7 @@ class Motion:
             raise NotGivenError(f"the loops of {part.kind} have no closed form that is known")
 
     def _lead(self, cam):
-        """Function that a cam gives."""
+        """Define the travel or angle of a link on a cam."""
         curve, prefix = CURVES[cam.curve], f"{cam.link}_cam"
         if cam.link in self.travels:
             curve(self, self.travels[cam.link], prefix, cam.terms)
@@ -276,16 +269,16 @@ class Motion:
         theta, (law,) = self.angles[cam.link], unknown_functions(f"law_{cam.link}")
         curve(self, law, prefix, cam.terms)
         start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
-        self._turned(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
+        self._define_direction(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
         self.derivatives(theta, sense * slope(law), sense * slope(law, 2))
 
-    def _turned(self, theta, cosine, sine):
+    def _define_direction(self, theta, cosine, sine):
         for function, value in ((sp.cos, cosine), (sp.sin, sine)):
             self.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_{theta.func}")
             self.steps[symbol] = value
 
     def _turn(self, theta, gap):
-        """Angle that meets an equation linear in its cosine and sine."""
+        """Define an angle by an equation linear in its cosine and sine."""
         self._meet(theta, gap)
         for order in (1, 2):
             self._derivative(theta, slope(gap, order), order)
@@ -299,16 +292,16 @@ class Motion:
         root = side * sp.sqrt(square - rest**2)
         self.sides[str(side)] = next(link for link, angle in self.angles.items() if angle == theta)
         self.motions[str(side)] = (a, b)
-        self._turned(theta, (-rest * a - root * b) / square, (-rest * b + root * a) / square)
+        self._define_direction(theta, (-rest * a - root * b) / square, (-rest * b + root * a) / square)
 
     def _triangle(self, theta, psi, gap):
-        """Two angles that close a triangle: gap = d + p e(theta) + q e(psi) = 0."""
+        """Define two angles by a triangle: gap = d + p e(theta) + q e(psi) = 0."""
         turned = [turn(angle) for angle in (theta, psi) for turn in (sp.cos, sp.sin)]
         (p, aside, q, askew, x), (*_, y) = (linear(gap & way, *turned) for way in (N.x, N.y))
         if aside != 0 or askew != 0:
             raise NotGivenError("links of a loop of two angles must have their joints on their lines")
         self._meet(theta, x * sp.cos(theta) + y * sp.sin(theta) + (x**2 + y**2 + p**2 - q**2) / (2 * p))
-        self._turned(psi, -(x + p * sp.cos(theta)) / q, -(y + p * sp.sin(theta)) / q)
+        self._define_direction(psi, -(x + p * sp.cos(theta)) / q, -(y + p * sp.sin(theta)) / q)
         moving = gap
         for order in (1, 2):
             moving = rate(moving)
@@ -316,7 +309,7 @@ class Motion:
                 self._derivative(angle, moving & self.rays[other], order)
 
     def _travel(self, link, gap):
-        """Travel that meets a linear equation."""
+        """Define a travel by a linear equation."""
         travel = self.travels[link]
         steepness, rest = linear(gap, travel)
         self.symbols[travel] = symbol = sp.Symbol(f"{travel.func}_0")
@@ -325,7 +318,7 @@ class Motion:
             self._derivative(travel, slope(gap, order), order)
 
     def _derivative(self, function, equation, order):
-        """Derivative of a function from an equation's derivative, which is linear in it."""
+        """Define a derivative of a function by the derivative of an equation, linear in it."""
         steepness, rest = linear(equation, slope(function, order))
         self._name(function, order, -rest / steepness)
 
@@ -334,12 +327,12 @@ class Motion:
         self.steps[symbol] = value
 
     def derivatives(self, function, first, second):
-        """Give both derivatives of a function."""
+        """Define both derivatives of a function."""
         self._name(function, 1, first)
         self._name(function, 2, second)
 
     def define(self, function, value, first=None):
-        """Give a function of the crank angle by its value and, if that is shorter, its derivative."""
+        """Define a function of the crank angle by its value and, if that is shorter, its derivative."""
         self.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
         self.steps[symbol] = value
         first = slope(value) if first is None else first
@@ -357,7 +350,7 @@ class Motion:
             moving = OMEGA * rate(body.joint)
             parts = [vector & way for vector in (body.joint, body.axis, moving) for way in (N.x, N.y)]
             self.motions[f"{link} in motion"] = (*parts, OMEGA * turning)
-        for link, item in self.slid.items():
+        for link, item in self.slides.items():
             if item.other == FRAME:
                 travel = self.travels[link]
                 self.motions[f"{link}_position"] = (travel,)

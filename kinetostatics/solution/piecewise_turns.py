@@ -1,4 +1,8 @@
-"""Outputs of scenes whose loads, friction or cams bend: the turn of each parted there, and finer where need be."""
+"""Outputs of scenes with kinks: the turn of each design is split at the kinks of its loads, friction and cams.
+
+Each piece gets more crank angles until an output, as an extreme or a mean, is known to the share `goal` of its
+quantity's largest value. Angles in rad, values SI.
+"""
 
 import math
 from typing import Any, NamedTuple
@@ -7,7 +11,7 @@ import numpy as np
 
 from ..engines.program import program_of
 from ..errors import NotGivenError
-from ..machine.loads import STRAIGHT
+from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
@@ -17,13 +21,13 @@ from ..results.refining import GOAL, refined
 from .scene import unchecked_solution
 
 START_ANGLES = 192
-"""Crank angles a turn to begin with that tell most outputs of a turn that is parted."""
+"""Crank angles of a turn at the start; enough for most outputs of a turn split at its kinks."""
 BLOCK_VALUES = 100_000
-"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+"""Values over designs and angles that NumPy computes at a time; about as many fit into the cache."""
 
 
 def unchecked_turn(scene, angles):
-    """Solution at so many crank angles over the period, or at these."""
+    """Unchecked solution at a number of even crank angles over the period, or at given angles."""
     if scene.friction.acting:
         scene = solve_friction(scene)
     return unchecked_solution(scene, scene.turn(angles), "numpy")
@@ -34,17 +38,17 @@ def quantity_names(outputs):
 
 
 class PiecewiseTurns(NamedTuple):
-    """The turn of designs, parted where they bend.
+    """Turns of all designs of a scene, split at their kinks.
 
     Attributes
     ----------
     scene : Scene
     designs : int
-        How many it has.
+        Number of designs.
     pieces : Pieces
-        As they are to begin with.
+        Pieces at the start.
     goal : float
-        Share of the largest value of a quantity by which an output may be wrong.
+        Largest error of an output, relative to the largest value of its quantity.
     engine : "numpy" or "compiled"
     """
 
@@ -55,8 +59,8 @@ class PiecewiseTurns(NamedTuple):
     engine: str = "numpy"
 
     @classmethod
-    def of(cls, scene, outputs, angles, straight=STRAIGHT, engine="numpy"):
-        """For some outputs, of at least so many crank angles, with loads taken as straight where they bend by less."""
+    def of(cls, scene, outputs, angles, straight=KINK_TOLERANCE, engine="numpy"):
+        """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
         found, jumps, rest = bends(solution, straight)
@@ -64,7 +68,7 @@ class PiecewiseTurns(NamedTuple):
         return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
 
     def values(self, names, designs, angle):
-        """Values of quantities, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
+        """Values (D, N) by quantity, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
         scene, count, own = self._of(designs)
         values, everywhere = {name: np.empty(angle.shape) for name in names}, np.repeat(angle[:1], count, axis=0)
         everywhere[own] = angle
@@ -77,7 +81,7 @@ class PiecewiseTurns(NamedTuple):
         return values
 
     def refined(self, outputs):
-        """Parts of the designs: which, their pieces, and values by quantity, so fine that they tell if any do."""
+        """Yield blocks of designs: their numbers, refined pieces, and values by quantity."""
         names = quantity_names(outputs)
         known = {name: quantity(self.scene, name).vector for name in names}
         wanted = [(item, known[item.quantity]) for item in outputs]
@@ -94,19 +98,19 @@ class PiecewiseTurns(NamedTuple):
                 yield some[designs], pieces, found
 
     def estimated(self, outputs):
-        """Numbers (outputs, designs), and whether so many crank angles do not tell them."""
+        """Outputs (outputs, designs), and whether each is still uncertain with the finest pieces."""
         found = np.empty((2, len(outputs), self.designs))
         with np.errstate(all="ignore"):
-            for designs, pieces, told in self.refined(outputs):
+            for designs, pieces, values in self.refined(outputs):
                 for row, item in enumerate(outputs):
                     vector = quantity(self.scene, item.quantity).vector
-                    found[:, row, designs] = pieces.estimated(item, told[item.quantity], vector)
+                    found[:, row, designs] = pieces.estimated(item, values[item.quantity], vector)
         return found
 
     def _of(self, designs):
-        """A scene that has some of its designs, how many it has, and which of these they are.
+        """A scene with some of the designs, the number of its designs, and the places of those asked for.
 
-        All, where something in it, as a function does, may hold numbers of designs that nobody can take apart.
+        It has all designs if a part, as a function, may contain numbers of designs that cannot be separated.
         """
         leaves = Leaves()
         structure = flatten(self.scene, leaves)
@@ -118,7 +122,7 @@ class PiecewiseTurns(NamedTuple):
 
 
 def _magnitudes(solution, names, engine):
-    """Values of quantities, of vectors their magnitudes."""
+    """Values of quantities, of vectors magnitudes, a list of arrays."""
     state, compiled = solution.dynamics, engine == "compiled"
     try:
         program, leaves = program_of(state, tuple(names), sizes=True, lasting=not compiled)

@@ -1,0 +1,305 @@
+"""A hand calculation as data and as pages: text for the terminal, LaTeX, and HTML with MathML."""
+
+from dataclasses import dataclass
+from html import escape
+from itertools import groupby
+from math import atan2, degrees, hypot
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers.lazy import cached_property
+from .formats import format_number
+
+WIDTH = 80
+"""Characters in a line of text."""
+NOTE = (
+    "A prime is a derivative by the crank angle phi: velocities are first derivatives times the crank speed omega, "
+    "accelerations second ones times omega squared, and first ones times the crank acceleration alpha. Moments on a "
+    "link are about its reference joint. Values stand to 6 digits, rounding as 0."
+)
+STYLE = (
+    "<style>.explanation math{font-size:1.05em}.explanation p{margin:.5em 0 0 .75em;color:#555}"
+    ".explanation .step{margin:.15em 0 .15em 1.5em;padding:.3em 0;overflow:auto hidden}"
+    ".explanation h4{margin:1.2em 0 .2em}.explanation td{padding:0 1.2em 0 0}"
+    ".explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
+)
+POWERS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
+
+
+class Step(NamedTuple):
+    """A step of a hand calculation.
+
+    Attributes
+    ----------
+    title : str
+        Heading: a link, a load, the forces on a part.
+    words : str
+        What the number is; a given number has its path.
+    symbol : str
+    formula, numbers : str
+        In symbols of steps before, and with their values; "" of a given number.
+    value : float
+    unit : str
+    shown : str
+        The value as it is printed: to 6 digits, 0 where it is rounding.
+    latex, mathml : tuple of str
+        Symbol, formula, numbers and value.
+    """
+
+    title: str
+    words: str
+    symbol: str
+    formula: str
+    numbers: str
+    value: float
+    unit: str
+    shown: str
+    latex: tuple[str, ...]
+    mathml: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A hand calculation; made by `Solution.explain`, shown by ``print``, as a page in notebooks.
+
+    Attributes
+    ----------
+    mechanism, quantity, label : str
+        Names, of the quantity also in words.
+    angle : float
+        Crank angle, rad.
+    steps : tuple of Step
+    results : tuple of Step
+        Those of them that give the quantity, of a vector its components.
+    value : float or array (2,)
+        The quantity as the solution gives it, but for the last rounding.
+    unit : str
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0).solve(4)
+    >>> explanation = s.explain("balancing_torque", 0.5)
+    >>> round(float(explanation.value), 6), explanation.unit
+    (14.875291, 'N m')
+    """
+
+    mechanism: str
+    quantity: str
+    label: str
+    angle: float
+    steps: tuple[Step, ...]
+    results: tuple[Step, ...]
+    value: Any
+    unit: str
+
+    @property
+    def title(self):
+        """Mechanism, quantity and crank angle."""
+        angle = f"{format_number(self.angle)} rad = {format_number(degrees(self.angle))} deg"
+        return f"{self.mechanism}: {self.label} at crank angle {angle}"
+
+    @property
+    def conclusion(self):
+        """The quantity and its value, of a vector the magnitude too."""
+        values = [step.shown for step in self.results] or [format_number(float(part)) for part in np.ravel(self.value)]
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if np.ndim(self.value):
+            size = format_number(hypot(*self.value))
+            return f"{self.quantity} = ({', '.join(values)}){unit}, magnitude {size}{unit}"
+        angle = f" = {format_number(degrees(self.value))} deg" if self.unit == "rad" else ""
+        return f"{self.quantity} = {values[-1]}{unit}{angle}"
+
+    @cached_property
+    def text(self):
+        """The calculation in lines of 80 characters."""
+        found = [*wrap(self.title, WIDTH), "", *wrap(NOTE, WIDTH)]
+        for title, steps in self._sections:
+            found += ["", title]
+            if not steps[0].formula:
+                found += _text_table(steps)
+                continue
+            for words, group in _by_words(steps):
+                head = _head(words, group)
+                found += wrap(head, WIDTH, initial_indent="  ", subsequent_indent="    ") if head else []
+                for step in group:
+                    found += _text_lines(step)
+        return "\n".join([*found, "", *wrap(self.conclusion, WIDTH)])
+
+    @cached_property
+    def latex(self):
+        """The calculation for a LaTeX document with amsmath: paragraphs and aligned equations."""
+        found = [rf"\section*{{{_latex_words(self.title)}}}", _latex_words(NOTE)]
+        for title, steps in self._sections:
+            found += [rf"\paragraph{{{_latex_words(title)}}}", r"\begin{align*}"]
+            rows = []
+            for step in steps:
+                symbol, formula, numbers, value = step.latex
+                unit = "" if step.unit == "1" else rf"\,\mathrm{{{_latex_unit(step.unit)}}}"
+                parts = _right_sides(step, formula, numbers, value + unit) if formula else [value + unit]
+                rows.append(f"{symbol} &= {' = '.join(parts)}")
+            found += [" \\\\\n".join(rows), r"\end{align*}"]
+        return "\n".join([*found, _latex_words(self.conclusion)])
+
+    @cached_property
+    def html(self):
+        """The calculation as a piece of HTML, formulas as MathML; it loads nothing from elsewhere."""
+        found = [f'<div class="explanation">{STYLE}<h3>{escape(self.title)}</h3>', f"<p>{escape(NOTE)}</p>"]
+        for title, steps in self._sections:
+            found.append(f"<h4>{escape(title)}</h4>")
+            if not steps[0].formula:
+                found += ["<table>", *map(_html_row, steps), "</table>"]
+                continue
+            for words, group in _by_words(steps):
+                head = _head(words, group)
+                found += [f"<p>{escape(head)}</p>"] if head else []
+                for step in group:
+                    symbol, formula, numbers, _ = step.mathml
+                    parts = _right_sides(step, formula, numbers, _mathml_value(step))
+                    sides = " ".join(_math(f"<mo>=</mo>{part}") for part in parts)
+                    found.append(f'<div class="step">{_math(symbol)} {sides}</div>')
+        return "\n".join([*found, f"<p><strong>{escape(self.conclusion)}</strong></p></div>"])
+
+    @property
+    def page(self):
+        """The same as a whole page of HTML."""
+        head = f'<meta charset="utf-8"><title>{escape(self.title)}</title>'
+        return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{self.html}\n</body></html>'
+
+    @property
+    def _sections(self):
+        """Pairs of a heading and its steps."""
+        return [(title, list(steps)) for title, steps in groupby(self.steps, key=lambda step: step.title)]
+
+    def __str__(self):
+        return self.text
+
+    def __repr__(self):
+        return f"<Explanation: {self.title}, {len(self.steps)} steps; print it>"
+
+    def _repr_html_(self):
+        return self.html
+
+    def _repr_latex_(self):
+        return self.latex
+
+
+def _by_words(steps):
+    """Pairs of words and the steps that have them in common."""
+    return [(words, list(group)) for words, group in groupby(steps, key=lambda step: step.words)]
+
+
+def _head(words, steps):
+    """Words over steps that have them in common; of a unit vector with its angle."""
+    if words.startswith("unit vector") and len(steps) == 2:
+        return f"{words}, at {format_number(degrees(atan2(steps[1].value, steps[0].value)))} deg"
+    return words
+
+
+def _right_sides(step, formula, numbers, value):
+    """Parts after the equality signs; numbers that repeat the value are left out."""
+    return [formula, value] if step.numbers.strip("()") == step.shown else [formula, numbers, value]
+
+
+# Text
+
+
+def _text_value(step):
+    unit = "" if step.unit == "1" else f" {step.unit}"
+    angle = f" = {format_number(degrees(step.value))} deg" if step.unit == "rad" else ""
+    return f"{step.shown}{unit}{angle}"
+
+
+def _text_table(steps):
+    rows = [(step.symbol, _text_value(step), step.words) for step in steps]
+    first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
+    indent = " " * min(first + second + 7, WIDTH // 2)
+    return [
+        line
+        for symbol, value, words in rows
+        for line in wrap(f"  {symbol:{first}} = {value:{second}}  {words}", WIDTH, subsequent_indent=indent)
+    ]
+
+
+def _text_lines(step):
+    """Lines of a step: one if it fits."""
+    parts = _right_sides(step, step.formula, step.numbers, _text_value(step))
+    whole = f"    {step.symbol} = {' = '.join(parts)}"
+    if len(whole) <= WIDTH:
+        return [whole]
+    indent = " " * min(len(step.symbol) + 5, 24)
+    found = []
+    for place, part in enumerate(parts):
+        start = f"    {step.symbol} = " if place == 0 else f"{indent}= "
+        found += _wrap_formula(start + part, indent + "    ")
+    return found
+
+
+def _wrap_formula(line, indent):
+    """Lines of a formula, broken where the fewest brackets are open."""
+    while len(line) > WIDTH:
+        place = _break(line, len(indent))
+        if not place:
+            break
+        yield line[:place].rstrip()
+        line = indent + line[place:].lstrip()
+    yield line
+
+
+def _break(line, start):
+    """Where to break a line: before a sum's sign or after a product's, outside of as many brackets as possible."""
+    found, depth = (0, 0), 0
+    for place, sign in enumerate(line[: WIDTH + 1]):
+        depth += (sign == "(") - (sign == ")")
+        if place <= start + 4:
+            continue
+        if line[place : place + 3] in (" + ", " - "):
+            found = max(found, (-2 * depth, place)) if found[1] else (-2 * depth, place)
+        elif sign in "*/" and place < WIDTH:
+            found = max(found, (-2 * depth - 1, place + 1)) if found[1] else (-2 * depth - 1, place + 1)
+    return found[1]
+
+
+# LaTeX
+
+
+def _latex_words(words):
+    for sign in "\\&%$#_{}":
+        words = words.replace(sign, f"\\{sign}")
+    return words
+
+
+def _latex_unit(unit):
+    """A unit such as "m/s2" with raised powers."""
+    found = ""
+    for place, sign in enumerate(unit):
+        raised = sign.isdigit() and place and unit[place - 1].isalpha()
+        found += f"^{{{sign}}}" if raised else sign
+    return found.replace(" ", r"\,")
+
+
+# HTML
+
+
+def _math(inner):
+    return f'<math displaystyle="true"><mrow>{inner}</mrow></math>'
+
+
+def _mathml_value(step):
+    unit = "" if step.unit == "1" else f'<mspace width="0.25em"/><mtext>{_html_unit(step.unit)}</mtext>'
+    angle = f"<mo>=</mo><mn>{format_number(degrees(step.value))}</mn><mtext>°</mtext>" if step.unit == "rad" else ""
+    return f"{step.mathml[3]}{unit}{angle}"
+
+
+def _html_row(step):
+    """Row of a given number: symbol, value, words."""
+    value = _math(f"<mo>=</mo>{_mathml_value(step)}")
+    return f"<tr><td>{_math(step.mathml[0])}</td><td>{value}</td><td>{escape(step.words)}</td></tr>"
+
+
+def _html_unit(unit):
+    signs = enumerate(unit)
+    raised = (sign.translate(POWERS) if place and unit[place - 1].isalpha() else sign for place, sign in signs)
+    return escape("".join(raised))
