@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import pkgutil
 import pydoc
 import re
 import types
@@ -65,6 +66,13 @@ def undocumented(kind):
         and (inspect.isroutine(item) or isinstance(item, property))
         and not inspect.getdoc(getattr(kind, name))
     ]
+
+
+def test_no_function_has_the_name_of_a_module():
+    """Importing the module would put it in the function's place."""
+    for package in (ks, *modules().values()):
+        files = {file.name for file in pkgutil.iter_modules(getattr(package, "__path__", ()))}
+        assert not [name for name in files & set(package.__all__) if not inspect.ismodule(getattr(package, name))]
 
 
 def test_dir_of_public_modules_is_public():

@@ -6,8 +6,8 @@ from typing import Any
 from ..design import case_text
 from ..design.cam_start import Options, starting_machine
 from ..design.constraints import parse_constraint, parse_output
-from ..design.optimise import optimise
-from ..design.pareto import Front, pareto
+from ..design.optimisation import optimise
+from ..design.pareto_front import Front, pareto
 from ..design.problem import parse_bounds
 from ..design.result import Found
 from ..design.torque_free import torque_free_cam

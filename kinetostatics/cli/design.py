@@ -10,7 +10,7 @@ import numpy as np
 from ..casefile.case import load_case
 from ..casefile.designs import write_found
 from ..design import case_text
-from ..design.pareto import Front
+from ..design.pareto_front import Front
 from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files

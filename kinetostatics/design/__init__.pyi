@@ -9,9 +9,9 @@ from .follower_speed import lift_off_speed as lift_off_speed
 from .follower_speed import lifted as lifted
 from .follower_speed import spring_surge as spring_surge
 from .follower_speed import starting_torque as starting_torque
-from .optimise import optimise as optimise
-from .pareto import Front as Front
-from .pareto import pareto as pareto
+from .optimisation import optimise as optimise
+from .pareto_front import Front as Front
+from .pareto_front import pareto as pareto
 from .result import Found as Found
 from .robust import Spread as Spread
 from .robust import over_spread as over_spread

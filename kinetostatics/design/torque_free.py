@@ -24,7 +24,7 @@ from ..numbers import checks
 from ..results.reductions import Output
 from .cam_start import Options, crank_slider_links, starting_machine
 from .constraints import parse_constraints, parse_output
-from .optimise import (
+from .optimisation import (
     best_within_limits,
     ends_as_ratios,
     goal_of,

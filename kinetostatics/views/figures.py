@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from ..design.pareto import Front
+from ..design.pareto_front import Front
 from ..errors import CaseError, ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks

@@ -110,7 +110,7 @@ def test_tables_of_found_designs_replace_no_file(tmp_path, capsys):
 def test_interrupted_search_leaves_no_partial_file(tmp_path, sent, status, word):
     saw = saw_with(STIFFER.replace("angles = 72", "angles = 72\nstarts = 2"), tmp_path)
     arguments = ["design", saw, "--out", tmp_path / "found.toml"]
-    with held("kinetostatics.design.optimise", "search_from", arguments) as process:
+    with held("kinetostatics.design.optimisation", "search_from", arguments) as process:
         process.send_signal(sent)
         told = process.communicate()[1]
     assert process.returncode == status

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.constraints import parse_constraints
-from kinetostatics.design.optimise import true_excess
+from kinetostatics.design.optimisation import true_excess
 from support.case_files import shipped
 
 pytestmark = pytest.mark.slow

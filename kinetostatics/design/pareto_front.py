@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import DesignError
 from ..numbers import checks
 from .constraints import Constraint, parse_constraints, parse_output
-from .optimise import ANGLES, optimise
+from .optimisation import ANGLES, optimise
 from .problem import choose_design, compared_value, scene_of
 from .result import Found
 
