@@ -276,7 +276,7 @@ def report(options):
 def drive(options):
     from ..casefile.case import load_case
     from ..drive.savings import energy_table, running_table, speed_hint
-    from ..drive.steady import steady
+    from ..drive.steady_running import steady
     from ..drive.transient import start
 
     case = load_case(options.case)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..drive.flywheel import flywheel
+from ..drive.flywheel_sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks

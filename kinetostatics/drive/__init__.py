@@ -4,11 +4,11 @@ May import errors, numbers to solution.
 """
 
 from .energy_flow import EnergyFlow
-from .flywheel import Flywheel, flywheel
+from .flywheel_sizing import Flywheel, flywheel
 from .motor import Motor
 from .running import Running
 from .savings import DrivenComparison
-from .steady import steady
+from .steady_running import steady
 from .trajectory import Event, Trajectory
 from .transient import coast, start
 

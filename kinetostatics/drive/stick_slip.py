@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import DriveError
-from .steady import steady
+from .steady_running import steady
 
 RELATIVE_TOLERANCE = 3e-14
 """Relative tolerance of a step, the smallest that DOP853 accepts."""

@@ -16,7 +16,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from .motor import Motor
 from .one_dof import driven_machine
-from .steady import require_within_motor_table, steady
+from .steady_running import require_within_motor_table, steady
 from .stick_slip import integrate_motion, require_standstill
 from .trajectory import Event, Trajectory
 

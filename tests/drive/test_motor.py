@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.resolution import require_inertia, resolved
-from kinetostatics.drive.steady import operating_speed, settle_by_integration
+from kinetostatics.drive.steady_running import operating_speed, settle_by_integration
 from support.drives import DISC, DISC_MOTOR, driven
 
 Motor = ks.drive.Motor

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from ...drive.one_dof import DrivenMachine
-from ...drive.steady import steady
+from ...drive.steady_running import steady
 from ...drive.transient import coast
 from ...engines.numba_backend import numba_available
 from ...errors import MissingLibraryError, NotGivenError

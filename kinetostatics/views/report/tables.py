@@ -381,7 +381,7 @@ def losses(subject):
 def drive_tables(subject):
     """Periodic running by machine under the motor of the case, its tables, and reasons for failures."""
     from ...drive.savings import energy_table, running_table, speed_hint
-    from ...drive.steady import steady
+    from ...drive.steady_running import steady
     from ...drive.transient import start
 
     runs: dict[str, Any] = {}

@@ -10,7 +10,7 @@ from ..numbers import checks
 from .one_dof import driven_machine
 from .resolution import resolved
 from .running import Running, find_flywheel, parse_fluctuation
-from .steady import steady
+from .steady_running import steady
 
 
 @dataclass(frozen=True, eq=False)
