@@ -1,6 +1,7 @@
 """Work against precision: time and error of every method against a certified reference."""
 
 import math
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -197,7 +198,8 @@ def variant_of_each_kind(case):
     """First variant of each kind of mechanism and cam in a case."""
     found: dict[tuple, str] = {}
     for name, variant in case.variants.items():
-        parts = tuple(type(part) for group in variant.mechanism.groups for part in (group, *vars(group).values()))
+        groups = variant.mechanism.groups
+        parts = tuple(type(part) for g in groups for part in (g, *(getattr(g, field.name) for field in fields(g))))
         found.setdefault((variant.mechanism.name, parts), name)
     return list(found.values())
 

@@ -59,9 +59,9 @@ def placed(request):
     joint = Joint(A, (-slope(A[0]), -slope(A[1])), (-A[0], -A[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rocker, "sqrt", root)
-        patch.setattr(rocker, "root", lambda square, unit: root(square))
-        patch.setattr(rocker, "divisor", lambda root, unit: root)
-        patch.setattr(rocker, "apart", lambda distance, unit: distance)
+        patch.setattr(rocker, "clamped_sqrt", lambda square, unit: root(square))
+        patch.setattr(rocker, "guarded_divisor", lambda root, unit: root)
+        patch.setattr(rocker, "offset_from_zero", lambda distance, unit: distance)
         return joint, rocker.place(joint, c, h, (b, FIELD.zero), request.param), request.param
 
 

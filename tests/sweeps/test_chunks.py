@@ -245,7 +245,7 @@ def of_smooth_curve(count, around=True):
 @every("around", [True, False])
 @every("angles", [12, 360])
 def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
-    monkeypatch.setattr(chunk, "Parted", None)
+    monkeypatch.setattr(chunk, "PiecewiseTurns", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
     outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
     found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles)
@@ -355,7 +355,7 @@ def test_near_zero_reactions_are_resolved(seed):
         low, high, least, size = angle[:-1, 0], angle[1:, 0], np.inf, 0.0
         for _ in range(14):
             at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 5)
-            values = component_sizes(chunk.solution_of(scene, at.ravel()), name)[0].reshape(at.shape)
+            values = component_sizes(chunk.unchecked_turn(scene, at.ravel()), name)[0].reshape(at.shape)
             least, size = min(least, values.min()), max(size, values.max())
             near = np.argsort(values.min(axis=1))[:20]
             place = np.clip(values[near].argmin(axis=1), 1, 3)

@@ -124,7 +124,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
 @pytest.mark.slow
 def test_memory_is_that_of_a_chunk(monkeypatch):
     """Four times the designs take no more, but for the table itself."""
-    monkeypatch.setattr(chunk, "VALUES", 2000)
+    monkeypatch.setattr(chunk, "BLOCK_VALUES", 2000)
 
     def peak(count):
         designs = pd.DataFrame({"crank": np.linspace(0.1, 0.5, count)})

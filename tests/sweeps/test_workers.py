@@ -264,7 +264,7 @@ class Mortal:
     def __init__(self, dying):
         self.dying, self.tried = dying, []
 
-    def survived(self, function, job, frame):
+    def result_unless_killed(self, function, job, frame):
         """What a call gives in a tuple, as of `Workers`."""
         names = tuple(frame.index)
         self.tried.append(names)
