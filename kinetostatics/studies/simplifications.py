@@ -7,6 +7,7 @@ series of engine theory; Biezeno and Grammel, *Technische Dynamik*).
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import accumulate, repeat
 
 import numpy as np
 
@@ -84,37 +85,27 @@ def harmonic_series(solution, order):
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
-    return partial(
-        _evaluate_series, order=order, series=dict(zip(moving_joints(mechanism), spectrum.tolist(), strict=True))
-    )
+    series = dict(zip(moving_joints(mechanism), spectrum.tolist(), strict=True))
+    return partial(_evaluate_series, order=order, series=series)
 
 
 def _evaluate_series(mechanism, angle, order, series):
-    turns = list(_multiples(ray(angle), order))
+    multiples = list(accumulate(repeat(ray(angle), order), rotate))  # unit vectors at 1, 2 ... times the crank angle
+
+    def total(coefficients, derivative):
+        """Derivative of the real part of the series sum of a conj(multiple), without zero terms."""
+        value = coefficients[0].real if derivative == 0 else 0.0
+        for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], multiples, strict=True), 1):
+            factor = coefficient * (1j * k) ** derivative
+            for part, function in ((factor.real, cosine), (-factor.imag, sine)):
+                if part != 0.0:
+                    value = value + part * function
+        return value
+
     joints = {
-        name: Joint(*(tuple(_sum_series(row, turns, k) for row in rows) for k in range(3)))
-        for name, rows in series.items()
+        name: Joint(*(tuple(total(row, order) for row in rows) for order in range(3))) for name, rows in series.items()
     }
     return placement_from_joints(mechanism, angle, joints)
-
-
-def _multiples(ray, order):
-    """Unit vectors at 1, 2 ... times the crank angle."""
-    multiple = ray
-    for _ in range(order):
-        yield multiple
-        multiple = rotate(multiple, ray)
-
-
-def _sum_series(coefficients, turns, derivative):
-    """Derivative of the real part of the series sum of a conj(turn), without zero terms."""
-    total = coefficients[0].real if derivative == 0 else 0.0
-    for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], turns, strict=True), 1):
-        factor = coefficient * (1j * k) ** derivative
-        for part, function in ((factor.real, cosine), (-factor.imag, sine)):
-            if part != 0.0:
-                total = total + part * function
-    return total
 
 
 @dataclass(frozen=True)
@@ -200,29 +191,28 @@ def _at_constant_speed(solution):
     return None if _is_zero(solution.crank_acceleration) else replace(solution, crank_acceleration=0.0)
 
 
-def _with_links(changed, solution):
-    """The solution with every link by ``changed(link, name without label)``, None for a link that stays."""
+def _with_links(changed, kind, solution):
+    """The solution with the links of a kind (None: all) by ``changed(link)``, which returns a link that stays."""
     mechanism = solution.mechanism
     for name, link in solution.mechanism.links.items():
-        new = changed(link, solution.mechanism.own_names[name])
-        if new is not None:
+        if kind in (None, mechanism.own_names[name]) and (new := changed(link)) is not link:
             mechanism = mechanism.with_link(name, new)
     return None if mechanism is solution.mechanism else replace(solution, mechanism=mechanism)
 
 
-def _massless(kind, link, own_name):
-    return None if own_name != kind or (_is_zero(link.mass) and _is_zero(link.inertia)) else Link()
+def _massless(link):
+    return link if _is_zero(link.mass) and _is_zero(link.inertia) else Link()
 
 
-def _without_inertia(kind, link, own_name):
-    return None if own_name != kind or _is_zero(link.inertia) else replace(link, inertia=0.0)
+def _without_inertia(link):
+    return link if _is_zero(link.inertia) else replace(link, inertia=0.0)
 
 
-def _centre_on_axis(link, own_name):
-    return None if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
+def _centre_on_axis(link):
+    return link if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
 
 
-def _two_mass(kind, solution):
+def two_masses(kind, solution):
     mechanism = two_mass_coupler(solution.mechanism, kind)
     return None if mechanism is None else replace(solution, mechanism=mechanism)
 
@@ -235,7 +225,7 @@ def _guides_through_crank_centre(solution):
     return replace(solution, mechanism=map_numbers(mechanism, lambda number: number, through))
 
 
-def _up_to_harmonic(order, solution):
+def up_to_harmonic(order, solution):
     return replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
@@ -243,12 +233,12 @@ CHOICES_BEFORE_LINKS = {
     **{name: (Choice(f"no {name}", partial(_without_load, kind)),) for kind in KINDS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
-    "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis)),),
+    "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis, None)),),
 }
 CHOICES_AFTER_LINKS = {
     "kinematics": (
-        Choice("two harmonics", partial(_up_to_harmonic, 2)),
-        Choice("one harmonic", partial(_up_to_harmonic, 1)),
+        Choice("two harmonics", partial(up_to_harmonic, 2)),
+        Choice("one harmonic", partial(up_to_harmonic, 1)),
     ),
 }
 
@@ -264,13 +254,12 @@ def ingredients(mechanism):
     hung = {kinds[bar.link] for group in mechanism.groups for bar in group.bars}
     links = {}
     for kind in sorted(dict.fromkeys(kinds.values()), key=lambda kind: kind in couplers):
-        choices = (
-            [Choice(f"no {kind} inertia", partial(_with_links, partial(_without_inertia, kind)))]
-            if kind in hung
-            else []
-        )
-        choices += [Choice(f"two-mass {kind}", partial(_two_mass, kind))] if kind in couplers else []
-        links[kind] = (*choices, Choice(f"massless {kind}", partial(_with_links, partial(_massless, kind))))
+        choices = []
+        if kind in hung:
+            choices.append(Choice(f"no {kind} inertia", partial(_with_links, _without_inertia, kind)))
+        if kind in couplers:
+            choices.append(Choice(f"two-mass {kind}", partial(two_masses, kind)))
+        links[kind] = (*choices, Choice(f"massless {kind}", partial(_with_links, _massless, kind)))
     rubs = {friction_kind(pair) for pair in mechanism.pairs.values()}
     names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
     friction = {name: (Choice(f"no {name}", partial(_without_friction, kind)),) for name, kind in names.items()}

@@ -351,22 +351,6 @@ def _convert(kind, original, **more):
     return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
 
 
-def _groups(mechanism, sign):
-    """Groups of a mechanism with the formulas of its study."""
-    groups = with_numeric_side(mechanism).groups
-    kinds = [type(group) for group in groups]
-    if kinds == [SliderGroup]:
-        return (_convert(SliderByVectors, groups[0]),)
-    if kinds == [RockerGroup]:
-        return (_convert(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
-    cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
-    if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
-        return RollerByAngles(_convert(cams[type(cam)], cam), groups[0].block, groups[0].roller, sign), _convert(
-            SliderByAsin, groups[1]
-        )
-    raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
-
-
 def by_the_papers(solution, sign=EQUILIBRIUM):
     """The solution by the formulas of the study of its mechanism, by default with the wrong sign corrected.
 
@@ -395,8 +379,20 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     >>> bool(abs(theirs.balancing_torque - plain.balancing_torque).max() < 1e-9)  # N m
     True
     """
-    mechanism = replace(solution.mechanism, groups=_groups(solution.mechanism, sign))
-    return replace(solution, mechanism=mechanism, engine=KERNELS)
+    mechanism = solution.mechanism
+    first, *others = groups = with_numeric_side(mechanism).groups
+    kinds = [type(group) for group in groups]
+    cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
+    if kinds == [SliderGroup]:
+        made = [_convert(SliderByVectors, first)]
+    elif kinds == [RockerGroup]:
+        made = [_convert(RockerByAtanAcos, first, crank_length=mechanism.crank.length)]
+    elif kinds == [CamRoller, SliderGroup] and type(first.cam) in cams:
+        cam = _convert(cams[type(first.cam)], first.cam)
+        made = [RollerByAngles(cam, first.block, first.roller, sign), _convert(SliderByAsin, *others)]
+    else:
+        raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
+    return replace(solution, mechanism=replace(mechanism, groups=tuple(made)), engine=KERNELS)
 
 
 def exactly_cancelled(solution):

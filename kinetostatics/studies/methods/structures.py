@@ -183,17 +183,21 @@ def cam_numbers(group, angle):
 class LoadForces:
     """Loads as forces at points and couples on links, in one posture; derived classes give the posture.
 
-    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; ``number`` of
-    a load's parameter and ``value`` of a load; and ``expj``, ``arg`` and ``where`` for their kind of numbers.
+    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; and, for
+    numbers other than NumPy's, ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and ``where``.
     """
 
     mechanism: Any
     at: Any
-    number: Any
-    value: Any
-    expj: Any
-    arg: Any
-    where: Any
+    expj: Any = staticmethod(lambda angle: np.exp(1j * angle))
+    arg: Any = staticmethod(np.angle)
+    where: Any = staticmethod(np.where)
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
 
     def point(self, place):
         """Link, position and velocity of a place."""

@@ -49,7 +49,7 @@ class CamDistance(NamedTuple):
 def cam_distance(at, item, rates=None):
     """Distance of a follower from its cam; with rates also its second derivative without accelerations."""
     k = at.model.size
-    spins = [0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link)]
+    turning, own = (0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link))
     ray, axis = (at.cosine[..., place] + 1j * at.sine[..., place] for place in (item.crank, item.link))
     plane = at._plane(at.q)
     arm = item.along * axis
@@ -57,25 +57,15 @@ def cam_distance(at, item, rates=None):
     speed: Any = 0.0
     if rates is not None:
         moving = at._plane(rates)
-        speed = moving[..., item.link] + 1j * spins[1] * arm - moving[..., item.crank]
-    turned = at.q[..., 2 * k + item.crank]
+        speed = moving[..., item.link] + 1j * own * arm - moving[..., item.crank]
+    phi = at.q[..., 2 * k + item.crank]
     if isinstance(item.group, FlatFollower):
-        return _face_distance(item, turned - at.q[..., 2 * k + item.link], apart, speed, axis, spins)
-    return _roller_distance(item, turned, (apart, speed, arm), ray, spins)
-
-
-def _face_distance(item, psi, apart, speed, axis, spins):
-    angle = psi + item.group.guide.guide_angle
-    law = item.group.cam.law(angle)
-    height, aside = apart * axis.conj(), speed * axis.conj()
-    turning, face = spins
-    second = 2.0 * face * np.imag(aside) - face**2 * height.real - law.acceleration * (turning - face) ** 2
-    return CamDistance(height.real - law.position, axis, height.imag + law.velocity, -law.velocity, second)
-
-
-def _roller_distance(item, turned, moved, ray, spins):
-    apart, speed, arm = (part * ray.conj() for part in moved)
-    disk, phi = item.group.disk, turned
+        law = item.group.cam.law(phi - at.q[..., 2 * k + item.link] + item.group.guide.guide_angle)
+        height, aside = apart * axis.conj(), speed * axis.conj()
+        second = 2.0 * own * np.imag(aside) - own**2 * height.real - law.acceleration * (turning - own) ** 2
+        return CamDistance(height.real - law.position, axis, height.imag + law.velocity, -law.velocity, second)
+    apart, speed, arm = (part * ray.conj() for part in (apart, speed, arm))
+    disk = item.group.disk
     for _ in range(MAX_FOOT_ITERATIONS):
         centre, first, second = disk.curve(phi)
         off = apart - centre
@@ -84,7 +74,6 @@ def _roller_distance(item, turned, moved, ray, spins):
     tangent = first / np.abs(first)
     normal = 1j * tangent
     curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
-    turning, own = spins
     passing = speed - 1j * turning * apart
     rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
     return CamDistance(
@@ -144,20 +133,11 @@ class Model:
         self.followings: list[CamEquation] = []
         self._held: list[tuple[str, str | None, float]] = []
         *self._terms, (self._one, self._phi) = np.split(np.eye(5 * self.size + 2), np.arange(1, 6) * self.size)
-        self._write()
-        self.equations = np.array(self.equations)
-        self.linear, self.of_cosine, self.of_sine, _ = np.split(self.equations, np.arange(3, 6) * self.size, axis=1)
-        self.drive = -self.equations @ self._phi
-        links = mechanism.links.values()
-        self.mass, self.inertia = (np.array([getattr(link, name) for link in links]) for name in ("mass", "inertia"))
-        self.centre = np.array([complex(*link.centre) for link in links])
-
-    def _write(self):
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
-        made, self.numbers = structure(self.mechanism)
+        made, self.numbers = structure(mechanism)
         bars = {(end, link) for part in made.parts for _, end, link in part.bars}
-        for part, group in zip(made.parts[1:], self.mechanism.groups, strict=True):
+        for part, group in zip(made.parts[1:], mechanism.groups, strict=True):
             for pin in part.pins:
                 one, other = (self._on(link, pin.joint, bars) for link in (pin.link, pin.other))
                 self._add(pin.name, *(one - other))
@@ -168,6 +148,12 @@ class Model:
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
             self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
+        self.equations = np.array(self.equations)
+        self.linear, self.of_cosine, self.of_sine, _ = np.split(self.equations, np.arange(3, 6) * self.size, axis=1)
+        self.drive = -self.equations @ self._phi
+        links = mechanism.links.values()
+        self.mass, self.inertia = (np.array([getattr(link, name) for link in links]) for name in ("mass", "inertia"))
+        self.centre = np.array([complex(*link.centre) for link in links])
 
     def _joint(self, name):
         """Joint by name, (2, terms)."""
@@ -336,10 +322,6 @@ class Configuration:
         """Velocities qdot."""
         return self.solve(self.model.drive * np.ones_like(self.phi)) * np.asarray(speed)[..., None]
 
-    def accelerations(self, rates, acceleration=0.0):
-        """Accelerations qddot."""
-        return self.solve(self.gamma(rates) + self.model.drive * np.asarray(acceleration)[..., None])
-
     def demand(self, rates, accelerations, solution):
         """M qddot - Q: forces and moments at the reference joints that reactions and drive must supply."""
         model, turned = self.model, self.cosine + 1j * self.sine
@@ -418,16 +400,8 @@ class Configuration:
 class _LoadForces(LoadForces):
     """Loads in a configuration with velocities `rates`."""
 
-    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
-
     def __init__(self, configuration, rates):
         self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
-
-    def number(self, value):
-        return value
-
-    def value(self, item):
-        return item.value_now
 
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
@@ -445,7 +419,7 @@ def components(model, solution, quantity, q, rates=None):
     if order >= RATE:
         found = rates = at.rates(solution.crank_speed) if rates is None else rates
     if order >= ACCELERATION:
-        found = at.accelerations(rates, solution.crank_acceleration)
+        found = at.solve(at.gamma(rates) + model.drive * np.asarray(solution.crank_acceleration)[..., None])
     if order >= FORCE:
         force = at.forces(rates, at.demand(rates, found, solution), solution)[quantity]
         return (force.real, force.imag) if np.iscomplexobj(force) else (force,)

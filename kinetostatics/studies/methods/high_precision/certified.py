@@ -68,7 +68,11 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
             own = [mp.mpf(part[index]) for part in found.exact]
             gap = mp.norm([a - b for a, b in zip(own, other, strict=True)]) / unit
             if not gap <= mp.mpf(10) ** -digits:
-                raise KinetostaticsError(_disagreement(mp, solution, quantity, index, own, other, gap, digits))
+                ours, theirs = (", ".join(mp.nstr(part, digits + 3) for part in parts) for parts in (own, other))
+                raise KinetostaticsError(
+                    f"{place_text(solution, index)}: {quantity} is {ours} by the library's kernels but {theirs} by the "
+                    f"independent path; they differ by {mp.nstr(gap, 3)} of the largest value, more than 1e-{digits}"
+                )
             agreement = max(agreement, float(gap))
     return replace(found, agreement=agreement)
 
@@ -122,14 +126,6 @@ def _relative(found, reference, difference):
         ]
     errors = magnitude(parts)
     return errors / reference.largest if reference.largest else np.where(errors > 0, np.inf, errors)
-
-
-def _disagreement(mp, solution, quantity, index, own, other, gap, digits):
-    own, other = (", ".join(mp.nstr(part, digits + 3) for part in parts) for parts in (own, other))
-    return (
-        f"{place_text(solution, index)}: {quantity} is {own} by the library's kernels but {other} by the independent "
-        f"path; they differ by {mp.nstr(gap, 3)} of the largest value, more than 1e-{digits}"
-    )
 
 
 WORKING_BITS, SPEED_TOLERANCE = 300, 1e-22

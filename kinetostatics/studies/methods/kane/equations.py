@@ -32,18 +32,9 @@ class Equations(Motion):
 
     Attributes
     ----------
-    forces : dict of str to tuple of expressions
-        Results by name, in components.
+    forces, results : dict of str to tuple of expressions
+        Reactions and drive torque; these and motions: by name, in components.
     """
-
-    @property
-    def forces(self):
-        outputs = {"balancing_torque", *(name for part in self.structure.parts for name in part.outputs)}
-        return {name: parts for name, parts in self.reactions.items() if name in outputs}
-
-    @property
-    def results(self):
-        return self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
 
     def __init__(self, structure):
         super().__init__(structure)
@@ -64,6 +55,10 @@ class Equations(Motion):
                 self._slide(slide)
             for cam in part.cams:
                 self._press(cam)
+        outputs = {"balancing_torque", *(name for part in structure.parts for name in part.outputs)}
+        self.forces = {name: parts for name, parts in self.reactions.items() if name in outputs}
+        self.results = self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
+        self._eliminate()
 
     def _part(self, link, body):
         """Give a link its auxiliary speeds, its weight and its applied loads."""
@@ -143,17 +138,12 @@ class Equations(Motion):
         normal = left(x * body.frame.x + y * body.frame.y) / sp.sqrt(x**2 + y**2)
         self._act(cam.link, cam.body, joint, force * normal)
 
-    def with_forces(self):
-        """These equations with the unknown forces added to `steps`."""
+    def _eliminate(self):
+        """Solve Kane's equations in turn, in the smallest groups that determine further unknowns, as `steps`."""
         method = KanesMethod(N, [PHI], [SPEED], [PHI.diff() - SPEED], u_auxiliary=self.speeds)
         active, inertial = method.kanes_equations(self.rigid, self.loads)
         power, *equations = active + inertial
         self._solve([power], [TORQUE])
-        self._eliminate(equations)
-        return self
-
-    def _eliminate(self, equations):
-        """Solve the equations in turn, in the smallest groups that determine further unknowns."""
         left_over = [(equation, equation.free_symbols & self.found) for equation in equations]
         known: set[Any] = set()
         while known < self.found:
@@ -197,8 +187,6 @@ class AppliedLoads(LoadForces):
     result : function
         ``result(name)`` returns a function that computes a result of the equations' own motion.
     """
-
-    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
 
     def __init__(self, solution, result):
         self.solution, self.mechanism = solution, solution.mechanism
@@ -246,12 +234,6 @@ class AppliedLoads(LoadForces):
                         add(f"{link}_load_{part}", amount)
         return found
 
-    def number(self, value):
-        return value
-
-    def value(self, item):
-        return item.value_now
-
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
         x, y, cosine, sine, to_x, to_y, spin = self.places[link]
@@ -262,10 +244,8 @@ SUBSTITUTED_VALUES = 0, 1, -1
 """Parameter values that are substituted into the equations."""
 
 
-@cache
-def equations_of(made):
-    """Equations of a structure, solved."""
-    return Equations(made).with_forces()
+equations_of = cache(Equations)
+"""Equations of a structure, solved."""
 
 
 @cache

@@ -81,10 +81,7 @@ def harmonic(equations, radius, prefix, terms):
 
 def sampled(equations, function, prefix, terms):
     """Define a curve by its computed values and derivatives."""
-    value, first, second = sp.symbols([f"{prefix}_{order}" for order in range(3)])
-    equations.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
-    equations.steps[symbol] = value
-    equations.derivatives(function, first, second)
+    equations.define(function, *sp.symbols([f"{prefix}_{order}" for order in range(3)]))
 
 
 CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "given": sampled}
@@ -136,7 +133,13 @@ class Motion:
         self.rays: dict[Any, Any] = {}
         self.travels: dict[str, Any] = {}
         for part in structure.parts:
-            self._assemble(part)
+            for link, _ in part.links:
+                self._point(link)
+            for joint, _ in part.joints:
+                self._place(joint)
+            for link, joint in part.links:
+                self.bodies[link].joint = self._place(joint)
+            self._close(part)
         self._report()
 
     def number(self, name):
@@ -145,36 +148,27 @@ class Motion:
 
     # Where everything is
 
-    def _assemble(self, part):
-        for link, _ in part.links:
-            self._point(link)
-        for joint, _ in part.joints:
-            self._place(joint)
-        for link, joint in part.links:
-            self.bodies[link].joint = self._place(joint)
-        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
-        loops = [gap for gap in gaps if gap != 0]
-        lines = [gap for item in part.slides if (gap := self._off(item)) is not None]
-        self._close(part, loops, lines)
-
     def _point(self, link):
         """Body of a link, with the direction of the crank, of its slot or guide, or an unknown angle."""
         if link in self.bodies:
             return self.bodies[link]
         ways: Any = (N.x, N.y)
+        item = self.slides.get(link)
         if link == "crank":
             frame, turning = self._frame(link, PHI), sp.S.One
-        elif link in self.slides:
-            frame, turning = self._slot(self.slides[link])
-            if self.slides[link].other == FRAME:
-                ways = frame.x, frame.y
-        else:
+        elif item is None:
             (theta,) = unknown_functions(f"theta_{link}")
             self.angles[link] = theta
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
-        axis = -frame.x if link in self.slides and self.slides[link].rod else frame.x
-        self.bodies[link] = Body(None, frame, axis, turning, ways)
+        elif item.other == FRAME:
+            frame, turning = self._frame(f"{link} guide", sp.Symbol(f"{link}_guide_angle"), turning=0), sp.S.Zero
+            ways = frame.x, frame.y
+        else:
+            body = self._point(item.other)
+            angle, turning = self.number(f"{item.other}_{item.joint}_angle"), body.turning
+            frame = self._frame(f"{link} slot", angle, body.frame, 0) if angle else body.frame
+        self.bodies[link] = Body(None, frame, -frame.x if item and item.rod else frame.x, turning, ways)
         return self.bodies[link]
 
     def _frame(self, name, angle, base=N, turning=None):
@@ -182,14 +176,6 @@ class Motion:
         frame.orient_axis(base, base.z, angle)
         frame.set_ang_vel(base, (slope(angle) if turning is None else turning) * PHI.diff() * N.z)
         return frame
-
-    def _slot(self, item):
-        """Frame of the guide or slot of a link, and the derivative of its angle by the crank angle."""
-        if item.other == FRAME:
-            return self._frame(f"{item.link} guide", sp.Symbol(f"{item.link}_guide_angle"), turning=0), sp.S.Zero
-        body = self._point(item.other)
-        angle = self.number(f"{item.other}_{item.joint}_angle")
-        return (self._frame(f"{item.link} slot", angle, body.frame, 0) if angle else body.frame), body.turning
 
     def _foot(self, item):
         """Foot of the perpendicular on the line of a pair, from the slotted link's reference joint or from O."""
@@ -226,17 +212,17 @@ class Motion:
         body = self.bodies[link]
         return body.joint + self.number(f"{link}_length") * body.axis
 
-    def _off(self, item):
-        """Distance of a joint from its line of sliding; None if the joint is placed on the line."""
-        if item.link in self.travels:
-            return None
-        body = self.bodies[item.link]
-        return (self.places[item.joint] - self._foot(item)) & body.frame.y
-
     # Loops
 
-    def _close(self, part, loops, lines):
+    def _close(self, part):
         """Define the unknown functions of a group and their derivatives from its loops."""
+        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
+        loops = [gap for gap in gaps if gap != 0]
+        lines = [
+            (self.places[item.joint] - self._foot(item)) & self.bodies[item.link].frame.y
+            for item in part.slides
+            if item.link not in self.travels
+        ]
         links = [link for link, _ in part.links]
         for link in links:
             if link in self.led:
@@ -270,12 +256,11 @@ class Motion:
         curve(self, law, prefix, cam.terms)
         start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
         self._define_direction(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
-        self.derivatives(theta, sense * slope(law), sense * slope(law, 2))
+        self.define(theta, None, sense * slope(law), sense * slope(law, 2))
 
     def _define_direction(self, theta, cosine, sine):
         for function, value in ((sp.cos, cosine), (sp.sin, sine)):
-            self.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_{theta.func}")
-            self.steps[symbol] = value
+            self._set(function(theta), f"{function}_{theta.func}", value)
 
     def _turn(self, theta, gap):
         """Define an angle by an equation linear in its cosine and sine."""
@@ -312,31 +297,26 @@ class Motion:
         """Define a travel by a linear equation."""
         travel = self.travels[link]
         steepness, rest = linear(gap, travel)
-        self.symbols[travel] = symbol = sp.Symbol(f"{travel.func}_0")
-        self.steps[symbol] = -rest / steepness
+        self._set(travel, f"{travel.func}_0", -rest / steepness)
         for order in (1, 2):
             self._derivative(travel, slope(gap, order), order)
 
     def _derivative(self, function, equation, order):
         """Define a derivative of a function by the derivative of an equation, linear in it."""
         steepness, rest = linear(equation, slope(function, order))
-        self._name(function, order, -rest / steepness)
+        self._set(slope(function, order), f"{function.func}_{order}", -rest / steepness)
 
-    def _name(self, function, order, value):
-        self.symbols[slope(function, order)] = symbol = sp.Symbol(f"{function.func}_{order}")
+    def _set(self, expression, name, value):
+        """Add a step for an expression, with the name of its symbol."""
+        self.symbols[expression] = symbol = sp.Symbol(name)
         self.steps[symbol] = value
 
-    def derivatives(self, function, first, second):
-        """Define both derivatives of a function."""
-        self._name(function, 1, first)
-        self._name(function, 2, second)
-
-    def define(self, function, value, first=None):
-        """Define a function of the crank angle by its value and, if that is shorter, its derivative."""
-        self.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
-        self.steps[symbol] = value
+    def define(self, function, value, first=None, second=None):
+        """Define a function of the crank angle by its value and, where these are shorter, its derivatives."""
         first = slope(value) if first is None else first
-        self.derivatives(function, first, slope(first))
+        for order, part in enumerate((value, first, slope(first) if second is None else second)):
+            if part is not None:
+                self._set(slope(function, order), f"{function.func}_{order}", part)
 
     # Results of motion
 
