@@ -178,21 +178,8 @@ def format_number(value, exactly=False):
     return shortest_exact(value) if exactly else number(value) or "nan"
 
 
-GREEK = {
-    "alpha": "α",
-    "beta": "β",
-    "gamma": "γ",
-    "eta": "η",
-    "theta": "θ",
-    "kappa": "κ",
-    "lambda": "λ",
-    "mu": "μ",
-    "xi": "ξ",
-    "sigma": "σ",
-    "tau": "τ",
-    "phi": "φ",
-    "omega": "ω",
-}
+GREEK_NAMES = "alpha", "beta", "gamma", "eta", "theta", "kappa", "lambda", "mu", "xi", "sigma", "tau", "phi", "omega"
+GREEK = dict(zip(GREEK_NAMES, "αβγηθκλμξστφω", strict=True))
 
 
 def _latex_number(value, exactly=False):

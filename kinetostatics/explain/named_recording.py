@@ -223,13 +223,7 @@ ORDERS = ("", "first", "second")
 def record_with_names(state, paths, units):
     """The scene of a `Dynamics` recorded with names, a `NamedDynamics`, and its recorder.
 
-    Parameters
-    ----------
-    state : Dynamics
-    paths : dict of int to str
-        Path of each number among its leaves, as in case files.
-    units : dict of str to str
-        SI unit by path.
+    `paths` are those of case files by the number's place among the leaves, `units` SI units by path.
     """
     structure, _ = state.apart
     recorder = Recorder(structure)
@@ -458,7 +452,16 @@ class _NamedFrictionSolver(FrictionSolver):
                     words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
             names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
-            resolved = self._named(super().__call__(part, placement, loads, along), part)
+            resolved = super().__call__(part, placement, loads, along)
+            reactions, scalars = dict(resolved.reactions), dict(resolved.scalars)
+            for name, (unit, vector, text, *_) in part.outputs.items():
+                words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
+                if vector:
+                    symbol, words = Symbol("R", "", name), f"reaction {words}"
+                    reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
+                else:
+                    scalars[name] = names.number(scalars.get(name), quantity_symbol(name), words, unit, True, "within")
+            resolved = Resolved(reactions, scalars, resolved.demands)
             names.reading = True
             for law, amount in self.laws:
                 size = node_of(number_or_zero(product(law.factor, size_of(law.kind, law.reaction(resolved)))))
@@ -478,18 +481,6 @@ class _NamedFrictionSolver(FrictionSolver):
             self.laws.append((law, found[-1]))
         self.names.reading = True
         return found
-
-    def _named(self, resolved, part):
-        names, outputs = self.names, part.outputs
-        reactions, scalars = dict(resolved.reactions), dict(resolved.scalars)
-        for name, (unit, vector, text, *_) in outputs.items():
-            words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
-            if vector:
-                symbol, words = Symbol("R", "", name), f"reaction {words}"
-                reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
-            else:
-                scalars[name] = names.number(scalars.get(name), quantity_symbol(name), words, unit, True, "within")
-        return Resolved(reactions, scalars, resolved.demands)
 
 
 def _derivative(order, words):

@@ -23,19 +23,7 @@ NOISE_RATIO = 2.0**-51
 
 
 class Line(NamedTuple):
-    """A number, its formula and its value.
-
-    Attributes
-    ----------
-    named : Named
-    tree : tuple or None
-        Its formula, see `formulas`; None of a given number.
-    value : float
-    unit : str
-    is_noise : bool
-        Whether it is zero but for rounding.
-    node : Node
-    """
+    """A number, its formula (`formulas`; None of a given number) and its value, which may be zero but for rounding."""
 
     named: Named
     tree: Any
@@ -46,16 +34,7 @@ class Line(NamedTuple):
 
 
 def lines(names, outputs, recorder, state):
-    """Lines that lead to some recorded numbers, given numbers first.
-
-    Parameters
-    ----------
-    names : Names
-    outputs : sequence of Node
-    recorder : Recorder
-    state : Dynamics
-        The scene at one crank angle.
-    """
+    """Lines that lead to some recorded numbers, given numbers first; `state` is the scene at one crank angle."""
     values, sizes = _values(names, outputs, recorder, state)
     guarded = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
     ends = _ends(names, outputs, guarded)

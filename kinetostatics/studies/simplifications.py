@@ -31,8 +31,10 @@ SERIES_SAMPLES = 512
 """Samples of a turn for the coefficients of harmonic series."""
 
 
-def placement_from_joints(mechanism, angle, joints) -> Placement:
-    """Placement of a mechanism from its moving joints by name, with their derivatives."""
+def placement_from_joints(mechanism, angle, *orders) -> Placement:
+    """Placement of a mechanism from the positions of its moving joints, (joints, 2, ...), and their derivatives."""
+    found = zip(moving_joints(mechanism), *orders, strict=True)
+    joints = {name: Joint(*map(tuple, parts)) for name, *parts in found}
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
         if not group.follows:
@@ -67,13 +69,6 @@ def paths_over_turn(mechanism, angle):
     return found
 
 
-def joint_motions(mechanism, position, first, second):
-    return {
-        name: Joint(tuple(position[k]), tuple(first[k]), tuple(second[k]))
-        for k, name in enumerate(moving_joints(mechanism))
-    }
-
-
 def harmonic_series(solution, order):
     """Placement method from Fourier series of the joint paths, truncated after a harmonic of the crank angle.
 
@@ -85,8 +80,7 @@ def harmonic_series(solution, order):
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
-    series = dict(zip(moving_joints(mechanism), spectrum.tolist(), strict=True))
-    return partial(_evaluate_series, order=order, series=series)
+    return partial(_evaluate_series, order=order, series=spectrum.tolist())
 
 
 def _evaluate_series(mechanism, angle, order, series):
@@ -102,10 +96,8 @@ def _evaluate_series(mechanism, angle, order, series):
                     value = value + part * function
         return value
 
-    joints = {
-        name: Joint(*(tuple(total(row, order) for row in rows) for order in range(3))) for name, rows in series.items()
-    }
-    return placement_from_joints(mechanism, angle, joints)
+    orders = ([[total(row, derivative) for row in rows] for rows in series] for derivative in range(3))
+    return placement_from_joints(mechanism, angle, *orders)
 
 
 @dataclass(frozen=True)

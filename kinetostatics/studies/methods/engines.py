@@ -17,14 +17,7 @@ from ...engines.program import program_of
 from ...errors import NotGivenError, ParameterError
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked_solution
-from ..simplifications import (
-    joint_motions,
-    joint_positions,
-    paths_over_turn,
-    placement_from_joints,
-    two_masses,
-    up_to_harmonic,
-)
+from ..simplifications import joint_positions, paths_over_turn, placement_from_joints, two_masses, up_to_harmonic
 from .method import Method, require_one_design
 
 
@@ -125,16 +118,9 @@ def _differences(order, solution, quantity, step):
 
     def way(mechanism, angle):
         position = joint_positions(mechanism, angle + step * offsets[:, None])
-        return placement_from_joints(
-            mechanism,
-            angle,
-            joint_motions(
-                mechanism,
-                position[:, :, offsets.size // 2],
-                np.tensordot(first / step, position, (0, 2)),
-                np.tensordot(second / step**2, position, (0, 2)),
-            ),
-        )
+        here = position[:, :, offsets.size // 2]
+        slopes = (np.tensordot(part, position, (0, 2)) for part in (first / step, second / step**2))
+        return placement_from_joints(mechanism, angle, here, *slopes)
 
     return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 
@@ -154,11 +140,10 @@ def _spectral(solution, quantity, samples):
     onward = np.exp(harmonic * angle[0])
 
     def way(mechanism, angle):
-        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * (
-            onward * (angle.size / samples)
-        )
-        parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
-        return placement_from_joints(mechanism, angle, joint_motions(mechanism, *parts))
+        shift = onward * (angle.size / samples)
+        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * shift
+        orders = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
+        return placement_from_joints(mechanism, angle, *orders)
 
     return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 

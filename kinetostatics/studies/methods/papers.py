@@ -49,12 +49,8 @@ def turned_to_length(vector, angle, length):
     quarter = np.pi / 2
     x, y = vector
     scale = length / np.hypot(x, y)
-    return np.array(
-        [
-            (np.cos(angle) * x + np.cos(quarter + angle) * y) * scale,
-            (np.cos(quarter - angle) * x + np.cos(angle) * y) * scale,
-        ]
-    )
+    turned_x = (np.cos(angle) * x + np.cos(quarter + angle) * y) * scale
+    return np.array([turned_x, (np.cos(quarter - angle) * x + np.cos(angle) * y) * scale])
 
 
 def slider_by_double_cross(A, coupler_length, W1, W2, W):
@@ -261,12 +257,7 @@ class RollerByAngles(CamRoller):
 
     R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu, and
     R41 = R42 sin(phi - alpha42) + R40 sin(nu) across the ray, at phi + 90 deg. The study prints R41 with a minus, with
-    which the three forces on the block do not sum to zero.
-
-    Parameters
-    ----------
-    sign : float
-        Of R40 sin(nu): `EQUILIBRIUM` or `PRINTED`.
+    which the three forces on the block do not sum to zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM
@@ -319,9 +310,8 @@ class SliderByAsin(SliderByVectors):
         u, n = self.guide.direction, left(self.guide.direction)
         angle = np.arcsin((self.guide.guide_offset - dot(n, A)) / self.coupler_length)
         along, across = self.assembly * np.cos(angle), np.sin(angle)
-        return add_vectors(
-            A, scale_vector(self.coupler_length, add_vectors(scale_vector(along, u), scale_vector(across, n)))
-        )
+        direction = add_vectors(scale_vector(along, u), scale_vector(across, n))
+        return add_vectors(A, scale_vector(self.coupler_length, direction))
 
 
 @dataclass(frozen=True, eq=False)

@@ -136,34 +136,19 @@ MIN_PIECE_POINTS, MAX_PIECE_POINTS = 24, 96
 
 
 def exact_speed(driven, angles):
-    """Crank speeds of periodic running at crank angles in (0, period), rad/s, rounded to the nearest double.
+    """Crank speeds, rad/s, of periodic running of a `DrivenMachine` at crank angles in (0, period), as nearest doubles.
 
-    Parameters
-    ----------
-    driven : Driven
-        Scene, motor and flywheel; loads must not depend on the speed.
-    angles : array (N,)
-
-    Raises
-    ------
-    NotGivenError
-        Loads depend on the speed, or are computed in double precision only.
-    MissingLibraryError
-        python-flint is not installed.
+    `NotGivenError`: loads depend on the speed, or are computed in double precision only.
     """
     if driven.by_speed:
         raise NotGivenError("exact running is for loads that do not depend on the speed")
     flint = require_library("flint")
     with flint.ctx.workprec(WORKING_BITS):
-        before, points = None, MIN_PIECE_POINTS
-        while points <= MAX_PIECE_POINTS:
-            found = _collocate(flint, driven, angles, points)
-            if (
-                before is not None
-                and max(abs(one / two - 1) for one, two in zip(found, before, strict=True)) < SPEED_TOLERANCE
-            ):
+        found = None
+        for points in range(MIN_PIECE_POINTS, MAX_PIECE_POINTS + 1, 8):
+            before, found = found, _collocate(flint, driven, angles, points)
+            if before and max(abs(one / two - 1) for one, two in zip(found, before, strict=True)) < SPEED_TOLERANCE:
                 return np.array([float(speed) for speed in found])
-            before, points = found, points + 8
     raise NotGivenError(f"{driven.scene.mechanism.name}: running is not resolved by {MAX_PIECE_POINTS} points a piece")
 
 
@@ -239,9 +224,8 @@ class _CollocationPiece:
             slope = motor.slope_at_crank(speed) / (inertia * speed)
             slopes.append(slope)
             rests.append(motor.torque_at_crank(speed) - load - slope * value)
-        matrix = flint.arb_mat(
-            [[(i == j) - self.integral[i, j] * slopes[j] for j in range(count)] for i in range(count)]
-        )
+        places = range(count)
+        matrix = flint.arb_mat([[(i == j) - self.integral[i, j] * slopes[j] for j in places] for i in places])
         right = self.integral * flint.arb_mat([[rest] for rest in rests])
         found = matrix.solve(flint.arb_mat([[1, right[i, 0]] for i in range(count)]))
         homogeneous = [found[i, 0].mid() for i in range(count)]

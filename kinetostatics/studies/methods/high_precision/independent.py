@@ -208,31 +208,10 @@ def cross(a, b):
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):
-    """A quantity at some crank angles by mpmath and independent formulas, all forces from one linear system.
+    """Components of a quantity at some of a solution's crank angles, a tuple of arrays (n,) of `mpmath.mpf`.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of one design; of the library's groups, `CamRoller` with `Circle` or `CosineLaw`.
-    quantity : str
-        Balancing torque, a reaction, force or moment, rate or angular acceleration of a link, motion of a slider,
-        shaking force or moment; named as for `quantities.components`.
-    indices : iterable of int
-        Indices of the solution's crank angles.
-    digits : int
-        Digits of the result; the working precision is far higher, as derivatives are difference quotients.
-
-    Returns
-    -------
-    tuple of arrays (n,) of `mpmath.mpf`
-        Components of the quantity.
-
-    Raises
-    ------
-    NotGivenError
-        There are no such formulas for a group or cam, no such quantity, or friction does not settle.
-    MissingLibraryError
-        mpmath is not installed.
+    `digits` are those of the result; the working precision is far higher, as derivatives are difference quotients.
+    `NotGivenError`: no independent formulas for a group or cam, no such quantity, or friction that does not settle.
     """
     mp = require_library("mpmath").mp
     require_one_design(solution)

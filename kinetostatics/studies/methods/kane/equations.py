@@ -8,7 +8,7 @@ that are 0, 1 or -1. `AppliedLoads` computes tables, functions and loads at poin
 """
 
 from functools import cache
-from itertools import combinations
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
@@ -148,19 +148,15 @@ class Equations(Motion):
         known: set[Any] = set()
         while known < self.found:
             open_ones = [(equation, wanted - known) for equation, wanted in left_over if wanted - known]
-            chosen = next(
-                (
-                    (group, wanted)
-                    for size in range(1, MAX_EQUATIONS_TOGETHER + 1)
-                    for group in combinations(open_ones, size)
-                    if len(wanted := set().union(*(names for _, names in group))) == size
-                ),
-                None,
-            )
-            if chosen is None:
+            sizes = range(1, MAX_EQUATIONS_TOGETHER + 1)
+            for chosen in chain.from_iterable(combinations(open_ones, size) for size in sizes):
+                wanted = set().union(*(names for _, names in chosen))
+                if len(wanted) == len(chosen):
+                    break
+            else:
                 raise NotGivenError("the reactions are not determined one group after another")
-            self._solve([equation for equation, _ in chosen[0]], sorted(chosen[1], key=str))
-            known |= chosen[1]
+            self._solve([equation for equation, _ in chosen], sorted(wanted, key=str))
+            known |= wanted
 
     def _solve(self, equations, wanted):
         """Solve linear equations by Cramer's rule."""
@@ -180,12 +176,7 @@ class AppliedLoads(LoadForces):
 
     Keys: a link's name with "_load_x", "_load_y", "_load_moment" for force and moment about its reference joint; a
     slider's name with "_push" for the force along its guide, and "_stiffness", "_free", "_cubic" for its spring.
-
-    Parameters
-    ----------
-    solution : Solution
-    result : function
-        ``result(name)`` returns a function that computes a result of the equations' own motion.
+    ``result(name)`` returns a function that computes a result of the equations' own motion.
     """
 
     def __init__(self, solution, result):
