@@ -121,7 +121,12 @@ class Explanation:
         for title, steps, groups in self._sections:
             found += ["", title]
             if not steps[0].formula:
-                found += _text_table(steps)
+                rows = [(step.symbol, _with_unit(step.shown, step.value, step.unit), step.words) for step in steps]
+                first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
+                indent = " " * min(first + second + 7, WIDTH // 2)
+                for symbol, value, words in rows:
+                    row = f"  {symbol:{first}} = {value:{second}}  {words}"
+                    found += wrap(row, WIDTH, subsequent_indent=indent)
                 continue
             for head, group in groups:
                 found += wrap(head, WIDTH, initial_indent="  ", subsequent_indent="    ") if head else []
@@ -210,17 +215,6 @@ def _right_sides(step, formula, numbers, value):
 def _with_unit(shown, value, unit):
     angle = f" = {format_number(degrees(value))} deg" if unit == "rad" else ""
     return f"{shown}{'' if unit == '1' else f' {unit}'}{angle}"
-
-
-def _text_table(steps):
-    rows = [(step.symbol, _with_unit(step.shown, step.value, step.unit), step.words) for step in steps]
-    first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
-    indent = " " * min(first + second + 7, WIDTH // 2)
-    return [
-        line
-        for symbol, value, words in rows
-        for line in wrap(f"  {symbol:{first}} = {value:{second}}  {words}", WIDTH, subsequent_indent=indent)
-    ]
 
 
 def _text_lines(step):

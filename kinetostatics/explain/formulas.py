@@ -170,15 +170,10 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 def names_in(tree):
     """Indices of the nodes that a formula names, in order, each once."""
+    if tree[0] == "name":
+        return [tree[1]]
     found: dict[int, None] = {}
-
-    def look(part):
-        if part[0] == "name":
-            found[part[1]] = None
-        else:
-            for inner in part[1:]:
-                if isinstance(inner, tuple):
-                    look(inner[1] if isinstance(inner[0], int) else inner)
-
-    look(tree)
+    for part in tree[1:]:
+        if isinstance(part, tuple):
+            found |= dict.fromkeys(names_in(part[1] if isinstance(part[0], int) else part))
     return list(found)

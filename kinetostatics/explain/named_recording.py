@@ -292,8 +292,16 @@ class NamedDynamics(Dynamics):
                 placed(group, placement)
                 self._placed(placement, group)
         for name, link in self.mechanism.links.items():
+            motion, body = placement.links[name], link.body
             with names.under(f"Mass centre of the {name}"):
-                self._name_centre(name, placement.links[name], link.body)
+                words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
+                place = None if body.mass is None else arm(motion.direction, body.along, body.across)
+                to_centre = names.vector(place, Symbol("r", "", name), words, "m")
+                slopes = (first_at(motion, to_centre), second_at(motion, to_centre)) if to_centre is not None else ()
+                for order, part in enumerate(slopes, 1):
+                    words = _derivative(order, f"position of the mass centre of the {name}")
+                    for axis, value in zip(AXES, part or (), strict=False):
+                        names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
         return placement
 
     def _placed(self, placement, part):
@@ -301,11 +309,10 @@ class NamedDynamics(Dynamics):
         names = self.names
         for name in part.links:
             link = placement.links[name]
-            turning = Symbol("theta", "", name)
             direction = names.vector(link.direction, Symbol("u", "", name), f"unit vector of the {name}", "1")
-            words = f"angular velocity ratio of the {name}", f"slope of that ratio of the {name}"
-            ratio = names.number(link.ratio, turning._replace(primes=1), words[0], "1")
-            ratio_slope = names.number(link.ratio_slope, turning._replace(primes=2), words[1], "1")
+            ratio = names.number(link.ratio, Symbol("theta", "", name, 1), f"angular velocity ratio of the {name}", "1")
+            words = f"slope of that ratio of the {name}"
+            ratio_slope = names.number(link.ratio_slope, Symbol("theta", "", name, 2), words, "1")
             placement.links[name] = link._replace(direction=direction, ratio=ratio, ratio_slope=ratio_slope)
         for slider in (name for name in part.links if name in placement.travels):
             words = f"coordinate of the {slider} along its guide"
@@ -344,19 +351,6 @@ class NamedDynamics(Dynamics):
                 wrench = load(links[name], link.body, *self.accelerating, gravity)
                 found[name] = self._wrench(wrench, ("P", "K"), name, f"{what} of the {name}")
         return found
-
-    def _name_centre(self, name, motion, body):
-        """Name the arm of a mass centre, and its kinematic coefficients."""
-        if body.mass is None:
-            return
-        words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
-        place = arm(motion.direction, body.along, body.across)
-        to_centre = self.names.vector(place, Symbol("r", "", name), words, "m")
-        if to_centre is not None:
-            for order, part in enumerate((first_at(motion, to_centre), second_at(motion, to_centre)), 1):
-                words = _derivative(order, f"position of the mass centre of the {name}")
-                for axis, value in zip(AXES, part or (), strict=False):
-                    self.names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
 
     def _wrench(self, wrench, letters, owner, words):
         force, moment = letters

@@ -157,7 +157,17 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     """
     from tqdm import tqdm
 
-    solution, within = _check_arguments(scene, quantity, within, variant)
+    known = isinstance(scene, Solution) or hasattr(scene, "variants")
+    within = checks.single_numbers(
+        "needs",
+        None if known else f"scene must be a Solution or a Case, got {scene!r}",
+        checks.quantity(quantity),
+        "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
+        within=(within, "1", {"low": 0.0, "strict": True}),
+    )["within"]
+    solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
+    if len(solution.shape) != 1:
+        raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
     runs = _ModelRunner(solution, quantity)
     parts = ingredients(solution.mechanism).values()
     alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
@@ -174,22 +184,6 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
             ladder.append(made)
     each, tried = tuple(alone.values()), len(models)
     return Needs(quantity, within, models[0], each, tuple(ladder), smallest, tried, runs.left_out)
-
-
-def _check_arguments(scene, quantity, within, variant):
-    """The checked solution of one design, and the allowed change."""
-    known = isinstance(scene, Solution) or hasattr(scene, "variants")
-    within = checks.single_numbers(
-        "needs",
-        None if known else f"scene must be a Solution or a Case, got {scene!r}",
-        checks.quantity(quantity),
-        "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
-        within=(within, "1", {"low": 0.0, "strict": True}),
-    )["within"]
-    solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
-    if len(solution.shape) != 1:
-        raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
-    return solution, within
 
 
 class _ModelRunner:

@@ -69,8 +69,8 @@ def paths_over_turn(mechanism, angle):
     return found
 
 
-def harmonic_series(solution, order):
-    """Placement method from Fourier series of the joint paths, truncated after a harmonic of the crank angle.
+def up_to_harmonic(order, solution):
+    """The solution by Fourier series of the joint paths, truncated after a harmonic of the crank angle.
 
     For the plain crank-slider these are the series of engine theory (Biezeno and Grammel, *Technische Dynamik*), with
     coefficients to all powers of crank over coupler length.
@@ -80,7 +80,7 @@ def harmonic_series(solution, order):
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
-    return partial(_evaluate_series, order=order, series=spectrum.tolist())
+    return replace(solution, engine=Kernels(partial(_evaluate_series, order=order, series=spectrum.tolist())))
 
 
 def _evaluate_series(mechanism, angle, order, series):
@@ -215,10 +215,6 @@ def _guides_through_crank_centre(solution):
         return None
     through = {Guide: lambda guide: replace(guide, guide_offset=0.0)}
     return replace(solution, mechanism=map_numbers(mechanism, lambda number: number, through))
-
-
-def up_to_harmonic(order, solution):
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
 CHOICES_BEFORE_LINKS = {

@@ -53,6 +53,9 @@ class CoastDown:
     until: float
     exact: float
 
+    def by_library(self, engine):
+        return coast(self.scene, 0.0, self.from_angle, self.from_speed, self.until, engine=engine).crank_angle[-1]
+
 
 def slider_crank():
     """Crank 0.5, rod 1, J1 = 1, m2 = 1 at the slider, J2 = 2; spring and damper between the middles of the bars."""
@@ -79,16 +82,16 @@ def two_four_bars():
 BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N = 2": two_four_bars}
 
 
-def _ours(run, engine, problem, quantity, setting):
-    """The library's own path: ``run(problem, engine)``."""
+def _ours(engine, problem, quantity, setting):
     if engine == "compiled" and not numba_available():
         raise NotGivenError("numba is not installed")
-    return lambda: run(problem, engine)
+    return lambda: problem.by_library(engine)
 
 
-def _coast(problem, engine):
-    motion = coast(problem.scene, 0.0, problem.from_angle, problem.from_speed, problem.until, engine=engine)
-    return motion.crank_angle[-1]
+OUR_METHODS = (
+    Method("ours, NumPy", partial(_ours, "numpy"), ours=True),
+    Method("ours, compiled", partial(_ours, "compiled"), ours=True),
+)
 
 
 def _integrate(slopes, end, start, method, asked, rtol, atol):
@@ -175,8 +178,7 @@ def _constraints(problem, quantity, tolerance):
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 MOTION_METHODS = (
-    Method("ours, NumPy", partial(_ours, _coast, "numpy"), ours=True),
-    Method("ours, compiled", partial(_ours, _coast, "compiled"), ours=True),
+    *OUR_METHODS,
     Method("reduced inertia, DOP853", partial(_reduced_inertia, "DOP853"), "tolerance", TOLERANCES),
     Method("reduced inertia, RK45", partial(_reduced_inertia, "RK45"), "tolerance", TOLERANCES[:-1]),
     Method("reduced inertia, LSODA", partial(_reduced_inertia, "LSODA"), "tolerance", TOLERANCES),
@@ -199,8 +201,8 @@ class PeriodicRunning:
         self.driven = DrivenMachine("study", *self.machine, "compiled" if numba_available() else "numpy")
         if self.driven.by_speed:
             raise NotGivenError("rivals are for loads that do not depend on the speed")
-        self.motor, self.period, self.direction = motor, self.driven.period, self.driven.direction
-        if self.direction < 0.0:
+        self.motor, self.period = motor, self.driven.period
+        if self.driven.direction < 0.0:
             raise NotGivenError("rivals are for motors that turn the crank counter-clockwise")
 
     @property
@@ -226,13 +228,12 @@ class PeriodicRunning:
         by_energy = self.motor.slope_at_crank(speed) / (inertia * speed)
         return self.motor.torque_at_crank(speed) - found["load_torque"], by_energy
 
+    def by_library(self, engine):
+        return steady(*self.machine, angles=self.angles, engine=engine).speed
+
     def speeds(self, energies):
         """Crank speeds, rad/s, from the energies at `angles`."""
         return np.sqrt(2.0 * energies / self.inertia(self.angles))
-
-
-def _run_steadily(problem, engine):
-    return steady(*problem.machine, angles=problem.angles, engine=engine).speed
 
 
 def _energy_by_stepping(after, guess, tolerance):
@@ -357,8 +358,7 @@ def _fourier(problem, quantity, points):
 
 _STEPPING = partial(_integrated_turns, _energy_by_stepping)
 RUNNING_METHODS = (
-    Method("ours, NumPy", partial(_ours, _run_steadily, "numpy"), ours=True),
-    Method("ours, compiled", partial(_ours, _run_steadily, "compiled"), ours=True),
+    *OUR_METHODS,
     Method("stepping until it repeats, DOP853", partial(_STEPPING, "DOP853"), "tolerance", TOLERANCES),
     Method("stepping until it repeats, LSODA", partial(_STEPPING, "LSODA"), "tolerance", TOLERANCES[:-1]),
     Method("shooting, DOP853", partial(_integrated_turns, periodic_energy, "DOP853"), "tolerance", TOLERANCES),

@@ -169,17 +169,14 @@ def _collocate(flint, driven, angles, points):
         left, change = added / (1 - ends), arb(0)
         for number, (homogeneous, particular, growth, gained) in enumerate(steps):
             new = [left * one + two for one, two in zip(homogeneous, particular, strict=True)]
-            change = max(
-                [change, *(abs(a / b - 1).mid() for a, b in zip(new, energies[number], strict=True))], key=float
-            )
+            changes = (abs(a / b - 1).mid() for a, b in zip(new, energies[number], strict=True))
+            change = max([change, *changes], key=float)
             energies[number] = [value.mid() for value in new]
             left = (left * growth + gained).mid()
         if float(change) < 1e-40:
             break
-    places = np.searchsorted(edges, angles, side="right") - 1
-    return [
-        pieces[place].speed(energies[place], float(angle), driven) for place, angle in zip(places, angles, strict=True)
-    ]
+    places = zip(np.searchsorted(edges, angles, side="right") - 1, angles, strict=True)
+    return [pieces[place].speed(energies[place], float(angle), driven) for place, angle in places]
 
 
 class _CollocationPiece:
@@ -196,11 +193,9 @@ class _CollocationPiece:
         self.whole = flint.arb_mat([self._integrals(self.high, points)]) * self.inverse
 
     def _basis(self, angle, points):
-        x, found = (2 * angle - self.low - self.high) / (self.high - self.low), [self.flint.arb(1)]
-        found.append(x)
-        while len(found) < points:
-            found.append(2 * x * found[-1] - found[-2])
-        return found[:points]
+        """Chebyshev polynomials at an angle."""
+        x = (2 * angle - self.low - self.high) / (self.high - self.low)
+        return [x.chebyshev_t(k) for k in range(points)]
 
     def _integrals(self, angle, points):
         """Integrals of the Chebyshev polynomials from the start of the piece."""
