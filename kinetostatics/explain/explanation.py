@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from html import escape
 from itertools import groupby
-from math import atan2, degrees, hypot
+from math import atan2, degrees, hypot, inf
 from textwrap import wrap
 from typing import Any, NamedTuple
 
@@ -237,16 +237,14 @@ def _text_lines(step):
 
 def _break(line, start):
     """Where to break a line: before a sum's sign or after a product's, outside of as many brackets as possible."""
-    found, depth = (0, 0), 0
+    found, depth = [(-inf, 0)], 0
     for place, sign in enumerate(line[: WIDTH + 1]):
         depth += (sign == "(") - (sign == ")")
-        if place <= start + 4:
-            continue
-        if line[place : place + 3] in (" + ", " - "):
-            found = max(found, (-2 * depth, place)) if found[1] else (-2 * depth, place)
-        elif sign in "*/" and place < WIDTH:
-            found = max(found, (-2 * depth - 1, place + 1)) if found[1] else (-2 * depth - 1, place + 1)
-    return found[1]
+        if place > start + 4 and line[place : place + 3] in (" + ", " - "):
+            found.append((-2 * depth, place))
+        elif place > start + 4 and sign in "*/" and place < WIDTH:
+            found.append((-2 * depth - 1, place + 1))
+    return max(found)[1]
 
 
 # LaTeX

@@ -12,13 +12,7 @@ from .formulas import CALLS
 class Symbol(NamedTuple):
     """Symbol of a number: ("F", "x", "slider") is the x component of force F of the slider.
 
-    Attributes
-    ----------
-    base, axis, owner : str
-    primes : int
-        Order of the derivative by the crank angle.
-    again : int
-        Number among several that are spelled alike.
+    `primes` is the order of the derivative by the crank angle, `again` the number among several spelled alike.
     """
 
     base: str

@@ -41,19 +41,10 @@ AXES = ("x", "y")
 
 
 class Named(NamedTuple):
-    """A recorded number with a name.
+    """A recorded number with a name: its symbol, the heading above it, its description in words, and its SI unit.
 
-    Attributes
-    ----------
-    symbol : Symbol
-    title : str
-        Heading above it.
-    words : str
-        Its description.
-    unit : str
-        SI; "" if it follows from the formula.
-    kind : str
-        "given", "protocol" (a result of the mechanism), "term" of a kernel's `TERMS`, or only a "line" of a kernel.
+    The unit is "" if it follows from the formula. `kind` is "given", "protocol" (a result of the mechanism), "term" of
+    a kernel's `TERMS`, or only a "line" of a kernel.
     """
 
     symbol: Symbol
@@ -64,18 +55,11 @@ class Named(NamedTuple):
 
 
 class Names:
-    """Names of the nodes of a graph.
+    """Names `of` the nodes of a graph.
 
-    Attributes
-    ----------
-    modules : collection of str
-        Modules besides `KERNELS` whose local variables give names: those of the user's groups and loads.
-    of : dict of Node to Named
-    laws : dict of Node to formula
-        Law that a number from an iteration satisfies; it is shown in place of the iteration and may contain later
-        numbers.
-    stands_for : dict of Node to Node
-        Named number of the same value, used in formulas instead.
+    `modules` are those besides `KERNELS` whose local variables give names, of the user's groups and loads. `laws` are
+    shown in place of the iterations whose results satisfy them, and may contain later numbers. `stands_for` gives the
+    named number of the same value that formulas use instead of a node.
     """
 
     def __init__(self, graph, modules=()):

@@ -187,13 +187,7 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
 
 
 class _ModelRunner:
-    """Runs simpler models of a solution.
-
-    Attributes
-    ----------
-    left_out : dict of name to reason
-        Simplifications that the scene does not allow.
-    """
+    """Runs simpler models of a solution; `left_out` are simplifications that it does not allow, with the reason."""
 
     def __init__(self, solution, quantity):
         self._solution, self._quantity = solution, quantity

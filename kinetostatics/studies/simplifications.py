@@ -223,12 +223,7 @@ CHOICES_BEFORE_LINKS = {
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
     "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis, None)),),
 }
-CHOICES_AFTER_LINKS = {
-    "kinematics": (
-        Choice("two harmonics", partial(up_to_harmonic, 2)),
-        Choice("one harmonic", partial(up_to_harmonic, 1)),
-    ),
-}
+HARMONICS = Choice("two harmonics", partial(up_to_harmonic, 2)), Choice("one harmonic", partial(up_to_harmonic, 1))
 
 
 def ingredients(mechanism):
@@ -251,4 +246,4 @@ def ingredients(mechanism):
     rubs = {friction_kind(pair) for pair in mechanism.pairs.values()}
     names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
     friction = {name: (Choice(f"no {name}", partial(_without_friction, kind)),) for name, kind in names.items()}
-    return CHOICES_BEFORE_LINKS | friction | links | CHOICES_AFTER_LINKS
+    return CHOICES_BEFORE_LINKS | friction | links | {"kinematics": HARMONICS}

@@ -172,11 +172,10 @@ def _simpler(model, engine, solution, quantity, setting):
 
 
 HARMONICS = (1, 2, 4, 6)
+STEPS = (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)
 APPROXIMATE_METHODS = (
     Method("differences, 2nd order", partial(_differences, 2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
-    Method(
-        "differences, 4th order", partial(_differences, 4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)
-    ),
+    Method("differences, 4th order", partial(_differences, 4), "step [rad]", STEPS),
     Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
     Method("harmonic series", partial(_simpler, up_to_harmonic, NUMPY), "harmonics", HARMONICS),
     Method("harmonic series, compiled", partial(_simpler, up_to_harmonic, COMPILED), "harmonics", HARMONICS),

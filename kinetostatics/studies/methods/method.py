@@ -9,6 +9,7 @@ import platform
 import statistics
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
@@ -180,10 +181,8 @@ def circumstances():
     """
     found = {}
     for name in LIBRARIES:
-        try:
+        with suppress(metadata.PackageNotFoundError):
             found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            continue
     versions = "; ".join(f"{name} {version}" for name, version in found.items())
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()

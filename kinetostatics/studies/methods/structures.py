@@ -210,6 +210,11 @@ class LoadForces:
             return [(link, force, start, 0.0), (other, -force, end, 0.0)]
         raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
 
+    def spring_push(self, item, coordinate):
+        """Force along its guide of a spring on a slider at a coordinate, N."""
+        elongation = coordinate - self.number(item.free_position)
+        return -self.number(item.stiffness) * elongation - self.number(item.cubic) * elongation**3
+
     def couple(self, item):
         """Couple of a load on its link, N m."""
         if isinstance(item, Torque):

@@ -138,14 +138,8 @@ class Model:
     """Constraint equations and masses of a mechanism with k links, in coordinates q (..., 3k): all x, all y, all theta.
 
     The equations are linear in the terms (q, cos theta, sin theta, 1, phi), except `curved`, of slots and cams.
-
-    Attributes
-    ----------
-    equations : array (3k, 5k + 2)
-        Coefficients of these terms.
-    readings : dict
-        By quantity: its source, POSITION q, RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients
-        (components, 3k) of the source.
+    `equations` (3k, 5k + 2) are the coefficients of these terms. `readings` give for a quantity its source, POSITION q,
+    RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients (components, 3k) of the source.
     """
 
     def __init__(self, mechanism):
@@ -338,17 +332,16 @@ class Configuration:
         gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
         force = model.mass * (self.plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
+        acting = _LoadForces(self, rates)
         for item in solution.loads:
             if hasattr(item, "push"):
                 link, along = model.names.index(item.on), model.guides[item.on]
-                if isinstance(item, Spring):
-                    elongation = (self.plane(self.q)[..., link] * along.conjugate()).real - item.free_position
-                    push = -item.stiffness * elongation - item.cubic * elongation**3
-                else:
-                    push = slider_push(item, solution)
+                coordinate = (self.plane(self.q)[..., link] * along.conjugate()).real
+                is_spring = isinstance(item, Spring)
+                push = acting.spring_push(item, coordinate) if is_spring else slider_push(item, solution)
                 force[..., link] -= push * along
             elif not isinstance(item, Gravity):
-                self._take(_LoadForces(self, rates).of(evaluate_load(item, solution)), force, moment)
+                self._take(acting.of(evaluate_load(item, solution)), force, moment)
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _take(self, effects, force, moment):

@@ -366,8 +366,7 @@ class Machine(Posture, LoadForces):
             if not hasattr(item, "push") or item.on != slider:
                 continue
             if isinstance(item, Spring):
-                elongation = coordinate - self.number(item.free_position)
-                total -= self.number(item.stiffness) * elongation + self.number(item.cubic) * elongation**3
+                total += self.spring_push(item, coordinate)
             elif isinstance(item, ProcessForce) and not callable(item.force):
                 total += self.number(item.force)
             else:

@@ -30,10 +30,7 @@ MAX_EQUATIONS_TOGETHER = 3
 class Equations(Motion):
     """Equations of one structure of mechanism: its motion, and forces by auxiliary speeds.
 
-    Attributes
-    ----------
-    forces, results : dict of str to tuple of expressions
-        Reactions and drive torque; these and motions: by name, in components.
+    `forces` are reactions and drive torque by name, in components; `results` these and motions.
     """
 
     def __init__(self, structure):
@@ -212,8 +209,7 @@ class AppliedLoads(LoadForces):
 
         for item in self.springs:
             (travel,) = self.travels[item.on]()
-            away = travel - item.free_position
-            add(f"{item.on}_push", -item.stiffness * away - item.cubic * away**3)
+            add(f"{item.on}_push", self.spring_push(item, travel))
         for item in self.pushes:
             add(f"{item.on}_push", slider_push(item, self.solution))
         self.places = {link: run() for link, run in self.motions.items()}
@@ -282,13 +278,8 @@ def structure_and_numbers(solution):
     made, values = structure(mechanism)
     pulls = [item.vector for item in solution.loads if isinstance(item, Gravity)]
     gravity = [sum(parts) for parts in zip((0, 0), *pulls, strict=True)]
-    values |= {
-        "crank_angle": solution.crank_angle,
-        "crank_speed": solution.crank_speed,
-        "crank_acceleration": solution.crank_acceleration,
-        "gravity_x": gravity[0],
-        "gravity_y": gravity[1],
-    }
+    values |= zip(("gravity_x", "gravity_y"), gravity, strict=True)
+    values |= {name: getattr(solution, name) for name in ("crank_angle", "crank_speed", "crank_acceleration")}
     for group in mechanism.groups:
         values |= cam_numbers(group, solution.crank_angle)
     for side, link in equations_of(made).sides.items():

@@ -26,9 +26,9 @@ def left(vector):
     return N.z ^ vector
 
 
-def unknown_functions(*names):
-    """Functions of the crank angle, still undefined."""
-    return [sp.Function(name)(PHI) for name in names]
+def unknown(name):
+    """Function of the crank angle, still undefined."""
+    return sp.Function(name)(PHI)
 
 
 def slope(expression, order=1):
@@ -50,7 +50,7 @@ def linear(expression, *unknowns):
 
 def circle(equations, radius, prefix, terms):
     """Define the radius of a pitch circle with any centre."""
-    (root,) = unknown_functions(f"root_{prefix}")
+    root = unknown(f"root_{prefix}")
     x, y, size = sp.symbols([f"{prefix}_{name}" for name in ("x", "y", "radius")])
     square = size**2 - (y * sp.cos(PHI) - x * sp.sin(PHI)) ** 2
     equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
@@ -59,7 +59,7 @@ def circle(equations, radius, prefix, terms):
 
 def cosine_law(equations, radius, prefix, terms):
     """Define the radius by the sawframe study's cosine law, with a root that changes sign at the singular angle."""
-    height, root = unknown_functions(f"height_{prefix}", f"root_{prefix}")
+    height, root = unknown(f"height_{prefix}"), unknown(f"root_{prefix}")
     names = "mean", "amplitude", "angle", "length", "singular"
     mean, amplitude, guide, length, singular = sp.symbols([f"{prefix}_{name}" for name in names])
     angle, side = PHI - guide, sp.Symbol(f"side_{prefix}")
@@ -105,17 +105,10 @@ class Body:
 class Motion:
     """Motion of one structure of mechanism.
 
-    Attributes
-    ----------
-    steps : dict of Symbol to expression
-        Intermediate values; a step may use others, in any order.
-    motions : dict of str to tuple of expressions
-        Results by name, in components.
-    symbols : dict of expression to Symbol
-        Symbols for the crank angle, functions of it and their derivatives in steps and results.
-    sides : dict of str to link
-        Signs of roots, set by the assembly, and the links whose angles they choose: the sign of a sin(theta) -
-        b cos(theta), with the two results a, b of that name.
+    `steps` are intermediate values by symbol, which may use one another in any order; `motions` results by name, in
+    components; `symbols` stand in both for the crank angle, functions of it and their derivatives. `sides` are signs of
+    roots, set by the assembly, with the link whose angle theta each chooses: the sign of a sin(theta) - b cos(theta),
+    where a, b are the results of that name.
     """
 
     def __init__(self, structure):
@@ -157,8 +150,7 @@ class Motion:
         if link == "crank":
             frame, turning = self._frame(link, PHI), sp.S.One
         elif item is None:
-            (theta,) = unknown_functions(f"theta_{link}")
-            self.angles[link] = theta
+            self.angles[link] = theta = unknown(f"theta_{link}")
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
         elif item.other == FRAME:
@@ -194,8 +186,7 @@ class Motion:
                 position = body.joint + along * body.axis + across * left(body.axis)
                 self.places[joint] = position.express(N) if link == "crank" else position
             elif link in self.slides and self.slides[link].joint == joint:
-                (travel,) = unknown_functions(f"travel_{link}")
-                self.travels[link] = travel
+                self.travels[link] = travel = unknown(f"travel_{link}")
                 self.places[joint] = self._foot(self.slides[link]) + travel * body.frame.x
             else:
                 reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
@@ -252,7 +243,7 @@ class Motion:
         if cam.link in self.travels:
             curve(self, self.travels[cam.link], prefix, cam.terms)
             return
-        theta, (law,) = self.angles[cam.link], unknown_functions(f"law_{cam.link}")
+        theta, law = self.angles[cam.link], unknown(f"law_{cam.link}")
         curve(self, law, prefix, cam.terms)
         start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
         self._define_direction(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
