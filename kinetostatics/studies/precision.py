@@ -1,6 +1,7 @@
 """Work against precision: time and error of every method against a certified reference."""
 
 import math
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -185,8 +186,9 @@ def variant_of_each_kind(case):
     """First variant of each kind of mechanism and cam in a case."""
     found: dict[tuple, str] = {}
     for name, variant in case.variants.items():
-        parts = tuple(type(part) for group in variant.mechanism.groups for part in (group, *vars(group).values()))
-        found.setdefault((variant.mechanism.name, parts), name)
+        groups = variant.mechanism.groups
+        kinds = [(type(group), *(type(getattr(group, field.name)) for field in fields(group))) for group in groups]
+        found.setdefault((variant.mechanism.name, *kinds), name)
     return list(found.values())
 
 

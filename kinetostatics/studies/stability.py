@@ -24,7 +24,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..solution.solution import Solution
 from .methods.engines import proven_bound
-from .methods.high_precision.certified import differences, enclosure, relative_errors
+from .methods.high_precision.certified import enclosure, relative_errors
 from .methods.method import circumstances
 from .precision import METHODS
 
@@ -345,7 +345,7 @@ def _change_by_one_rounding(solution, quantity, reference):
             moved = enclosure(solution.at(np.nextafter(solution.crank_angle, way)), quantity, digits=20)
         except NotGivenError:
             continue
-        return 0.5 * float(differences(moved, reference).max())
+        return 0.5 * float(relative_errors(moved.exact, reference).max())
     return math.inf
 
 

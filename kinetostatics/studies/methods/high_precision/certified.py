@@ -19,8 +19,6 @@ from ....numbers.parameter_tree import replace_unchecked
 from .enclosures import Enclosure, enclosure, magnitude, on_arb, place_text, require_library
 from .independent import independent, working_digits
 
-__all__ = ["Enclosure", "certified", "differences", "enclosure", "independent", "relative_errors"]
-
 
 def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     """Enclosure of a quantity, confirmed by the independent path.
@@ -85,7 +83,7 @@ def relative_errors(found, reference: Enclosure):
     Parameters
     ----------
     found : tuple of arrays (N,)
-        Components as of `quantities.components`; NaN and infinity stay.
+        Components as of `quantities.components`, or exact ones of another `Enclosure`; NaN and infinity stay.
     reference : Enclosure
 
     Returns
@@ -108,18 +106,11 @@ def relative_errors(found, reference: Enclosure):
     flint = require_library("flint")
 
     def difference(value, exact):
+        if isinstance(value, flint.arb):
+            return float(value - exact)
         return float(flint.arb(float(value)) - exact) if np.isfinite(value) else abs(float(value))
 
-    return _relative(found, reference, difference)
-
-
-def differences(other: Enclosure, reference: Enclosure):
-    """Differences of two enclosures at each crank angle, relative to the largest value of the second, (N,)."""
-    return _relative(other.exact, reference, lambda value, exact: float(value - exact))
-
-
-def _relative(found, reference, difference):
-    with require_library("flint").ctx.workprec(reference.bits):
+    with flint.ctx.workprec(reference.bits):
         parts = [
             np.array([difference(*pair) for pair in zip(np.broadcast_to(values, exact.shape), exact, strict=True)])
             for values, exact in zip(found, reference.exact, strict=True)

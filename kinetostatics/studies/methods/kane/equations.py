@@ -310,14 +310,14 @@ def function_of(made, names, values):
 
 
 def evaluation(solution, names):
-    """Function without arguments that computes results by name, as a list of components."""
+    """Function without arguments that computes results by name, as a tuple of components."""
     made, values = structure_and_numbers(solution)
     unknown = [name for name in names if name not in equations_of(made).results]
     if unknown:
         raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)}")
     applied = AppliedLoads(solution, lambda name: function_of(made, (name,), values))
     run = function_of(made, names, values | applied.numbers)
-    return lambda: run(**applied())
+    return lambda: tuple(run(**applied()))
 
 
 def all_forces(solution):
@@ -333,8 +333,7 @@ def all_forces(solution):
 
 
 def _prepare(solution, quantity, setting=None):
-    run = evaluation(solution, (quantity,))
-    return lambda: tuple(run())
+    return evaluation(solution, (quantity,))
 
 
 METHODS = (Method("SymPy Kane, lambdified", _prepare),)
