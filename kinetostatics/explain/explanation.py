@@ -1,9 +1,10 @@
 """A hand calculation as data and as pages: text for the terminal, LaTeX, and HTML with MathML."""
 
+import re
 from dataclasses import dataclass
 from html import escape
 from itertools import groupby
-from math import atan2, degrees, hypot
+from math import atan2, degrees, hypot, inf
 from textwrap import wrap
 from typing import Any, NamedTuple
 
@@ -26,6 +27,8 @@ STYLE = (
     ".explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
 )
 POWERS = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
+RAISED = r"(?<=[^\W\d_])\d"
+"""Power in a unit such as "m/s2"."""
 
 
 class Step(NamedTuple):
@@ -105,24 +108,27 @@ class Explanation:
     def conclusion(self):
         """The quantity and its value, of a vector the magnitude too."""
         values = [step.shown for step in self.results] or [format_number(float(part)) for part in np.ravel(self.value)]
-        unit = "" if self.unit == "1" else f" {self.unit}"
         if np.ndim(self.value):
+            unit = "" if self.unit == "1" else f" {self.unit}"
             size = format_number(hypot(*self.value))
             return f"{self.quantity} = ({', '.join(values)}){unit}, magnitude {size}{unit}"
-        angle = f" = {format_number(degrees(self.value))} deg" if self.unit == "rad" else ""
-        return f"{self.quantity} = {values[-1]}{unit}{angle}"
+        return f"{self.quantity} = {_with_unit(values[-1], self.value, self.unit)}"
 
     @cached_property
     def text(self):
         """The calculation in lines of 80 characters."""
         found = [*wrap(self.title, WIDTH), "", *wrap(NOTE, WIDTH)]
-        for title, steps in self._sections:
+        for title, steps, groups in self._sections:
             found += ["", title]
             if not steps[0].formula:
-                found += _text_table(steps)
+                rows = [(step.symbol, _with_unit(step.shown, step.value, step.unit), step.words) for step in steps]
+                first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
+                indent = " " * min(first + second + 7, WIDTH // 2)
+                for symbol, value, words in rows:
+                    row = f"  {symbol:{first}} = {value:{second}}  {words}"
+                    found += wrap(row, WIDTH, subsequent_indent=indent)
                 continue
-            for words, group in _by_words(steps):
-                head = _head(words, group)
+            for head, group in groups:
                 found += wrap(head, WIDTH, initial_indent="  ", subsequent_indent="    ") if head else []
                 for step in group:
                     found += _text_lines(step)
@@ -132,13 +138,15 @@ class Explanation:
     def latex(self):
         """The calculation for a LaTeX document with amsmath: paragraphs and aligned equations."""
         found = [rf"\section*{{{_latex_words(self.title)}}}", _latex_words(NOTE)]
-        for title, steps in self._sections:
+        for title, steps, _ in self._sections:
             found += [rf"\paragraph{{{_latex_words(title)}}}", r"\begin{align*}"]
             rows = []
             for step in steps:
                 symbol, formula, numbers, value = step.latex
-                unit = "" if step.unit == "1" else rf"\,\mathrm{{{_latex_unit(step.unit)}}}"
-                parts = _right_sides(step, formula, numbers, value + unit) if formula else [value + unit]
+                if step.unit != "1":
+                    unit = re.sub(RAISED, r"^{\g<0>}", step.unit).replace(" ", r"\,")
+                    value += rf"\,\mathrm{{{unit}}}"
+                parts = _right_sides(step, formula, numbers, value) if formula else [value]
                 rows.append(f"{symbol} &= {' = '.join(parts)}")
             found += [" \\\\\n".join(rows), r"\end{align*}"]
         return "\n".join([*found, _latex_words(self.conclusion)])
@@ -147,13 +155,16 @@ class Explanation:
     def html(self):
         """The calculation as a piece of HTML, formulas as MathML; it loads nothing from elsewhere."""
         found = [f'<div class="explanation">{STYLE}<h3>{escape(self.title)}</h3>', f"<p>{escape(NOTE)}</p>"]
-        for title, steps in self._sections:
+        for title, steps, groups in self._sections:
             found.append(f"<h4>{escape(title)}</h4>")
             if not steps[0].formula:
-                found += ["<table>", *map(_html_row, steps), "</table>"]
+                found.append("<table>")
+                for step in steps:
+                    cells = _math(step.mathml[0]), _math(f"<mo>=</mo>{_mathml_value(step)}"), escape(step.words)
+                    found.append(f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
+                found.append("</table>")
                 continue
-            for words, group in _by_words(steps):
-                head = _head(words, group)
+            for head, group in groups:
                 found += [f"<p>{escape(head)}</p>"] if head else []
                 for step in group:
                     symbol, formula, numbers, _ = step.mathml
@@ -170,8 +181,15 @@ class Explanation:
 
     @property
     def _sections(self):
-        """Pairs of a heading and its steps."""
-        return [(title, list(steps)) for title, steps in groupby(self.steps, key=lambda step: step.title)]
+        """Headings, each with its steps, and with pairs of words and the steps that have them in common."""
+        for title, found in groupby(self.steps, key=lambda step: step.title):
+            steps, groups = list(found), []
+            for words, alike in groupby(steps, key=lambda step: step.words):
+                group = list(alike)
+                if words.startswith("unit vector") and len(group) == 2:
+                    words += f", at {format_number(degrees(atan2(group[1].value, group[0].value)))} deg"
+                groups.append((words, group))
+            yield title, steps, groups
 
     def __str__(self):
         return self.text
@@ -186,18 +204,6 @@ class Explanation:
         return self.latex
 
 
-def _by_words(steps):
-    """Pairs of words and the steps that have them in common."""
-    return [(words, list(group)) for words, group in groupby(steps, key=lambda step: step.words)]
-
-
-def _head(words, steps):
-    """Words over steps that have them in common; of a unit vector with its angle."""
-    if words.startswith("unit vector") and len(steps) == 2:
-        return f"{words}, at {format_number(degrees(atan2(steps[1].value, steps[0].value)))} deg"
-    return words
-
-
 def _right_sides(step, formula, numbers, value):
     """Parts after the equality signs; numbers that repeat the value are left out."""
     return [formula, value] if step.numbers.strip("()") == step.shown else [formula, numbers, value]
@@ -206,60 +212,39 @@ def _right_sides(step, formula, numbers, value):
 # Text
 
 
-def _text_value(step):
-    unit = "" if step.unit == "1" else f" {step.unit}"
-    angle = f" = {format_number(degrees(step.value))} deg" if step.unit == "rad" else ""
-    return f"{step.shown}{unit}{angle}"
-
-
-def _text_table(steps):
-    rows = [(step.symbol, _text_value(step), step.words) for step in steps]
-    first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
-    indent = " " * min(first + second + 7, WIDTH // 2)
-    return [
-        line
-        for symbol, value, words in rows
-        for line in wrap(f"  {symbol:{first}} = {value:{second}}  {words}", WIDTH, subsequent_indent=indent)
-    ]
+def _with_unit(shown, value, unit):
+    angle = f" = {format_number(degrees(value))} deg" if unit == "rad" else ""
+    return f"{shown}{'' if unit == '1' else f' {unit}'}{angle}"
 
 
 def _text_lines(step):
     """Lines of a step: one if it fits."""
-    parts = _right_sides(step, step.formula, step.numbers, _text_value(step))
+    value = _with_unit(step.shown, step.value, step.unit)
+    parts = _right_sides(step, step.formula, step.numbers, value)
     whole = f"    {step.symbol} = {' = '.join(parts)}"
     if len(whole) <= WIDTH:
         return [whole]
     indent = " " * min(len(step.symbol) + 5, 24)
     found = []
     for place, part in enumerate(parts):
-        start = f"    {step.symbol} = " if place == 0 else f"{indent}= "
-        found += _wrap_formula(start + part, indent + "    ")
+        line = (f"    {step.symbol} = " if place == 0 else f"{indent}= ") + part
+        while len(line) > WIDTH and (end := _break(line, len(indent) + 4)):
+            found.append(line[:end].rstrip())
+            line = f"{indent}    {line[end:].lstrip()}"
+        found.append(line)
     return found
-
-
-def _wrap_formula(line, indent):
-    """Lines of a formula, broken where the fewest brackets are open."""
-    while len(line) > WIDTH:
-        place = _break(line, len(indent))
-        if not place:
-            break
-        yield line[:place].rstrip()
-        line = indent + line[place:].lstrip()
-    yield line
 
 
 def _break(line, start):
     """Where to break a line: before a sum's sign or after a product's, outside of as many brackets as possible."""
-    found, depth = (0, 0), 0
+    found, depth = [(-inf, 0)], 0
     for place, sign in enumerate(line[: WIDTH + 1]):
         depth += (sign == "(") - (sign == ")")
-        if place <= start + 4:
-            continue
-        if line[place : place + 3] in (" + ", " - "):
-            found = max(found, (-2 * depth, place)) if found[1] else (-2 * depth, place)
-        elif sign in "*/" and place < WIDTH:
-            found = max(found, (-2 * depth - 1, place + 1)) if found[1] else (-2 * depth - 1, place + 1)
-    return found[1]
+        if place > start + 4 and line[place : place + 3] in (" + ", " - "):
+            found.append((-2 * depth, place))
+        elif place > start + 4 and sign in "*/" and place < WIDTH:
+            found.append((-2 * depth - 1, place + 1))
+    return max(found)[1]
 
 
 # LaTeX
@@ -271,15 +256,6 @@ def _latex_words(words):
     return words
 
 
-def _latex_unit(unit):
-    """A unit such as "m/s2" with raised powers."""
-    found = ""
-    for place, sign in enumerate(unit):
-        raised = sign.isdigit() and place and unit[place - 1].isalpha()
-        found += f"^{{{sign}}}" if raised else sign
-    return found.replace(" ", r"\,")
-
-
 # HTML
 
 
@@ -288,18 +264,7 @@ def _math(inner):
 
 
 def _mathml_value(step):
-    unit = "" if step.unit == "1" else f'<mspace width="0.25em"/><mtext>{_html_unit(step.unit)}</mtext>'
+    raised = escape(re.sub(RAISED, lambda digit: digit[0].translate(POWERS), step.unit))
+    unit = "" if step.unit == "1" else f'<mspace width="0.25em"/><mtext>{raised}</mtext>'
     angle = f"<mo>=</mo><mn>{format_number(degrees(step.value))}</mn><mtext>°</mtext>" if step.unit == "rad" else ""
     return f"{step.mathml[3]}{unit}{angle}"
-
-
-def _html_row(step):
-    """Row of a given number: symbol, value, words."""
-    value = _math(f"<mo>=</mo>{_mathml_value(step)}")
-    return f"<tr><td>{_math(step.mathml[0])}</td><td>{value}</td><td>{escape(step.words)}</td></tr>"
-
-
-def _html_unit(unit):
-    signs = enumerate(unit)
-    raised = (sign.translate(POWERS) if place and unit[place - 1].isalpha() else sign for place, sign in signs)
-    return escape("".join(raised))

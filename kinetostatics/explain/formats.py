@@ -12,13 +12,7 @@ from .formulas import CALLS
 class Symbol(NamedTuple):
     """Symbol of a number: ("F", "x", "slider") is the x component of force F of the slider.
 
-    Attributes
-    ----------
-    base, axis, owner : str
-    primes : int
-        Order of the derivative by the crank angle.
-    again : int
-        Number among several that are spelled alike.
+    `primes` is the order of the derivative by the crank angle, `again` the number among several spelled alike.
     """
 
     base: str
@@ -178,21 +172,8 @@ def format_number(value, exactly=False):
     return shortest_exact(value) if exactly else number(value) or "nan"
 
 
-GREEK = {
-    "alpha": "α",
-    "beta": "β",
-    "gamma": "γ",
-    "eta": "η",
-    "theta": "θ",
-    "kappa": "κ",
-    "lambda": "λ",
-    "mu": "μ",
-    "xi": "ξ",
-    "sigma": "σ",
-    "tau": "τ",
-    "phi": "φ",
-    "omega": "ω",
-}
+GREEK_NAMES = "alpha", "beta", "gamma", "eta", "theta", "kappa", "lambda", "mu", "xi", "sigma", "tau", "phi", "omega"
+GREEK = dict(zip(GREEK_NAMES, "αβγηθκλμξστφω", strict=True))
 
 
 def _latex_number(value, exactly=False):

@@ -23,47 +23,32 @@ def formula(node, ends, stands_for=MappingProxyType({}), guarded=()):
     """Tree of a recorded number: tuples of a kind and its parts.
 
     Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
-    parts, "negative", "quotient", "power" and "call".
-
-    Parameters
-    ----------
-    node : Node or float
-    ends : container of Node
-        Nodes at which the formula ends; not the node itself.
-    stands_for : dict of Node to Node
-        Node that replaces another of the same value.
-    guarded : container of Node
-        Divisors at their least value: they are shown as "max" with that value.
+    parts, "negative", "quotient", "power" and "call". The formula ends at the nodes in `ends`, but for the node itself.
+    `stands_for` gives a node that replaces another of the same value; `guarded` are divisors at their least value,
+    which are shown as "max" with that value.
     """
     if not isinstance(node, Node):
         return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
 
     def part_of(part):
         found = stands_for.get(part, part) if isinstance(part, Node) else part
-        if found is not node:
-            part = found
-        return (
-            ("name", part.index)
-            if isinstance(part, Node) and part in ends
-            else formula(part, ends, stands_for, guarded)
-        )
+        part = part if found is node else found
+        if isinstance(part, Node) and part in ends:
+            return ("name", part.index)
+        return formula(part, ends, stands_for, guarded)
 
     if node in guarded:
         return ("call", "max", *map(part_of, node.arguments))
-    return _OPERATIONS[node.operation](
-        *(part_of(part) for part in node.arguments if not _is_offset(part, node.operation))
-    )
+    kept = (part for part in node.arguments if node.operation != "+" or not _is_offset(part))
+    return _OPERATIONS[node.operation](*map(part_of, kept))
 
 
-def _is_offset(part, operation):
-    """Whether an argument only keeps a number away from zero and changes no digit."""
-    if isinstance(part, Node):
-        return (
-            operation == "+"
-            and part.operation == "*"
-            and any(isinstance(one, float) and one == RELATIVE_OFFSET for one in part.arguments)
-        )
-    return operation == "+" and 0.0 < abs(part) < MAX_OFFSET
+def _is_offset(term):
+    """Whether a term of a sum only keeps it away from zero and changes no digit."""
+    if isinstance(term, Node):
+        factors = (part for part in term.arguments if isinstance(part, float))
+        return term.operation == "*" and RELATIVE_OFFSET in factors
+    return 0.0 < abs(term) < MAX_OFFSET
 
 
 def _sum(left, right=ZERO):
@@ -170,15 +155,10 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 def names_in(tree):
     """Indices of the nodes that a formula names, in order, each once."""
+    if tree[0] == "name":
+        return [tree[1]]
     found: dict[int, None] = {}
-
-    def look(part):
-        if part[0] == "name":
-            found[part[1]] = None
-        else:
-            for inner in part[1:]:
-                if isinstance(inner, tuple):
-                    look(inner[1] if isinstance(inner[0], int) else inner)
-
-    look(tree)
+    for part in tree[1:]:
+        if isinstance(part, tuple):
+            found |= dict.fromkeys(names_in(part[1] if isinstance(part[0], int) else part))
     return list(found)

@@ -41,19 +41,10 @@ AXES = ("x", "y")
 
 
 class Named(NamedTuple):
-    """A recorded number with a name.
+    """A recorded number with a name: its symbol, the heading above it, its description in words, and its SI unit.
 
-    Attributes
-    ----------
-    symbol : Symbol
-    title : str
-        Heading above it.
-    words : str
-        Its description.
-    unit : str
-        SI; "" if it follows from the formula.
-    kind : str
-        "given", "protocol" (a result of the mechanism), "term" of a kernel's `TERMS`, or only a "line" of a kernel.
+    The unit is "" if it follows from the formula. `kind` is "given", "protocol" (a result of the mechanism), "term" of
+    a kernel's `TERMS`, or only a "line" of a kernel.
     """
 
     symbol: Symbol
@@ -64,17 +55,11 @@ class Named(NamedTuple):
 
 
 class Names:
-    """Names of the nodes of a graph.
+    """Names `of` the nodes of a graph.
 
-    Attributes
-    ----------
-    modules : collection of str
-        Modules besides `KERNELS` whose local variables give names: those of the user's groups and loads.
-    of : dict of Node to Named
-    laws : dict of Node to formula
-        Law that a number from an iteration satisfies; it is shown in place of the iteration.
-    stands_for : dict of Node to Node
-        Named number of the same value, used in formulas instead.
+    `modules` are those besides `KERNELS` whose local variables give names, of the user's groups and loads. `laws` are
+    shown in place of the iterations whose results satisfy them, and may contain later numbers. `stands_for` gives the
+    named number of the same value that formulas use instead of a node.
     """
 
     def __init__(self, graph, modules=()):
@@ -121,19 +106,17 @@ class Names:
             base, words = terms.get(f"{kernel}.{variable}") or terms.get(variable) or (variable, "")
             kind = "term" if words else "line"
             for path, axis, node in _flat(value):
-                if node.operation in (*INPUTS, "rest") or self._is_better(node, kind, path):
+                known = self.of.get(node)
+                is_better = known is not None and (
+                    known.kind in ("protocol", "given")
+                    or known.title != self.title
+                    or (kind == "line" and (known.kind == "term" or bool(path)))
+                )
+                if node.operation in (*INPUTS, "rest") or is_better:
                     continue
                 stem = base.rstrip("'")
                 symbol = Symbol(".".join((stem, *path)), axis, primes=len(base) - len(stem))
                 self.of[node] = Named(symbol, self.title, words, kind=kind)
-
-    def _is_better(self, node, kind, path):
-        known = self.of.get(node)
-        if known is None:
-            return False
-        if known.kind in ("protocol", "given") or known.title != self.title:
-            return True
-        return kind == "line" and (known.kind == "term" or bool(path))
 
     def number(self, value, symbol, words="", unit="", again=False, turned="onward"):
         """Name a number and return it, or a node that stands for it.
@@ -170,13 +153,6 @@ class Names:
     def has_own_name(self, node):
         """Whether a node is given or named by the mechanism's protocol; every formula ends there."""
         return node in self.of and self.of[node].kind in ("protocol", "given")
-
-    def set_law(self, node, law):
-        """Show a number by the law that it satisfies, which may contain later numbers."""
-        if node is not None and law is not None and law is not node:
-            self.laws[node] = law
-            named = self.of[node]
-            self.of[node] = named._replace(words=f"{named.words}, found together with the reactions")
 
     def symbols(self, nodes):
         """Symbols of nodes, numbered where several are spelled alike."""
@@ -231,17 +207,14 @@ ORDERS = ("", "first", "second")
 def record_with_names(state, paths, units):
     """The scene of a `Dynamics` recorded with names, a `NamedDynamics`, and its recorder.
 
-    Parameters
-    ----------
-    state : Dynamics
-    paths : dict of int to str
-        Path of each number among its leaves, as in case files.
-    units : dict of str to str
-        SI unit by path.
+    `paths` are those of case files by the number's place among the leaves, `units` SI units by path.
     """
     structure, _ = state.apart
     recorder = Recorder(structure)
-    scene, names = recorder.recorded, Names(recorder.graph, _modules(state))
+    groups, values = state.mechanism.groups, map(value_of, state.loads)
+    users = {type(part).__module__ for part in (*groups, *(getattr(one, "cam", None) for one in groups), *state.loads)}
+    users |= {getattr(value, "__module__", "") for value in values if callable(value)}
+    scene, names = recorder.recorded, Names(recorder.graph, users)
     names.title = GIVEN
     for place, node in enumerate(recorder.parameters):
         path = paths.get(place)
@@ -294,15 +267,25 @@ class NamedDynamics(Dynamics):
             placement = crank.place(self.crank_angle)
             self._placed(placement, crank)
         for group in self.mechanism.groups:
-            with names.under(_motion_title(group)):
+            moved = [_joined(list(group.links))] if group.links else []
+            moved += [f"joint {_joined(group.joints)}"] if group.joints else []
+            with names.under(f"Motion of {', '.join(moved)}"):
                 for slider, guide in group.guides.items():
                     symbol = Symbol("u", "", f"guide{group.label}")
                     names.vector(guide.direction, symbol, f"unit vector of the guide of the {slider}", "1")
                 placed(group, placement)
                 self._placed(placement, group)
         for name, link in self.mechanism.links.items():
+            motion, body = placement.links[name], link.body
             with names.under(f"Mass centre of the {name}"):
-                self._name_centre(name, placement.links[name], link.body)
+                words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
+                place = None if body.mass is None else arm(motion.direction, body.along, body.across)
+                to_centre = names.vector(place, Symbol("r", "", name), words, "m")
+                slopes = (first_at(motion, to_centre), second_at(motion, to_centre)) if to_centre is not None else ()
+                for order, part in enumerate(slopes, 1):
+                    words = _derivative(order, f"position of the mass centre of the {name}")
+                    for axis, value in zip(AXES, part or (), strict=False):
+                        names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
         return placement
 
     def _placed(self, placement, part):
@@ -310,41 +293,32 @@ class NamedDynamics(Dynamics):
         names = self.names
         for name in part.links:
             link = placement.links[name]
-            turning = Symbol("theta", "", name)
-            placement.links[name] = link._replace(
-                direction=names.vector(link.direction, Symbol("u", "", name), f"unit vector of the {name}", "1"),
-                ratio=names.number(
-                    link.ratio, turning._replace(primes=1), f"angular velocity ratio of the {name}", "1"
-                ),
-                ratio_slope=names.number(
-                    link.ratio_slope, turning._replace(primes=2), f"slope of that ratio of the {name}", "1"
-                ),
-            )
+            direction = names.vector(link.direction, Symbol("u", "", name), f"unit vector of the {name}", "1")
+            ratio = names.number(link.ratio, Symbol("theta", "", name, 1), f"angular velocity ratio of the {name}", "1")
+            words = f"slope of that ratio of the {name}"
+            ratio_slope = names.number(link.ratio_slope, Symbol("theta", "", name, 2), words, "1")
+            placement.links[name] = link._replace(direction=direction, ratio=ratio, ratio_slope=ratio_slope)
         for slider in (name for name in part.links if name in placement.travels):
             words = f"coordinate of the {slider} along its guide"
-            placement.travels[slider] = Joint(
-                *(
-                    names.number(value, Symbol("s", "", slider, order), _derivative(order, words), "m")
-                    for order, value in enumerate(placement.travels[slider])
-                )
-            )
+            travel = [
+                names.number(value, Symbol("s", "", slider, order), _derivative(order, words), "m")
+                for order, value in enumerate(placement.travels[slider])
+            ]
+            placement.travels[slider] = Joint(*travel)
         for name in part.joints:
-            placement.joints[name] = self._named_joint(placement.joints[name], name)
+            found = []
+            for order, values in enumerate(placement.joints[name]):
+                words = _derivative(order, f"position of {name}")
+                named = (
+                    names.number(value, Symbol(axis, "", name, order), words, "m", again=True)
+                    for value, axis in zip(values or (), AXES, strict=False)
+                )
+                found.append(tuple(named) or None)
+            placement.joints[name] = Joint(*found)
         for name, link in placement.links.items():
             reference = self.mechanism.references[name]
             if name in part.links and link.joint is not None and reference in placement.joints:
                 placement.links[name] = link._replace(joint=placement.joints[reference])
-
-    def _named_joint(self, joint, name):
-        found = []
-        for order, part in enumerate(joint):
-            words = _derivative(order, f"position of {name}")
-            named = (
-                self.names.number(value, Symbol(axis, "", name, order), words, "m", again=True)
-                for value, axis in zip(part or (), AXES, strict=False)
-            )
-            found.append(tuple(named) or None)
-        return Joint(*found)
 
     @cached_property
     def gravity(self):
@@ -361,19 +335,6 @@ class NamedDynamics(Dynamics):
                 wrench = load(links[name], link.body, *self.accelerating, gravity)
                 found[name] = self._wrench(wrench, ("P", "K"), name, f"{what} of the {name}")
         return found
-
-    def _name_centre(self, name, motion, body):
-        """Name the arm of a mass centre, and its kinematic coefficients."""
-        if body.mass is None:
-            return
-        words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
-        place = arm(motion.direction, body.along, body.across)
-        to_centre = self.names.vector(place, Symbol("r", "", name), words, "m")
-        if to_centre is not None:
-            for order, part in enumerate((first_at(motion, to_centre), second_at(motion, to_centre)), 1):
-                words = _derivative(order, f"position of the mass centre of the {name}")
-                for axis, value in zip(AXES, part or (), strict=False):
-                    self.names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
 
     def _wrench(self, wrench, letters, owner, words):
         force, moment = letters
@@ -424,9 +385,8 @@ class NamedDynamics(Dynamics):
         if (found := super().outward(item)) is None:
             return None
         length, more = found
-        words = (
-            f"how much the elongation of the spring on the {item.on}, or its opposite, is more than a length of the cam"
-        )
+        elongation = f"the elongation of the spring on the {item.on}, or its opposite,"
+        words = f"how much {elongation} is more than a length of the cam"
         return length, self.names.number(more, Symbol("u", "", item.on), words, "m")
 
     @cached_property
@@ -435,11 +395,10 @@ class NamedDynamics(Dynamics):
         owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in self.wrenches))]
         owners += [(name, "s") for name in self.pushes]
         with self.names.under("Powers"):
+            words = (f"power of what acts on the {owner} over the crank speed" for owner, _ in owners)
             return [
-                self.names.number(
-                    power, Symbol("W", axis, owner), f"power of what acts on the {owner} over the crank speed", "N m"
-                )
-                for (owner, axis), power in zip(owners, super().powers, strict=True)
+                self.names.number(power, Symbol("W", axis, owner), text, "N m")
+                for (owner, axis), power, text in zip(owners, super().powers, words, strict=True)
             ]
 
     @cached_property
@@ -471,11 +430,23 @@ class _NamedFrictionSolver(FrictionSolver):
                     words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
             names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
-            resolved = self._named(super().__call__(part, placement, loads, along), part)
+            resolved = super().__call__(part, placement, loads, along)
+            reactions, scalars = dict(resolved.reactions), dict(resolved.scalars)
+            for name, (unit, vector, text, *_) in part.outputs.items():
+                words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
+                if vector:
+                    symbol, words = Symbol("R", "", name), f"reaction {words}"
+                    reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
+                else:
+                    scalars[name] = names.number(scalars.get(name), quantity_symbol(name), words, unit, True, "within")
+            resolved = Resolved(reactions, scalars, resolved.demands)
             names.reading = True
             for law, amount in self.laws:
-                size = number_or_zero(product(law.factor, size_of(law.kind, law.reaction(resolved))))
-                names.set_law(node_of(amount), node_of(size))
+                size = node_of(number_or_zero(product(law.factor, size_of(law.kind, law.reaction(resolved)))))
+                node = node_of(amount)
+                if node is not None and size is not None and size is not node:
+                    names.laws[node], named = size, names.of[node]
+                    names.of[node] = named._replace(words=f"{named.words}, found together with the reactions")
         return resolved
 
     def _amounts(self, equations, laws, placement):
@@ -489,25 +460,6 @@ class _NamedFrictionSolver(FrictionSolver):
         self.names.reading = True
         return found
 
-    def _named(self, resolved, part):
-        names, outputs = self.names, part.outputs
-        reactions, scalars = dict(resolved.reactions), dict(resolved.scalars)
-        for name, (unit, vector, text, *_) in outputs.items():
-            words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
-            if vector:
-                symbol, words = Symbol("R", "", name), f"reaction {words}"
-                reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
-            else:
-                scalars[name] = names.number(scalars.get(name), quantity_symbol(name), words, unit, True, "within")
-        return Resolved(reactions, scalars, resolved.demands)
-
-
-def _modules(state):
-    """Modules that define the groups, cams, loads and functions of loads."""
-    parts = [*state.mechanism.groups, *(getattr(group, "cam", None) for group in state.mechanism.groups), *state.loads]
-    values = [value for value in map(value_of, state.loads) if callable(value)]
-    return {type(part).__module__ for part in parts} | {getattr(value, "__module__", "") for value in values}
-
 
 def _derivative(order, words):
     return f"{ORDERS[order]} derivative by phi of the {words}" if order else words
@@ -516,10 +468,3 @@ def _derivative(order, words):
 def _joined(names):
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last
-
-
-def _motion_title(group):
-    joints = f"joint {_joined(group.joints)}" if group.joints else ""
-    return (
-        f"Motion of {_joined(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
-    )

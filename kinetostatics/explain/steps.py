@@ -23,19 +23,7 @@ NOISE_RATIO = 2.0**-51
 
 
 class Line(NamedTuple):
-    """A number, its formula and its value.
-
-    Attributes
-    ----------
-    named : Named
-    tree : tuple or None
-        Its formula, see `formulas`; None of a given number.
-    value : float
-    unit : str
-    is_noise : bool
-        Whether it is zero but for rounding.
-    node : Node
-    """
+    """A number, its formula (`formulas`; None of a given number) and its value, which may be zero but for rounding."""
 
     named: Named
     tree: Any
@@ -46,16 +34,7 @@ class Line(NamedTuple):
 
 
 def lines(names, outputs, recorder, state):
-    """Lines that lead to some recorded numbers, given numbers first.
-
-    Parameters
-    ----------
-    names : Names
-    outputs : sequence of Node
-    recorder : Recorder
-    state : Dynamics
-        The scene at one crank angle.
-    """
+    """Lines that lead to some recorded numbers, given numbers first; `state` is the scene at one crank angle."""
     values, sizes = _values(names, outputs, recorder, state)
     guarded = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
     ends = _ends(names, outputs, guarded)
@@ -70,11 +49,18 @@ def lines(names, outputs, recorder, state):
             else:
                 trees[node] = None if law.operation in INPUTS else formula(law, ends, names.stands_for, guarded)
             waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
-    units, noise = _Units(names), _noise(values, sizes)
-    return [
-        Line(names.of[node], trees[node], values[node], units.of(node), node in noise, node)
-        for node in _ordered(names, trees)
-    ]
+    powers: dict[Node, Any] = {}
+    for node in values:
+        powers[node] = _powers(names, node, powers)
+    noise = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE_RATIO * sizes[node]}
+    if any(node.operation == "/" and values[node] and node.arguments[1] in noise for node in values):
+        noise = set()  # the scale of rounding is unknown where rounding divides
+    found = []
+    for node in _ordered(names, trees):
+        named = names.of[node]
+        unit = named.unit.replace("**", "").replace("*", " ") or unit_name(powers[node] or DIMENSIONLESS)
+        found.append(Line(named, trees[node], values[node], unit, node in noise, node))
+    return found
 
 
 def _ordered(names, trees):
@@ -118,7 +104,7 @@ def _ordered(names, trees):
 
 def _ends(names, outputs, guarded):
     """Nodes at which formulas end."""
-    found = _reached(names, outputs)
+    found = _in_order_of_use(names, outputs)
     users = dict.fromkeys(found, 0)
     for node in found:
         for part in set(_parts(names, node)):
@@ -135,16 +121,11 @@ def _ends(names, outputs, guarded):
                 names.of[whole] = Named(Symbol("k"), next(titles, names.titles[-1]), kind="line")
             ends.add(whole)
         sizes[node] = max(1, sum(1 if part in ends else sizes[part] for part in parts))
-        if node in names.of and _stands_alone(names.of[node].kind, node, sizes[node], users[node]):
-            ends.add(node)
+        if node in names.of and node.operation not in ("divisor", "held"):
+            is_root = node.operation in ("sqrt", "root")
+            if (sizes[node] > 1 or is_root) if names.of[node].kind == "term" else users[node] > 1 and sizes[node] > 2:
+                ends.add(node)
     return ends
-
-
-def _stands_alone(kind, node, size, users):
-    """Whether a named line of a kernel gets its own line in place of standing in other formulas."""
-    if node.operation in ("divisor", "held"):
-        return False
-    return size > 1 or node.operation in ("sqrt", "root") if kind == "term" else users > 1 and size > 2
 
 
 def _largest(parts, ends, sizes, names):
@@ -169,22 +150,17 @@ def _parts(names, node):
     return [part if own else names.stands_for.get(part, part) for part in nodes]
 
 
-def _reached(names, outputs):
+def _in_order_of_use(names, outputs):
     """Nodes that outputs are computed from, operands first, without iterations of friction."""
-    found: set[Node] = set()
+    reached: set[Node] = set()
     waiting = list(outputs)
     while waiting:
         node = waiting.pop()
-        if node not in found:
-            found.add(node)
+        if node not in reached:
+            reached.add(node)
             waiting += _parts(names, node)
-    return _sorted_by_use(names, found)
-
-
-def _sorted_by_use(names, nodes):
-    """Nodes, each after its operands."""
     found: dict[Node, None] = {}
-    for last in sorted(nodes, key=lambda node: (node in names.laws, node.index)):
+    for last in sorted(reached, key=lambda node: (node in names.laws, node.index)):
         waiting = [last]
         while waiting:
             node = waiting[-1]
@@ -210,19 +186,10 @@ def _values(names, outputs, recorder, state):
     return values, sizes
 
 
-def _noise(values, sizes):
-    """Nodes whose values are only rounding; none if one of them is a divisor."""
-    found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE_RATIO * sizes[node]}
-    divided = any(node.operation == "/" and values[node] and node.arguments[1] in found for node in values)
-    return set() if divided else found
-
-
 def _size(node, values, sizes):
     """Magnitude of the value plus, to first order, the effect of the sizes of its operands."""
     value, kind = values[node], node.operation
-    if kind in INPUTS:
-        return abs(value)
-    if kind == "rest":
+    if kind in (*INPUTS, "rest"):
         return abs(value)
     if kind == "total":
         parts = {part.arguments[0] if is_negative(part) else part for part in node.arguments if isinstance(part, Node)}
@@ -244,59 +211,21 @@ def _size(node, values, sizes):
     return abs(value) + made
 
 
-class _Units:
-    """Units of recorded numbers, derived from those of given numbers."""
-
-    def __init__(self, names):
-        self.names, self.known = names, {}
-
-    def of(self, node):
-        """Unit of a recorded number."""
-        named = self.names.of.get(node)
-        if named is not None and named.unit:
-            return named.unit.replace("**", "").replace("*", " ")
-        return unit_name(self.powers(node) or DIMENSIONLESS)
-
-    def powers(self, node):
-        """Powers of m, kg and s; None of a constant."""
-        if not isinstance(node, Node):
-            return None
-        if node not in self.known:
-            waiting = [node]
-            while waiting:
-                top = waiting[-1]
-                missing = [part for part in _operands(top) if isinstance(part, Node) and part not in self.known]
-                if missing and not self._has_unit(top):
-                    waiting += missing
-                else:
-                    self.known[top] = self._powers(top)
-                    waiting.pop()
-        return self.known[node]
-
-    def _has_unit(self, node):
-        named = self.names.of.get(node)
-        return named is not None and bool(named.unit)
-
-    def _powers(self, node):
-        if self._has_unit(node):
-            return dimension(self.names.of[node].unit)
-        if node.operation in INPUTS:
-            return DIMENSIONLESS
-        parts = [self.known[part] if isinstance(part, Node) else None for part in _operands(node)]
-        kind = node.operation
-        if kind in ("sin", "cos", "atan", "sign"):
-            return DIMENSIONLESS
-        if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
-            return None
-        if kind in ("*", "/"):
-            sign = 1 if kind == "*" else -1
-            if parts[1] is None:
-                return parts[0]
-            return tuple(a + sign * b for a, b in zip(parts[0] or DIMENSIONLESS, parts[1], strict=True))
-        if kind in ("sqrt", "root"):
-            return None if parts[0] is None else tuple(part / 2 for part in parts[0])
-        return next((part for part in parts if part is not None), None)
-
-
-def _operands(node):
-    return () if node.operation in INPUTS else node.arguments
+def _powers(names, node, known):
+    """Powers of m, kg and s of a number's unit, from those of its operands; None of a constant."""
+    named, kind = names.of.get(node), node.operation
+    if named is not None and named.unit:
+        return dimension(named.unit)
+    if kind in INPUTS or kind in ("sin", "cos", "atan", "sign"):
+        return DIMENSIONLESS
+    parts = [known[part] if isinstance(part, Node) else None for part in node.arguments]
+    if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
+        return None
+    if kind in ("*", "/"):
+        sign = 1 if kind == "*" else -1
+        if parts[1] is None:
+            return parts[0]
+        return tuple(a + sign * b for a, b in zip(parts[0] or DIMENSIONLESS, parts[1], strict=True))
+    if kind in ("sqrt", "root"):
+        return None if parts[0] is None else tuple(part / 2 for part in parts[0])
+    return next((part for part in parts if part is not None), None)

@@ -8,7 +8,6 @@ beside others, unless there are too many models.
 import itertools
 import math
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 
@@ -156,21 +155,8 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
     'no gravity, two-mass coupler'
     """
-    solution, within = _check_arguments(scene, quantity, within, variant)
-    runs = _ModelRunner(solution, quantity)
-    parts = ingredients(solution.mechanism).values()
-    alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
-    options = _choices_by_ingredient(parts, alone, runs.left_out)
-    combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
-    models = [made for choices in _with_progress(combinations, options, progress) if (made := runs.of(choices))]
-    allowed = [made for made in models if made.error <= within]
-    smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
-    ladder, left_out = tuple(_cheapest_by_error(models)), runs.left_out
-    return Needs(quantity, within, models[0], tuple(alone.values()), ladder, smallest, len(models), left_out)
+    from tqdm import tqdm
 
-
-def _check_arguments(scene, quantity, within, variant):
-    """The checked solution of one design, and the allowed change."""
     known = isinstance(scene, Solution) or hasattr(scene, "variants")
     within = checks.single_numbers(
         "needs",
@@ -182,17 +168,26 @@ def _check_arguments(scene, quantity, within, variant):
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
         raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
-    return solution, within
+    runs = _ModelRunner(solution, quantity)
+    parts = ingredients(solution.mechanism).values()
+    alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
+    options = _choices_by_ingredient(parts, alone, runs.left_out)
+    combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
+    total, hidden = math.prod(map(len, options)), not progress
+    bar = tqdm(combinations, total=total, unit=" models", delay=PROGRESS_DELAY, leave=False, disable=hidden)
+    models = [made for choices in bar if (made := runs.of(choices))]
+    allowed = [made for made in models if made.error <= within]
+    smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
+    ladder: list[Model] = []
+    for made in sorted(models, key=lambda made: (made.error, made.operations, len(made.simplifications))):
+        if not ladder or made.operations < ladder[-1].operations:
+            ladder.append(made)
+    each, tried = tuple(alone.values()), len(models)
+    return Needs(quantity, within, models[0], each, tuple(ladder), smallest, tried, runs.left_out)
 
 
 class _ModelRunner:
-    """Runs simpler models of a solution.
-
-    Attributes
-    ----------
-    left_out : dict of name to reason
-        Simplifications that the scene does not allow.
-    """
+    """Runs simpler models of a solution; `left_out` are simplifications that it does not allow, with the reason."""
 
     def __init__(self, solution, quantity):
         self._solution, self._quantity = solution, quantity
@@ -206,9 +201,16 @@ class _ModelRunner:
 
     def of(self, choices):
         """The model with some simplifications; None if the scene does not allow them or one changes nothing."""
-        simplified = self._simplify(choices)
-        if simplified is None:
-            return None
+        simplified = self._solution
+        for choice in choices:
+            try:
+                simplified = choice.simplify(simplified)
+            except NotGivenError as why:
+                if len(choices) == 1:
+                    self.left_out[choice.name] = str(why)
+                return None
+            if simplified is None:
+                return None
         names = tuple(choice.name for choice in choices)
         try:
             with np.errstate(all="ignore"):
@@ -220,28 +222,6 @@ class _ModelRunner:
         error = float(change) if math.isfinite(change) else math.inf
         program, _ = program_of(simplified.dynamics, (self._quantity,))
         return Model(names, error, program.recording.operations, simplified)
-
-    def _simplify(self, choices):
-        """The solution with some simplifications, made in turn; None as for `of`."""
-        simplified = self._solution
-        for choice in choices:
-            try:
-                simplified = choice.simplify(simplified)
-            except NotGivenError as why:
-                if len(choices) == 1:
-                    self.left_out[choice.name] = str(why)
-                return None
-            if simplified is None:
-                return None
-        return simplified
-
-
-def _with_progress(combinations, options, progress):
-    """The combinations, with a progress bar."""
-    from tqdm import tqdm
-
-    total = math.prod(map(len, options))
-    return tqdm(combinations, total=total, unit=" models", delay=PROGRESS_DELAY, leave=False, disable=not progress)
 
 
 def _choices_by_ingredient(parts, alone, left_out):
@@ -258,21 +238,12 @@ def _choices_by_ingredient(parts, alone, left_out):
     return options()
 
 
-def _cheapest_by_error(models):
-    """Models that no other beats in both error and operations, from the full scene down."""
-    front: list[Model] = []
-    for made in sorted(models, key=lambda made: (made.error, made.operations, len(made.simplifications))):
-        if not front or made.operations < front[-1].operations:
-            front.append(made)
-    return front
-
-
 def _frame(models, quantity, full):
     import pandas as pd
 
     from .methods.method import seconds
 
-    times = seconds(*(partial(_recompute, made.solution, quantity) for made in models))
+    times = seconds(*(lambda made=made: components(replace(made.solution), quantity) for made in models))
     rows = [
         {
             "model": made.name,
@@ -284,7 +255,3 @@ def _frame(models, quantity, full):
         for made, time in zip(models, times, strict=True)
     ]
     return pd.DataFrame(rows).set_index("model")
-
-
-def _recompute(solution, quantity):
-    return components(replace(solution), quantity)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
@@ -14,7 +13,7 @@ from .methods import engines, papers
 from .methods.global_system import newton
 from .methods.high_precision.certified import Enclosure, certified, enclosure, relative_errors
 from .methods.kane import equations
-from .methods.method import Method, circumstances, seconds
+from .methods.method import Method, circumstances, run_methods, seconds
 from .methods.running import BENCHMARKS, MOTION_METHODS, RUNNING_METHODS, study_motion, study_running
 
 __all__ = [
@@ -96,22 +95,14 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
 
     checks.require("precision", checks.solution("solution", solution), checks.quantity(quantity))
     reference = certified(solution, quantity)
-    rows: list[dict] = []
-    runs = {}
-    for method in METHODS if methods is None else methods:
-        if progress:
-            progress(method.name)
-        for setting in method.settings:
-            row = {"method": method.name, "ours": method.ours, "setting": method.setting, "value": setting}
-            try:
-                run = method.prepare(solution, quantity, setting)
-                row |= {"error": float(np.max(relative_errors(run(), reference))), "not given": ""}
-                row["device"] = method.device() if method.device else "cpu"
-                row["bound"] = np.max(method.bound(solution, quantity)) / reference.largest if method.bound else np.nan
-                runs[len(rows)] = run
-            except (NotGivenError, MissingLibraryError) as why:
-                row |= {"error": np.nan, "bound": np.nan, "device": "", "not given": str(why)}
-            rows.append(row)
+
+    def measure(method, run):
+        error = float(np.max(relative_errors(run(), reference)))
+        bound = np.max(method.bound(solution, quantity)) / reference.largest if method.bound else np.nan
+        return {"error": error, "device": method.device() if method.device else "cpu", "bound": bound}
+
+    methods = METHODS if methods is None else methods
+    rows, runs = run_methods(methods, solution, quantity, measure, progress, device="", bound=np.nan)
     known = declared(solution, quantity)
     table = pd.DataFrame(rows).assign(
         quantity=quantity, label=known.label, unit=known.unit, angles=solution.crank_angle.size
@@ -177,21 +168,18 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     for name in names:
         for quantity in quantities:
             components(case.solve(name, 8), quantity)
-    tables = [
-        study(_solve_turn(case, name, angles), quantity, progress=progress).assign(case=case.path.stem, variant=name)
-        for name in names
-        for quantity in quantities
-    ]
+    tables = []
+    for name in names:
+        solution = case.solve(name, angles)
+        if solution.friction:  # off the dead centres, where it jumps
+            solution = solution.at(solution.crank_angle + math.pi / angles)
+        for quantity in quantities:
+            found = study(solution, quantity, progress=progress)
+            tables.append(found.assign(case=case.path.stem, variant=name))
     table = pd.concat(tables, ignore_index=True).assign(**circumstances())
     with write_atomically(path) as temporary:
         table.to_csv(temporary, index=False)
     return [path, *(page(table, path.with_suffix("")) if page else ())]
-
-
-def _solve_turn(case, name, angles):
-    """Solution over the turn; with friction shifted by half a step, off the dead centres, where it jumps."""
-    solution = case.solve(name, angles)
-    return solution.at(solution.crank_angle + math.pi / angles) if solution.friction else solution
 
 
 def variant_of_each_kind(case):
@@ -199,8 +187,8 @@ def variant_of_each_kind(case):
     found: dict[tuple, str] = {}
     for name, variant in case.variants.items():
         groups = variant.mechanism.groups
-        parts = tuple(type(part) for g in groups for part in (g, *(getattr(g, field.name) for field in fields(g))))
-        found.setdefault((variant.mechanism.name, parts), name)
+        kinds = [(type(group), *(type(getattr(group, field.name)) for field in fields(group))) for group in groups]
+        found.setdefault((variant.mechanism.name, *kinds), name)
     return list(found.values())
 
 

@@ -7,6 +7,7 @@ series of engine theory; Biezeno and Grammel, *Technische Dynamik*).
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import accumulate, repeat
 
 import numpy as np
 
@@ -30,8 +31,10 @@ SERIES_SAMPLES = 512
 """Samples of a turn for the coefficients of harmonic series."""
 
 
-def placement_from_joints(mechanism, angle, joints) -> Placement:
-    """Placement of a mechanism from its moving joints by name, with their derivatives."""
+def placement_from_joints(mechanism, angle, *orders) -> Placement:
+    """Placement of a mechanism from the positions of its moving joints, (joints, 2, ...), and their derivatives."""
+    found = zip(moving_joints(mechanism), *orders, strict=True)
+    joints = {name: Joint(*map(tuple, parts)) for name, *parts in found}
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
         if not group.follows:
@@ -66,15 +69,8 @@ def paths_over_turn(mechanism, angle):
     return found
 
 
-def joint_motions(mechanism, position, first, second):
-    return {
-        name: Joint(tuple(position[k]), tuple(first[k]), tuple(second[k]))
-        for k, name in enumerate(moving_joints(mechanism))
-    }
-
-
-def harmonic_series(solution, order):
-    """Placement method from Fourier series of the joint paths, truncated after a harmonic of the crank angle.
+def up_to_harmonic(order, solution):
+    """The solution by Fourier series of the joint paths, truncated after a harmonic of the crank angle.
 
     For the plain crank-slider these are the series of engine theory (Biezeno and Grammel, *Technische Dynamik*), with
     coefficients to all powers of crank over coupler length.
@@ -84,37 +80,24 @@ def harmonic_series(solution, order):
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
-    return partial(
-        _evaluate_series, order=order, series=dict(zip(moving_joints(mechanism), spectrum.tolist(), strict=True))
-    )
+    return replace(solution, engine=Kernels(partial(_evaluate_series, order=order, series=spectrum.tolist())))
 
 
 def _evaluate_series(mechanism, angle, order, series):
-    turns = list(_multiples(ray(angle), order))
-    joints = {
-        name: Joint(*(tuple(_sum_series(row, turns, k) for row in rows) for k in range(3)))
-        for name, rows in series.items()
-    }
-    return placement_from_joints(mechanism, angle, joints)
+    multiples = list(accumulate(repeat(ray(angle), order), rotate))  # unit vectors at 1, 2 ... times the crank angle
 
+    def total(coefficients, derivative):
+        """Derivative of the real part of the series sum of a conj(multiple), without zero terms."""
+        value = coefficients[0].real if derivative == 0 else 0.0
+        for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], multiples, strict=True), 1):
+            factor = coefficient * (1j * k) ** derivative
+            for part, function in ((factor.real, cosine), (-factor.imag, sine)):
+                if part != 0.0:
+                    value = value + part * function
+        return value
 
-def _multiples(ray, order):
-    """Unit vectors at 1, 2 ... times the crank angle."""
-    multiple = ray
-    for _ in range(order):
-        yield multiple
-        multiple = rotate(multiple, ray)
-
-
-def _sum_series(coefficients, turns, derivative):
-    """Derivative of the real part of the series sum of a conj(turn), without zero terms."""
-    total = coefficients[0].real if derivative == 0 else 0.0
-    for k, (coefficient, (cosine, sine)) in enumerate(zip(coefficients[1:], turns, strict=True), 1):
-        factor = coefficient * (1j * k) ** derivative
-        for part, function in ((factor.real, cosine), (-factor.imag, sine)):
-            if part != 0.0:
-                total = total + part * function
-    return total
+    orders = ([[total(row, derivative) for row in rows] for rows in series] for derivative in range(3))
+    return placement_from_joints(mechanism, angle, *orders)
 
 
 @dataclass(frozen=True)
@@ -200,29 +183,28 @@ def _at_constant_speed(solution):
     return None if _is_zero(solution.crank_acceleration) else replace(solution, crank_acceleration=0.0)
 
 
-def _with_links(changed, solution):
-    """The solution with every link by ``changed(link, name without label)``, None for a link that stays."""
+def _with_links(changed, kind, solution):
+    """The solution with the links of a kind (None: all) by ``changed(link)``, which returns a link that stays."""
     mechanism = solution.mechanism
     for name, link in solution.mechanism.links.items():
-        new = changed(link, solution.mechanism.own_names[name])
-        if new is not None:
+        if kind in (None, mechanism.own_names[name]) and (new := changed(link)) is not link:
             mechanism = mechanism.with_link(name, new)
     return None if mechanism is solution.mechanism else replace(solution, mechanism=mechanism)
 
 
-def _massless(kind, link, own_name):
-    return None if own_name != kind or (_is_zero(link.mass) and _is_zero(link.inertia)) else Link()
+def _massless(link):
+    return link if _is_zero(link.mass) and _is_zero(link.inertia) else Link()
 
 
-def _without_inertia(kind, link, own_name):
-    return None if own_name != kind or _is_zero(link.inertia) else replace(link, inertia=0.0)
+def _without_inertia(link):
+    return link if _is_zero(link.inertia) else replace(link, inertia=0.0)
 
 
-def _centre_on_axis(link, own_name):
-    return None if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
+def _centre_on_axis(link):
+    return link if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
 
 
-def _two_mass(kind, solution):
+def two_masses(kind, solution):
     mechanism = two_mass_coupler(solution.mechanism, kind)
     return None if mechanism is None else replace(solution, mechanism=mechanism)
 
@@ -235,22 +217,13 @@ def _guides_through_crank_centre(solution):
     return replace(solution, mechanism=map_numbers(mechanism, lambda number: number, through))
 
 
-def _up_to_harmonic(order, solution):
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
-
-
 CHOICES_BEFORE_LINKS = {
     **{name: (Choice(f"no {name}", partial(_without_load, kind)),) for kind in KINDS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
-    "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis)),),
+    "mass-centre offsets": (Choice("mass centres on the links", partial(_with_links, _centre_on_axis, None)),),
 }
-CHOICES_AFTER_LINKS = {
-    "kinematics": (
-        Choice("two harmonics", partial(_up_to_harmonic, 2)),
-        Choice("one harmonic", partial(_up_to_harmonic, 1)),
-    ),
-}
+HARMONICS = Choice("two harmonics", partial(up_to_harmonic, 2)), Choice("one harmonic", partial(up_to_harmonic, 1))
 
 
 def ingredients(mechanism):
@@ -264,14 +237,13 @@ def ingredients(mechanism):
     hung = {kinds[bar.link] for group in mechanism.groups for bar in group.bars}
     links = {}
     for kind in sorted(dict.fromkeys(kinds.values()), key=lambda kind: kind in couplers):
-        choices = (
-            [Choice(f"no {kind} inertia", partial(_with_links, partial(_without_inertia, kind)))]
-            if kind in hung
-            else []
-        )
-        choices += [Choice(f"two-mass {kind}", partial(_two_mass, kind))] if kind in couplers else []
-        links[kind] = (*choices, Choice(f"massless {kind}", partial(_with_links, partial(_massless, kind))))
+        choices = []
+        if kind in hung:
+            choices.append(Choice(f"no {kind} inertia", partial(_with_links, _without_inertia, kind)))
+        if kind in couplers:
+            choices.append(Choice(f"two-mass {kind}", partial(two_masses, kind)))
+        links[kind] = (*choices, Choice(f"massless {kind}", partial(_with_links, _massless, kind)))
     rubs = {friction_kind(pair) for pair in mechanism.pairs.values()}
     names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
     friction = {name: (Choice(f"no {name}", partial(_without_friction, kind)),) for name, kind in names.items()}
-    return CHOICES_BEFORE_LINKS | friction | links | CHOICES_AFTER_LINKS
+    return CHOICES_BEFORE_LINKS | friction | links | {"kinematics": HARMONICS}

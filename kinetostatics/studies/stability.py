@@ -24,7 +24,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..solution.solution import Solution
 from .methods.engines import proven_bound
-from .methods.high_precision.certified import differences, enclosure, relative_errors
+from .methods.high_precision.certified import enclosure, relative_errors
 from .methods.method import circumstances
 from .precision import METHODS
 
@@ -67,16 +67,15 @@ def _solution(mechanism, angle, loads=(Gravity(),)):
     return Solution(mechanism, np.asarray(angle, dtype=float), CRANK_SPEED, 0.0, tuple(loads))
 
 
-def _saw(size=1.0, mass=1.0, **lengths):
-    """Plain crank-slider like the sawframe, scaled in size and mass."""
-    given = {"crank_length": 0.3, "coupler_length": 2.0, "guide_offset": 0.0, "guide_angle": 0.0} | lengths
+def _saw(size=1.0, crank_length=0.3, coupler_length=2.0, guide_offset=0.0, guide_angle=0.0):
+    """Plain crank-slider like the sawframe, scaled in size."""
     return crank_slider(
-        given["crank_length"] * size,
-        given["coupler_length"] * size,
-        guide_offset=given["guide_offset"] * size,
-        guide_angle=given["guide_angle"],
-        coupler=Link(150.0 * mass, 0.5 * given["coupler_length"] * size, 20.5 * mass * size**2),
-        slider=Link(600.0 * mass),
+        crank_length * size,
+        coupler_length * size,
+        guide_offset=guide_offset * size,
+        guide_angle=guide_angle,
+        coupler=Link(150.0, 0.5 * coupler_length * size, 20.5 * size**2),
+        slider=Link(600.0),
     )
 
 
@@ -100,8 +99,7 @@ def _before(angle, distance, count=20):
     return angle - distance * np.linspace(0.5, 1.0, count)
 
 
-def _turn(count=90):
-    return np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+_TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
 
 
 def _dead_centre(distance):
@@ -144,11 +142,6 @@ def _toggle(distance):
     return _solution(_chain_unit(crank, coupler, just_closing, (pivot, 0.0)), _before(angle, distance))
 
 
-def _change_point(distance):
-    mechanism = _chain_unit(0.2, 0.5, 0.2, (0.5, 0.0))
-    return _solution(mechanism, np.concatenate([_before(0.0, distance), -_before(0.0, distance)]))
-
-
 def _just_turning(distance):
     """Crank and ground in one line are little shorter than coupler and rocker: the crank only just turns."""
     crank, coupler, ground = 0.3, 0.45, 0.7
@@ -163,12 +156,12 @@ def _just_sliding(distance):
     return _solution(mechanism, math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
 
 
-def _folding(crank, coupler, rocker, frame, *angles):
+def _folding(crank, coupler, rocker, frame, *angles, count=10):
     """Four-bar scene by distance, before and after its links are in one line at these crank angles."""
 
     def scene(distance):
         mechanism = _chain_unit(crank, coupler, rocker, (frame, 0.0))
-        steps = np.concatenate([_before(0.0, distance, 10), -_before(0.0, distance, 10)])
+        steps = np.concatenate([_before(0.0, distance, count), -_before(0.0, distance, count)])
         return _solution(mechanism, np.concatenate([angle + steps for angle in angles]))
 
     return scene
@@ -180,24 +173,10 @@ def _equal_links(distance):
     return _solution(mechanism, 0.5 * math.pi + np.concatenate([_before(0.0, distance), -_before(0.0, distance)]))
 
 
-def _size(size):
-    return _solution(_saw(size=size, guide_offset=0.1), _turn(), ())
-
-
 def _mass_ratio(ratio):
     mass = math.sqrt(ratio)
-    mechanism = crank_slider(
-        0.3,
-        2.0,
-        coupler=Link(mass, 1.0, 0.1 * mass),
-        slider=Link(1.0 / mass),
-        crank=Link(mass, 0.1),
-    )
-    return _solution(mechanism, _turn())
-
-
-def _many_turns(angle):
-    return _solution(_saw(guide_offset=0.1), angle + _turn())
+    coupler, slider, crank = Link(mass, 1.0, 0.1 * mass), Link(1.0 / mass), Link(mass, 0.1)
+    return _solution(crank_slider(0.3, 2.0, coupler=coupler, slider=slider, crank=crank), _TURN)
 
 
 def _nearly_balanced(share):
@@ -205,12 +184,11 @@ def _nearly_balanced(share):
     cam = CosineLaw(0.3, 2.0)
     coupler = Link(150.0 * share, 1.0, 20.5 * share)
     mechanism = cam_crank_slider(cam, cam.coupler_length, coupler=coupler, slider=Link(600.0))
-    return _solution(mechanism, _turn(), [Spring.balancing(600.0, CRANK_SPEED, 2.0)])
+    return _solution(mechanism, _TURN, [Spring.balancing(600.0, CRANK_SPEED, 2.0)])
 
 
 _DISTANCE = "crank angle from there [rad]"
 _IN_LINE = "crank angle from all links in line [rad]"
-_SCALES = tuple(10.0**k for k in range(-9, 10))
 PLACES = (
     Place("dead centres, inclined guide", _DISTANCE, DISTANCES, _dead_centre, "slider_position"),
     Place("limit position", _DISTANCE, DISTANCES, _limit_position, "O"),
@@ -224,7 +202,7 @@ PLACES = (
         "cam_force",
     ),
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
-    Place("four-bar change point", _IN_LINE, DISTANCES, _change_point, "O"),
+    Place("four-bar change point", _IN_LINE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, 0.0, count=20), "O"),
     Place("four-bar that only just turns", "excess of the rocker's length [1]", DISTANCES[2:], _just_turning, "O"),
     Place("slotted lever that only just turns", "what the slot's offset lacks [1]", DISTANCES[2:], _just_sliding, "O"),
     Place("rhombus", _IN_LINE, DISTANCES, _folding(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
@@ -238,7 +216,13 @@ PLACES = (
     ),
     Place("parallelogram, folded", _IN_LINE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
     Place("coupler as long as the crank", _IN_LINE, DISTANCES, _equal_links, "O"),
-    Place("size", "size, times the sawframe's [1]", _SCALES, _size, "O"),
+    Place(
+        "size",
+        "size, times the sawframe's [1]",
+        tuple(10.0**k for k in range(-9, 10)),
+        lambda size: _solution(_saw(size, guide_offset=0.1), _TURN, ()),
+        "O",
+    ),
     Place(
         "unequal masses",
         "mass of coupler and crank over slider's [1]",
@@ -246,7 +230,13 @@ PLACES = (
         _mass_ratio,
         "balancing_torque",
     ),
-    Place("many turns", "crank angle [rad]", tuple(10.0**k for k in range(8)), _many_turns, "balancing_torque"),
+    Place(
+        "many turns",
+        "crank angle [rad]",
+        tuple(10.0**k for k in range(8)),
+        lambda angle: _solution(_saw(guide_offset=0.1), angle + _TURN),
+        "balancing_torque",
+    ),
     Place("nearly balanced", "share of the coupler's mass [1]", DISTANCES, _nearly_balanced, "balancing_torque"),
 )
 
@@ -323,8 +313,11 @@ def _study_number(place, number, methods):
     with np.errstate(all="ignore"):
         solution = place.scene(number)
         reference = enclosure(solution, place.quantity, digits=20)
-        bound = UNIT_ROUNDOFF * _within_a_turn(solution).condition_of(place.quantity)
-        other = _other_assembly(solution, place.quantity)
+        within_a_turn = solution.at(np.fmod(solution.crank_angle, 2 * math.pi))  # whole turns need not lose digits
+        bound = UNIT_ROUNDOFF * within_a_turn.condition_of(place.quantity)
+        *inner, last = solution.mechanism.groups
+        flipped = replace(solution.mechanism, groups=(*inner, replace(last, assembly=-last.assembly)))
+        other = np.array(components(replace(solution, mechanism=flipped), place.quantity))
         largest = float(np.max(proven_bound(solution, place.quantity))) / reference.largest
         rounding = _change_by_one_rounding(solution, place.quantity, reference)
     known = declared(solution, place.quantity)
@@ -342,11 +335,6 @@ def _study_number(place, number, methods):
     ]
 
 
-def _within_a_turn(solution):
-    """The solution at crank angles below one turn: whole turns are exact and need not lose digits."""
-    return solution.at(np.fmod(solution.crank_angle, 2 * math.pi))
-
-
 def _change_by_one_rounding(solution, quantity, reference):
     """Largest change of the quantity by half a unit in the last place of the crank angle, over its largest value.
 
@@ -357,34 +345,27 @@ def _change_by_one_rounding(solution, quantity, reference):
             moved = enclosure(solution.at(np.nextafter(solution.crank_angle, way)), quantity, digits=20)
         except NotGivenError:
             continue
-        return 0.5 * float(differences(moved, reference).max())
+        return 0.5 * float(relative_errors(moved.exact, reference).max())
     return math.inf
 
 
-def _other_assembly(solution, quantity):
-    """The quantity in the other assembly, to recognise methods that flip."""
-    *inner, last = solution.mechanism.groups
-    flipped = replace(solution.mechanism, groups=(*inner, replace(last, assembly=-last.assembly)))
-    return np.array(components(replace(solution, mechanism=flipped), quantity))
-
-
 def _behaviour(method, solution, quantity, reference, bound, other):
-    nothing = {"method": method.name, "ours": method.ours, "error": np.nan, "angles": solution.crank_angle.size}
-    counts = {"lost": 0, "flipped": 0, "nan": 0, "raised": "", "not given": ""}
+    """Columns of a method; `other` are the components in the other assembly, to recognise methods that flip."""
+    columns = {"method": method.name, "ours": method.ours, "error": np.nan, "angles": solution.crank_angle.size}
+    columns |= {"lost": 0, "flipped": 0, "nan": 0, "raised": "", "not given": ""}
     try:
         with np.errstate(all="ignore"):
             found = np.array(method.prepare(solution, quantity, METHOD_SETTINGS[method.name])())
     except (NotGivenError, MissingLibraryError) as why:
-        return nothing | counts | {"not given": str(why)}
+        return columns | {"not given": str(why)}
     except Exception as error:
-        return nothing | counts | {"raised": f"{type(error).__name__}: {error}"}
+        return columns | {"raised": f"{type(error).__name__}: {error}"}
     errors = relative_errors(found, reference)
     missing = ~np.isfinite(found).all(axis=0)
     wrong = ~missing & ~(errors <= bound)
     nearer = np.linalg.norm(found - other, axis=0) < 1e-3 * np.linalg.norm(reference.middle - other, axis=0)
-    counts |= {"lost": int((wrong & ~nearer).sum()), "flipped": int((wrong & nearer).sum()), "nan": int(missing.sum())}
-    worst = float(errors[~missing].max()) if not missing.all() else np.nan
-    return nothing | counts | {"error": worst}
+    counts = {"lost": int((wrong & ~nearer).sum()), "flipped": int((wrong & nearer).sum()), "nan": int(missing.sum())}
+    return columns | counts | {"error": float(errors[~missing].max()) if not missing.all() else np.nan}
 
 
 def summary(table):
@@ -418,15 +399,24 @@ def summary(table):
         raised, given_up = (int((part[name] != "").sum()) for name in ("raised", "not given"))
         given = given_up < len(part)
         digits = part[(part["condition"] * UNIT_ROUNDOFF < 1.0) & part["error"].notna()]
-        worst = digits.loc[digits["error"].idxmax()] if len(digits) else None
+        worst = digits.loc[digits["error"].idxmax()] if len(digits) else {}
+        found = [
+            ("raises", raised),
+            ("gives up", given_up),
+            ("gives NaN", counts["nan"]),
+            ("flips assembly", counts["flipped"]),
+            ("loses digits", counts["lost"]),
+        ]
+        fine = "exact" if digits["error"].max() < EXACT_ERROR else "as near as the condition allows"
+        verdict = ", ".join(text for text, count in found if count) or fine
         rows.append(
             {
                 "place": place,
                 "method": method,
-                "does": _verdict(counts, raised, given_up, digits["error"].max()) if given else "does not give it",
-                "worst error": np.nan if worst is None else worst["error"],
-                "at": np.nan if worst is None else worst["number"],
-                "condition there": np.nan if worst is None else worst["condition"],
+                "does": verdict if given else "does not give it",
+                "worst error": worst.get("error", np.nan),
+                "at": worst.get("number", np.nan),
+                "condition there": worst.get("condition", np.nan),
                 **counts,
                 "raised": raised,
                 "given up": given_up if given else 0,
@@ -435,18 +425,6 @@ def summary(table):
             }
         )
     return pd.DataFrame(rows)
-
-
-def _verdict(counts, raised, given_up, worst):
-    said = [
-        ("raises", raised),
-        ("gives up", given_up),
-        ("gives NaN", counts["nan"]),
-        ("flips assembly", counts["flipped"]),
-        ("loses digits", counts["lost"]),
-    ]
-    fine = "exact" if worst < EXACT_ERROR else "as near as the condition allows"
-    return ", ".join(text for text, count in said if count) or fine
 
 
 def write(folder, places=None, progress=None, page=None):

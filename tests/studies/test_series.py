@@ -1,15 +1,12 @@
 """Truncated series and simplifications."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.engines import Kernels
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
-from kinetostatics.studies.simplifications import harmonic_series, two_mass_coupler
+from kinetostatics.studies.simplifications import two_mass_coupler, up_to_harmonic
 from support.studied import MECHANISMS, TURN, alone, change, cranked, solved
 
 
@@ -19,14 +16,10 @@ def few_models(monkeypatch):
     monkeypatch.setattr(ingredients, "MAX_MODELS", 10)
 
 
-def by_series(solution, order):
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
-
-
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_the_series_has_the_first_harmonics(order):
     full = solved(cranked(guide_offset=0.05))
-    series = by_series(full, order)
+    series = up_to_harmonic(order, full)
     spectrum = np.fft.rfft(full.slider_acceleration)
     spectrum[order + 1 :] = 0.0
     expected = np.fft.irfft(spectrum, n=TURN.size)
@@ -36,7 +29,7 @@ def test_the_series_has_the_first_harmonics(order):
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_the_series_error_falls_with_the_order(few_models, name):
     full = solved(MECHANISMS[name])
-    errors = [change(by_series(full, order), full, "O") for order in (1, 2, 4, 8, 16)]
+    errors = [change(up_to_harmonic(order, full), full, "O") for order in (1, 2, 4, 8, 16)]
     assert errors == sorted(errors, reverse=True)
     assert errors[0] > 1e-2
     assert errors[-1] < 1e-5

@@ -17,14 +17,7 @@ from ...engines.program import program_of
 from ...errors import NotGivenError, ParameterError
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked_solution
-from ..simplifications import (
-    harmonic_series,
-    joint_motions,
-    joint_positions,
-    paths_over_turn,
-    placement_from_joints,
-    two_mass_coupler,
-)
+from ..simplifications import joint_positions, paths_over_turn, placement_from_joints, two_masses, up_to_harmonic
 from .method import Method, require_one_design
 
 
@@ -44,18 +37,16 @@ def compiled_function(solution, quantity, setting=None):
     return lambda: tuple(made.run(state, leaves, compiled=True))
 
 
-def _numpy_with_bounds(solution, quantity, setting):
-    return lambda: _with_bounds(_solve(solution, solution.crank_angle), quantity, NUMPY)
+def _with_bounds(engine, solution, quantity, setting):
+    if engine is COMPILED:
+        require_numba()
 
+    def run():
+        solved = solution if engine is COMPILED else _solve(solution, solution.crank_angle)
+        values, _ = engine.with_bounds(solved.dynamics, (quantity,))
+        return tuple(np.reshape(values[quantity], (-1, *solution.shape)))
 
-def _compiled_with_bounds(solution, quantity, setting):
-    require_numba()
-    return lambda: _with_bounds(solution, quantity, COMPILED)
-
-
-def _with_bounds(solution, quantity, engine):
-    values, _ = engine.with_bounds(solution.dynamics, (quantity,))
-    return tuple(np.reshape(values[quantity], (-1, *solution.shape)))
+    return run
 
 
 def proven_bound(solution, quantity):
@@ -105,8 +96,8 @@ def _by_power(solution, quantity, setting):
 METHODS = (
     Method("ours, NumPy", _numpy, ours=True, bound=proven_bound),
     Method("ours, compiled", compiled_function, ours=True, bound=proven_bound),
-    Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven_bound),
-    Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven_bound),
+    Method("ours, NumPy, with proven bounds", partial(_with_bounds, NUMPY), ours=True, bound=proven_bound),
+    Method("ours, compiled, with proven bounds", partial(_with_bounds, COMPILED), ours=True, bound=proven_bound),
     _backend_method("jax", "double"),
     *(_backend_method(engine, "single") for engine in ("numpy", "compiled", "jax")),
     Method("ours, torque by powers", _by_power, ours=True),
@@ -127,16 +118,9 @@ def _differences(order, solution, quantity, step):
 
     def way(mechanism, angle):
         position = joint_positions(mechanism, angle + step * offsets[:, None])
-        return placement_from_joints(
-            mechanism,
-            angle,
-            joint_motions(
-                mechanism,
-                position[:, :, offsets.size // 2],
-                np.tensordot(first / step, position, (0, 2)),
-                np.tensordot(second / step**2, position, (0, 2)),
-            ),
-        )
+        here = position[:, :, offsets.size // 2]
+        slopes = (np.tensordot(part, position, (0, 2)) for part in (first / step, second / step**2))
+        return placement_from_joints(mechanism, angle, here, *slopes)
 
     return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 
@@ -145,7 +129,8 @@ def _spectral(solution, quantity, samples):
     """Joint positions sampled over the turn, differentiated and interpolated to the crank angles by FFT."""
     require_one_design(solution)
     angle = solution.crank_angle
-    if not _is_even_turn(angle):
+    turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
+    if np.ndim(angle) != 1 or not np.allclose(angle - angle[0], turn, atol=1e-9):
         raise NotGivenError("spectral differentiation needs crank angles evenly over one turn, its end excluded")
     if samples > angle.size:
         raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
@@ -155,11 +140,10 @@ def _spectral(solution, quantity, samples):
     onward = np.exp(harmonic * angle[0])
 
     def way(mechanism, angle):
-        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * (
-            onward * (angle.size / samples)
-        )
-        parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
-        return placement_from_joints(mechanism, angle, joint_motions(mechanism, *parts))
+        shift = onward * (angle.size / samples)
+        spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * shift
+        orders = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
+        return placement_from_joints(mechanism, angle, *orders)
 
     return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 
@@ -176,47 +160,25 @@ def _report_coarse_motion(run):
     return approximated
 
 
-def _is_even_turn(angle):
-    turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
-    return np.ndim(angle) == 1 and np.allclose(angle - angle[0], turn, atol=1e-9)
-
-
-def _series(solution, order):
-    """The solution with its kinematics as a truncated series."""
+def _simpler(model, engine, solution, quantity, setting):
+    """Method that computes a simpler model by NumPy or a compiled loop."""
     require_one_design(solution)
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
-
-
-def _two_mass(solution, setting):
-    """The solution with its couplers as two masses each."""
-    mechanism = two_mass_coupler(solution.mechanism)
-    if mechanism is None:
+    simpler = model(setting, solution)
+    if simpler is None:
         raise NotGivenError("there is no coupler mass to share out between its joints")
-    return replace(solution, mechanism=mechanism)
-
-
-def _eager(model, solution, quantity, setting):
-    """Method that computes a simpler model by NumPy."""
-    simpler = model(solution, setting)
+    if engine is COMPILED:
+        return _report_coarse_motion(compiled_function(simpler, quantity))
     return _report_coarse_motion(lambda: components(replace(simpler), quantity))
 
 
-def _compiled_model(model):
-    """Method that computes a simpler model by a compiled loop."""
-    return lambda solution, quantity, setting: _report_coarse_motion(
-        compiled_function(model(solution, setting), quantity)
-    )
-
-
 HARMONICS = (1, 2, 4, 6)
+STEPS = (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)
 APPROXIMATE_METHODS = (
     Method("differences, 2nd order", partial(_differences, 2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
-    Method(
-        "differences, 4th order", partial(_differences, 4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)
-    ),
+    Method("differences, 4th order", partial(_differences, 4), "step [rad]", STEPS),
     Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
-    Method("harmonic series", partial(_eager, _series), "harmonics", HARMONICS),
-    Method("harmonic series, compiled", _compiled_model(_series), "harmonics", HARMONICS),
-    Method("two-mass coupler", partial(_eager, _two_mass)),
-    Method("two-mass coupler, compiled", _compiled_model(_two_mass)),
+    Method("harmonic series", partial(_simpler, up_to_harmonic, NUMPY), "harmonics", HARMONICS),
+    Method("harmonic series, compiled", partial(_simpler, up_to_harmonic, COMPILED), "harmonics", HARMONICS),
+    Method("two-mass coupler", partial(_simpler, two_masses, NUMPY)),
+    Method("two-mass coupler, compiled", partial(_simpler, two_masses, COMPILED)),
 )

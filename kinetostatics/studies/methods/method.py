@@ -9,6 +9,7 @@ import platform
 import statistics
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...engines.numba_backend import forget_angles
-from ...errors import NotGivenError
+from ...errors import MissingLibraryError, NotGivenError
 from ...machine.groups.change_points import SIDES
 
 
@@ -94,6 +95,30 @@ def require_one_design(solution):
         raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
 
 
+def run_methods(methods, problem, quantity, measure, progress=None, **unknown):
+    """Rows of a table, one for each method and setting, and functions to time by row.
+
+    ``measure(method, run)`` gives further columns, the error among them; where a method does not give the quantity they
+    are as in `unknown`, the error NaN. ``progress(name)`` is called before each method.
+    """
+    rows: list[dict] = []
+    runs = {}
+    for method in methods:
+        if progress:
+            progress(method.name)
+        for setting in method.settings:
+            row = {"method": method.name, "ours": method.ours, "setting": method.setting, "value": setting}
+            row |= {"error": np.nan, "not given": "", **unknown}
+            try:
+                run = method.prepare(problem, quantity, setting)
+                row |= measure(method, run)
+                runs[len(rows)] = run
+            except (NotGivenError, MissingLibraryError) as why:
+                row["not given"] = str(why)
+            rows.append(row)
+    return rows, runs
+
+
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 MIN_MEASURED_TIME = 2e-3
 """Shortest time, s, that the clock measures well; a faster function is called repeatedly within it."""
@@ -141,15 +166,6 @@ def _mean_time(run, calls):
     return max(time.perf_counter() - start, 1e-9) / calls
 
 
-def _processor():
-    """Name of the processor from the system, else its architecture."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        return next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
-
-
 def circumstances():
     """Machine and versions of the libraries, as two texts.
 
@@ -165,10 +181,13 @@ def circumstances():
     """
     found = {}
     for name in LIBRARIES:
-        try:
+        with suppress(metadata.PackageNotFoundError):
             found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            continue
     versions = "; ".join(f"{name} {version}" for name, version in found.items())
-    machine = f"{_processor()}, {platform.system()}, {os.cpu_count()} cores"
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        processor = next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        processor = platform.processor() or platform.machine()
+    machine = f"{processor}, {platform.system()}, {os.cpu_count()} cores"
     return {"machine": machine, "versions": f"Python {platform.python_version()}; {versions}"}

@@ -49,12 +49,8 @@ def turned_to_length(vector, angle, length):
     quarter = np.pi / 2
     x, y = vector
     scale = length / np.hypot(x, y)
-    return np.array(
-        [
-            (np.cos(angle) * x + np.cos(quarter + angle) * y) * scale,
-            (np.cos(quarter - angle) * x + np.cos(angle) * y) * scale,
-        ]
-    )
+    turned_x = (np.cos(angle) * x + np.cos(quarter + angle) * y) * scale
+    return np.array([turned_x, (np.cos(quarter - angle) * x + np.cos(angle) * y) * scale])
 
 
 def slider_by_double_cross(A, coupler_length, W1, W2, W):
@@ -261,12 +257,7 @@ class RollerByAngles(CamRoller):
 
     R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu, and
     R41 = R42 sin(phi - alpha42) + R40 sin(nu) across the ray, at phi + 90 deg. The study prints R41 with a minus, with
-    which the three forces on the block do not sum to zero.
-
-    Parameters
-    ----------
-    sign : float
-        Of R40 sin(nu): `EQUILIBRIUM` or `PRINTED`.
+    which the three forces on the block do not sum to zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM
@@ -319,9 +310,8 @@ class SliderByAsin(SliderByVectors):
         u, n = self.guide.direction, left(self.guide.direction)
         angle = np.arcsin((self.guide.guide_offset - dot(n, A)) / self.coupler_length)
         along, across = self.assembly * np.cos(angle), np.sin(angle)
-        return add_vectors(
-            A, scale_vector(self.coupler_length, add_vectors(scale_vector(along, u), scale_vector(across, n)))
-        )
+        direction = add_vectors(scale_vector(along, u), scale_vector(across, n))
+        return add_vectors(A, scale_vector(self.coupler_length, direction))
 
 
 @dataclass(frozen=True, eq=False)
@@ -349,22 +339,6 @@ class RockerByAtanAcos(RockerGroup):
 def _convert(kind, original, **more):
     """A group or cam of another class with the same data."""
     return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
-
-
-def _groups(mechanism, sign):
-    """Groups of a mechanism with the formulas of its study."""
-    groups = with_numeric_side(mechanism).groups
-    kinds = [type(group) for group in groups]
-    if kinds == [SliderGroup]:
-        return (_convert(SliderByVectors, groups[0]),)
-    if kinds == [RockerGroup]:
-        return (_convert(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
-    cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
-    if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
-        return RollerByAngles(_convert(cams[type(cam)], cam), groups[0].block, groups[0].roller, sign), _convert(
-            SliderByAsin, groups[1]
-        )
-    raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
 
 
 def by_the_papers(solution, sign=EQUILIBRIUM):
@@ -395,8 +369,20 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     >>> bool(abs(theirs.balancing_torque - plain.balancing_torque).max() < 1e-9)  # N m
     True
     """
-    mechanism = replace(solution.mechanism, groups=_groups(solution.mechanism, sign))
-    return replace(solution, mechanism=mechanism, engine=KERNELS)
+    mechanism = solution.mechanism
+    first, *others = groups = with_numeric_side(mechanism).groups
+    kinds = [type(group) for group in groups]
+    cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
+    if kinds == [SliderGroup]:
+        made = [_convert(SliderByVectors, first)]
+    elif kinds == [RockerGroup]:
+        made = [_convert(RockerByAtanAcos, first, crank_length=mechanism.crank.length)]
+    elif kinds == [CamRoller, SliderGroup] and type(first.cam) in cams:
+        cam = _convert(cams[type(first.cam)], first.cam)
+        made = [RollerByAngles(cam, first.block, first.roller, sign), _convert(SliderByAsin, *others)]
+    else:
+        raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
+    return replace(solution, mechanism=replace(mechanism, groups=tuple(made)), engine=KERNELS)
 
 
 def exactly_cancelled(solution):

@@ -26,7 +26,7 @@ from ...drive.one_dof import DrivenMachine
 from ...drive.steady_running import steady
 from ...drive.transient import coast
 from ...engines.numba_backend import numba_available
-from ...errors import MissingLibraryError, NotGivenError
+from ...errors import NotGivenError
 from ...machine.builders import crank_slider
 from ...machine.crank import Crank
 from ...machine.groups.rocker import RockerGroup
@@ -37,7 +37,7 @@ from ...numbers import checks
 from ...solution.scene import Scene
 from .global_system.constraints import Configuration, Model
 from .high_precision.certified import exact_speed
-from .method import Method, seconds
+from .method import Method, run_methods, seconds
 
 DAMPING = 10.0
 """Baumgarte's a = alpha = beta, 1/s."""
@@ -53,55 +53,59 @@ class CoastDown:
     until: float
     exact: float
 
+    def by_library(self, engine):
+        return coast(self.scene, 0.0, self.from_angle, self.from_speed, self.until, engine=engine).crank_angle[-1]
+
 
 def slider_crank():
     """Crank 0.5, rod 1, J1 = 1, m2 = 1 at the slider, J2 = 2; spring and damper between the middles of the bars."""
     bars = {"crank": Link(0.0, 0.0, 1.0), "coupler": Link(0.0, 0.0, 2.0), "slider": Link(1.0)}
     middles = (("crank", 0.25), ("coupler", 0.5))
-    loads = (
-        PointSpring(1.0, 1.0, between=middles),
-        PointDamper(1.0, between=middles),
-        Force(1.0, at=("coupler", 2.0)),
-    )
-    return CoastDown(
-        Scene(crank_slider(0.5, 1.0, **bars), 1.0, loads=loads), math.pi / 2, 0.0, 10.0, 1.27567584865023941
-    )
+    spring, damper = PointSpring(1.0, 1.0, between=middles), PointDamper(1.0, between=middles)
+    scene = Scene(crank_slider(0.5, 1.0, **bars), 1.0, loads=(spring, damper, Force(1.0, at=("coupler", 2.0))))
+    return CoastDown(scene, math.pi / 2, 0.0, 10.0, 1.27567584865023941)
 
 
-def n_four_bar(windows=2):
+def two_four_bars():
     """Bars of 1 kg and 1 m: uprights on pivots 1 m apart, level bars between their ends; start upright with 1 m/s."""
     bar = Link(1.0, 0.5, 1 / 12)
-    groups = tuple(
-        RockerGroup(
-            float(k),
-            1.0,
-            (float(k), 0.0),
-            "open",  # type: ignore[arg-type]
-            Link(1.0, k - 0.5),
-            bar,
-            pin=f"B{k}",
-            pivot_name=f"P{k}",
-            label=f"_{k}",
-        )
-        for k in range(1, windows + 1)
-    )
-    scene = Scene(Mechanism("N-four-bar", Crank(1.0, bar), groups), 1.0, loads=Gravity())
+    groups = []
+    for k in (1, 2):
+        lengths_and_pivot = float(k), 1.0, (float(k), 0.0)
+        names = {"pin": f"B{k}", "pivot_name": f"P{k}", "label": f"_{k}"}
+        groups.append(RockerGroup(*lengths_and_pivot, "open", Link(1.0, k - 0.5), bar, **names))  # type: ignore[arg-type]
+    scene = Scene(Mechanism("N-four-bar", Crank(1.0, bar), tuple(groups)), 1.0, loads=Gravity())
     end = math.atan2(0.94451853817860096216, 0.32845811154081537865) - 10 * math.pi
     return CoastDown(scene, math.pi / 2, -1.0, 10.0, end)
 
 
-BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N = 2": n_four_bar}
+BENCHMARKS = {"slider-crank of SUNDIALS": slider_crank, "N-four-bar of IFToMM, N = 2": two_four_bars}
 
 
-def _coasting(engine, problem, quantity, setting):
+def _ours(engine, problem, quantity, setting):
     if engine == "compiled" and not numba_available():
         raise NotGivenError("numba is not installed")
+    return lambda: problem.by_library(engine)
 
-    def run():
-        motion = coast(problem.scene, 0.0, problem.from_angle, problem.from_speed, problem.until, engine=engine)
-        return motion.crank_angle[-1]
 
-    return run
+OUR_METHODS = (
+    Method("ours, NumPy", partial(_ours, "numpy"), ours=True),
+    Method("ours, compiled", partial(_ours, "compiled"), ours=True),
+)
+
+
+def _integrate(slopes, end, start, method, asked, rtol, atol):
+    """States at the times asked for of an integration from 0 to the end by SciPy, (components, N)."""
+    from scipy.integrate import solve_ivp
+
+    found = solve_ivp(slopes, (0.0, end), start, method, asked, rtol=rtol, atol=atol)
+    if found.status < 0:
+        raise NotGivenError(f"integration stops: {found.message}")
+    return found.y
+
+
+MIN_TOLERANCE = 3e-14
+"""Smallest relative tolerance that SciPy takes from us."""
 
 
 def _acceleration(problem):
@@ -116,26 +120,13 @@ def _acceleration(problem):
 
 
 def _reduced_inertia(method, problem, quantity, tolerance):
-    from scipy.integrate import solve_ivp
-
-    acceleration = _acceleration(problem)
+    acceleration, end = _acceleration(problem), problem.until
     start = problem.from_angle, problem.from_speed
 
-    def run():
-        found = solve_ivp(
-            lambda time, state: (state[1], acceleration(*state.tolist())),
-            (0.0, problem.until),
-            start,
-            method,
-            [problem.until],
-            rtol=max(tolerance, 3e-14),
-            atol=tolerance,
-        )
-        if found.status < 0:
-            raise NotGivenError(f"integration stops: {found.message}")
-        return found.y[0, -1]
+    def slopes(time, state):
+        return state[1], acceleration(*state.tolist())
 
-    return run
+    return lambda: _integrate(slopes, end, start, method, [end], max(tolerance, MIN_TOLERANCE), tolerance)[0, -1]
 
 
 def _runge_kutta(problem, quantity, steps):
@@ -160,16 +151,14 @@ def _runge_kutta(problem, quantity, steps):
 
 
 def _constraints(problem, quantity, tolerance):
-    from scipy.integrate import solve_ivp
-
     scene = problem.scene
     if scene.mechanism.passes:
         raise NotGivenError(f"{scene.mechanism.name} passes change points, where constraint equations are singular")
     model, loaded = Model(scene.mechanism), scene.unsolved(np.zeros(1))
     crank = 2 * model.size + model.names.index("crank")
     _, torque = model.readings["balancing_torque"]
-    q = model.start(problem.from_angle)
-    rates = Configuration(model, q, problem.from_angle).rates(problem.from_speed)
+    q, end = model.start(problem.from_angle), problem.until
+    start = np.concatenate([q, Configuration(model, q, problem.from_angle).rates(problem.from_speed)])
 
     def change(time, state):
         q, rates = np.split(state, 2)
@@ -184,33 +173,18 @@ def _constraints(problem, quantity, tolerance):
         alpha = -asked[0] / (asked[1] - asked[0])
         return np.concatenate([rates, still + alpha * (faster - still)])
 
-    def run():
-        found = solve_ivp(
-            change,
-            (0.0, problem.until),
-            np.concatenate([q, rates]),
-            "DOP853",
-            [problem.until],
-            rtol=tolerance,
-            atol=tolerance,
-        )
-        if found.status < 0:
-            raise NotGivenError(f"integration stops: {found.message}")
-        return found.y[crank, -1]
-
-    return run
+    return lambda: _integrate(change, end, start, "DOP853", [end], tolerance, tolerance)[crank, -1]
 
 
-MOTION_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 MOTION_METHODS = (
-    Method("ours, NumPy", partial(_coasting, "numpy"), ours=True),
-    Method("ours, compiled", partial(_coasting, "compiled"), ours=True),
-    Method("reduced inertia, DOP853", partial(_reduced_inertia, "DOP853"), "tolerance", MOTION_TOLERANCES),
-    Method("reduced inertia, RK45", partial(_reduced_inertia, "RK45"), "tolerance", MOTION_TOLERANCES[:-1]),
-    Method("reduced inertia, LSODA", partial(_reduced_inertia, "LSODA"), "tolerance", MOTION_TOLERANCES),
-    Method("reduced inertia, Radau", partial(_reduced_inertia, "Radau"), "tolerance", MOTION_TOLERANCES[:-2]),
+    *OUR_METHODS,
+    Method("reduced inertia, DOP853", partial(_reduced_inertia, "DOP853"), "tolerance", TOLERANCES),
+    Method("reduced inertia, RK45", partial(_reduced_inertia, "RK45"), "tolerance", TOLERANCES[:-1]),
+    Method("reduced inertia, LSODA", partial(_reduced_inertia, "LSODA"), "tolerance", TOLERANCES),
+    Method("reduced inertia, Radau", partial(_reduced_inertia, "Radau"), "tolerance", TOLERANCES[:-2]),
     Method("reduced inertia, fixed steps, RK4", _runge_kutta, "steps", (100, 300, 1000, 3000, 10_000)),
-    Method("constraint equations, DOP853", _constraints, "tolerance", MOTION_TOLERANCES[:-1]),
+    Method("constraint equations, DOP853", _constraints, "tolerance", TOLERANCES[:-1]),
 )
 
 
@@ -227,19 +201,15 @@ class PeriodicRunning:
         self.driven = DrivenMachine("study", *self.machine, "compiled" if numba_available() else "numpy")
         if self.driven.by_speed:
             raise NotGivenError("rivals are for loads that do not depend on the speed")
-        self.motor, self.period, self.direction = motor, self.driven.period, self.driven.direction
-        if self.direction < 0.0:
+        self.motor, self.period = motor, self.driven.period
+        if self.driven.direction < 0.0:
             raise NotGivenError("rivals are for motors that turn the crank counter-clockwise")
-
-    def energy(self, speed):
-        """Kinetic energy, J, at crank angle 0 with a crank speed."""
-        return 0.5 * float(self.inertia(np.zeros(1))[0]) * speed * speed
 
     @property
     def guess(self):
-        """Starting value of the energy, J: that at the motor's no-load speed."""
-        idle = self.motor.field_speed or 0.5 * self.motor.top
-        return self.energy(idle / abs(self.motor.transmission))
+        """Starting value of the energy, J: that at crank angle 0 and the motor's no-load speed."""
+        speed = (self.motor.field_speed or 0.5 * self.motor.top) / abs(self.motor.transmission)
+        return 0.5 * float(self.inertia(np.zeros(1))[0]) * speed * speed
 
     def inertia(self, angle):
         return self.driven.flywheel + self.driven.program(angle)["reduced_inertia"]
@@ -258,38 +228,22 @@ class PeriodicRunning:
         by_energy = self.motor.slope_at_crank(speed) / (inertia * speed)
         return self.motor.torque_at_crank(speed) - found["load_torque"], by_energy
 
+    def by_library(self, engine):
+        return steady(*self.machine, angles=self.angles, engine=engine).speed
+
     def speeds(self, energies):
         """Crank speeds, rad/s, from the energies at `angles`."""
         return np.sqrt(2.0 * energies / self.inertia(self.angles))
 
 
-def _ours(engine, problem, quantity, setting):
-    if engine == "compiled" and not numba_available():
-        raise NotGivenError("numba is not installed")
-    return lambda: steady(*problem.machine, angles=problem.angles, engine=engine).speed
-
-
-def _integrate(problem, tolerance, method, energy, asked=None):
-    """Energies at crank angles, or at the end of the period, from an energy at its start."""
-    from scipy.integrate import solve_ivp
-
-    ends, scale = (0.0, problem.period), problem.guess
-    found = solve_ivp(problem.slope, ends, [energy], method, asked, rtol=max(tolerance, 3e-14), atol=tolerance * scale)
-    if found.status < 0:
-        raise NotGivenError(f"integration stops: {found.message}")
-    return found.y[0] if asked is not None else float(found.y[0, -1])
-
-
-def _stepping(method, problem, quantity, tolerance):
-    def run():
-        energy = problem.guess
-        for _ in range(MAX_TURNS):
-            before, energy = energy, _integrate(problem, tolerance, method, energy)
-            if abs(energy - before) < tolerance * energy:
-                break
-        return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
-
-    return run
+def _energy_by_stepping(after, guess, tolerance):
+    """As `periodic_energy`, by turn after turn until the energy repeats."""
+    energy = guess
+    for _ in range(MAX_TURNS):
+        before, energy = energy, after(energy)
+        if abs(energy - before) < tolerance * energy:
+            break
+    return energy
 
 
 def periodic_energy(after, guess, tolerance):
@@ -304,28 +258,29 @@ def periodic_energy(after, guess, tolerance):
     return two
 
 
-def _shooting(method, problem, quantity, tolerance):
+def _integrated_turns(find_energy, method, problem, quantity, tolerance):
+    """Stepping or shooting, by `find_energy`, with an integrator of SciPy."""
+    scale = problem.guess
+
+    def energies(energy, asked):
+        limits = max(tolerance, MIN_TOLERANCE), tolerance * scale
+        return _integrate(problem.slope, problem.period, [energy], method, asked, *limits)[0]
+
     def run():
-        energy = periodic_energy(partial(_integrate, problem, tolerance, method), problem.guess, tolerance)
-        return problem.speeds(_integrate(problem, tolerance, method, energy, problem.angles))
+        energy = find_energy(lambda energy: float(energies(energy, None)[-1]), scale, tolerance)
+        return problem.speeds(energies(energy, problem.angles))
 
     return run
 
 
-def _tableau(stages):
-    """Nodes, coefficients of the earlier stages, and weights of a Runge-Kutta method."""
-    if stages == 4:
-        before = [[], [0.5], [0.0, 0.5], [0.0, 0.0, 1.0]]
-        return [0.0, 0.5, 0.5, 1.0], before, [1 / 6, 1 / 3, 1 / 3, 1 / 6]
+def _fixed_steps(stages, problem, quantity, steps):
     from scipy.integrate import DOP853
 
-    count = DOP853.n_stages
-    before = [DOP853.A[row, :row].tolist() for row in range(count)]
-    return DOP853.C[:count].tolist(), before, DOP853.B.tolist()
-
-
-def _fixed_steps(stages, problem, quantity, steps):
-    places, before, weights = _tableau(stages)
+    places, weights = [0.0, 0.5, 0.5, 1.0], [1 / 6, 1 / 3, 1 / 3, 1 / 6]
+    before: list[list[float]] = [[], [0.5], [0.0, 0.5], [0.0, 0.0, 1.0]]
+    if stages > 4:
+        places, weights = DOP853.C[:stages].tolist(), DOP853.B.tolist()
+        before = [DOP853.A[row, :row].tolist() for row in range(stages)]
     width, count = problem.period / steps, problem.angles.size
     if steps % count or not np.allclose(problem.angles, problem.period * np.arange(count) / count):
         raise NotGivenError("fixed steps end at crank angles spread evenly from 0, which divide them")
@@ -367,11 +322,9 @@ def _scipy_bvp(problem, quantity, tolerance):
         return problem.slopes(angle, scale * energy[0])[1][None, None]
 
     def run():
-        mesh = np.linspace(0.0, problem.period, 25)
-        guess = np.ones((1, mesh.size))
-        found = solve_bvp(
-            slopes, lambda a, b: a - b, mesh, guess, fun_jac=jacobian, tol=tolerance, bc_tol=1e-12, max_nodes=20_000
-        )
+        ends, mesh = np.subtract, np.linspace(0.0, problem.period, 25)
+        options = {"fun_jac": jacobian, "tol": tolerance, "bc_tol": 1e-12, "max_nodes": 20_000}
+        found = solve_bvp(slopes, ends, mesh, np.ones((1, mesh.size)), **options)
         if not found.success:
             raise NotGivenError(f"solve_bvp: {found.message}")
         return problem.speeds(scale * found.sol(problem.angles)[0])
@@ -403,16 +356,15 @@ def _fourier(problem, quantity, points):
     return run
 
 
-TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
+_STEPPING = partial(_integrated_turns, _energy_by_stepping)
 RUNNING_METHODS = (
-    Method("ours, NumPy", partial(_ours, "numpy"), ours=True),
-    Method("ours, compiled", partial(_ours, "compiled"), ours=True),
-    Method("stepping until it repeats, DOP853", partial(_stepping, "DOP853"), "tolerance", TOLERANCES),
-    Method("stepping until it repeats, LSODA", partial(_stepping, "LSODA"), "tolerance", TOLERANCES[:-1]),
-    Method("shooting, DOP853", partial(_shooting, "DOP853"), "tolerance", TOLERANCES),
+    *OUR_METHODS,
+    Method("stepping until it repeats, DOP853", partial(_STEPPING, "DOP853"), "tolerance", TOLERANCES),
+    Method("stepping until it repeats, LSODA", partial(_STEPPING, "LSODA"), "tolerance", TOLERANCES[:-1]),
+    Method("shooting, DOP853", partial(_integrated_turns, periodic_energy, "DOP853"), "tolerance", TOLERANCES),
     Method("shooting, fixed steps, RK4", partial(_fixed_steps, 4), "steps a turn", (24, 72, 216, 648, 1944)),
     Method("shooting, fixed steps, RK8", partial(_fixed_steps, 12), "steps a turn", (24, 48, 96, 192)),
-    Method("collocation, SciPy solve_bvp", _scipy_bvp, "tolerance", (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)),
+    Method("collocation, SciPy solve_bvp", _scipy_bvp, "tolerance", TOLERANCES[:-1]),
     Method("collocation, Fourier", _fourier, "points", (9, 17, 33, 65, 129, 257, 513)),
 )
 
@@ -462,11 +414,10 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     driven = PeriodicRunning(scene, motor, flywheel, np.zeros(1)).driven
     angles = np.arange(COMPARED_ANGLES) * driven.period / COMPARED_ANGLES
     problem, exact = PeriodicRunning(scene, motor, flywheel, angles), exact_speed(driven, angles)
-
-    def error(found):
-        return float(np.abs(found / exact - 1.0).max())
-
-    return _study(problem, methods or RUNNING_METHODS, error, "crank speed", "1", repeats, progress)
+    methods = methods or RUNNING_METHODS
+    return _study(
+        problem, methods, lambda found: np.abs(found / exact - 1.0).max(), "crank speed", "1", repeats, progress
+    )
 
 
 def study_motion(name, *, methods=None, repeats=3, progress=None):
@@ -501,38 +452,27 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     >>> bool(table.loc[0, "error"] < 1e-3)  # rad
     True
     """
-    problem_with_name = checks.choice("benchmark", name, tuple(BENCHMARKS))
-    checks.require("study_motion", problem_with_name)
-    problem = BENCHMARKS[name]()
-
-    def error(found):
-        return abs(float(found) - problem.exact)
-
-    return _study(problem, methods or MOTION_METHODS, error, "crank angle at the end", "rad", repeats, progress)
+    checks.require("study_motion", checks.choice("benchmark", name, tuple(BENCHMARKS)))
+    problem, label = BENCHMARKS[name](), "crank angle at the end"
+    methods = methods or MOTION_METHODS
+    return _study(problem, methods, lambda found: abs(found - problem.exact), label, "rad", repeats, progress)
 
 
 def _study(problem, methods, error, label, unit, repeats, progress):
     import pandas as pd
 
-    rows: list[dict] = []
-    runs, times = {}, {}
-    for method in methods:
-        if progress:
-            progress(method.name)
-        for setting in method.settings:
-            row = {"method": method.name, "ours": method.ours, "setting": method.setting, "value": setting}
-            try:
-                run = method.prepare(problem, label, setting)
-                run()
-                begun = time.perf_counter()
-                row |= {"error": error(run()), "not given": ""}
-                times[len(rows)] = time.perf_counter() - begun
-                if times[len(rows)] < LONG_RUN_TIME:
-                    runs[len(rows)] = run
-            except (NotGivenError, MissingLibraryError) as why:
-                row |= {"error": np.nan, "not given": str(why)}
-            rows.append(row)
+    times: dict[Any, float] = {}  # s, of each run
+
+    def measure(method, run):
+        run()
+        begun = time.perf_counter()
+        found = run()
+        times[run] = time.perf_counter() - begun
+        return {"error": float(error(found))}
+
+    rows, runs = run_methods(methods, problem, label, measure, progress)
+    short = [run for run in runs.values() if times[run] < LONG_RUN_TIME]
+    times |= dict(zip(short, seconds(*short, repeats=repeats), strict=True))
     table = pd.DataFrame(rows).assign(label=label, unit=unit)
-    times |= dict(zip(runs, seconds(*runs.values(), repeats=repeats), strict=True))
-    table.insert(4, "time [ms]", 1e3 * pd.Series(times, dtype=float))
+    table.insert(4, "time [ms]", 1e3 * pd.Series({row: times[run] for row, run in runs.items()}, dtype=float))
     return table

@@ -81,18 +81,17 @@ class Structure(NamedTuple):
 
 
 def structure(mechanism):
-    """Structure of a mechanism, and its numbers by name.
-
-    Raises
-    ------
-    NotGivenError
-        A group does not declare the pairs of its links.
-    """
+    """Structure of a mechanism, and its numbers by name; `NotGivenError` for a group that declares no pairs."""
     owners = {name: point.link for name, point in mechanism.joints.items()}
     parts = tuple(_part_structure(part, owners) for part in mechanism.parts)
     values: dict[str, Any] = {}
     for part in mechanism.parts:
-        values |= _geometry(part)
+        for name, point in part.joints.items():
+            values |= {f"{name}_along": point.along, f"{name}_across": point.across}
+        for bar in part.bars:
+            values[f"{bar.link}_length"] = bar.length
+        for slot in part.slots:
+            values |= {f"{slot.link}_{slot.joint}_offset": slot.offset, f"{slot.link}_{slot.joint}_angle": slot.angle}
     zeros = frozenset(name for name, value in values.items() if isinstance(value, int | float) and value == 0)
     for name, guide in mechanism.guides.items():
         values |= {f"{name}_guide_angle": float(guide.guide_angle), f"{name}_guide_offset": guide.guide_offset}
@@ -102,9 +101,7 @@ def structure(mechanism):
 
 
 def _part_structure(part, owners):
-    kind = type(part).__name__
-    pinned: list[PinReaction] = []
-    slid: list[SlidingPair] = []
+    pinned, slid = [], []
     for name, pair in part.pairs.items():
         if isinstance(pair, Turning):
             pinned.append(PinReaction(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
@@ -121,9 +118,10 @@ def _part_structure(part, owners):
     free = part.links.keys() - held
     if missing or free:
         what = ", ".join(sorted(missing)) or f"what holds {', '.join(sorted(free))}"
-        raise NotGivenError(f"{kind} does not declare in its pairs what equations of motion are made of: {what}")
+        declared = f"{type(part).__name__} does not declare in its pairs"
+        raise NotGivenError(f"{declared} what equations of motion are made of: {what}")
     return PartStructure(
-        kind,
+        type(part).__name__,
         tuple(part.outputs),
         tuple(part.references.items()),
         tuple((name, point.link) for name, point in part.joints.items()),
@@ -139,25 +137,12 @@ def _curve(cam):
     return name, ((len(cam.cosine), len(cam.sine)) if isinstance(cam, Harmonic) else (0, 0))
 
 
-def _geometry(part):
-    """Places of joints on links, lengths and slots, by name."""
-    values: dict[str, Any] = {}
-    for name, point in part.joints.items():
-        values |= {f"{name}_along": point.along, f"{name}_across": point.across}
-    for bar in part.bars:
-        values[f"{bar.link}_length"] = bar.length
-    for slot in part.slots:
-        place = f"{slot.link}_{slot.joint}"
-        values |= {f"{place}_offset": slot.offset, f"{place}_angle": slot.angle}
-    return values
-
-
 def cam_numbers(group, angle):
     """Numbers of the cams of a group by name; values at the crank angles for a cam without a formula."""
     values: dict[str, Any] = {}
     for led in group.led:
         cam, link = group.cam, led.link
-        kind = CURVE_NAMES.get(type(cam), SAMPLED_CURVE)
+        kind, _ = _curve(cam)
         if kind == "circle":
             own: dict[str, Any] = {"radius": cam.pitch_radius, "x": cam.centre[0], "y": cam.centre[1]}
         elif kind == "cosine law":
@@ -172,8 +157,7 @@ def cam_numbers(group, angle):
             with np.errstate(invalid="ignore", divide="ignore"):
                 own = {str(k): part for k, part in enumerate(cam.polar(angle, (np.cos(angle), np.sin(angle))))}
         values |= {f"{link}_cam_{name}": value for name, value in own.items()}
-        joints = {**group.joints}
-        pivot = joints.get(group.references[link])
+        pivot = group.joints.get(group.references[link])
         if pivot is not None and pivot.link == FRAME:
             values[f"{link}_from"] = np.arctan2(-pivot.across, -pivot.along)
             values[f"{link}_sense"] = -getattr(group, "assembly", 1)
@@ -183,32 +167,38 @@ def cam_numbers(group, angle):
 class LoadForces:
     """Loads as forces at points and couples on links, in one posture; derived classes give the posture.
 
-    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; ``number`` of
-    a load's parameter and ``value`` of a load; and ``expj``, ``arg`` and ``where`` for their kind of numbers.
+    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; and, for
+    numbers other than NumPy's, ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and ``where``.
     """
 
     mechanism: Any
     at: Any
-    number: Any
-    value: Any
-    expj: Any
-    arg: Any
-    where: Any
+    expj: Any = staticmethod(lambda angle: np.exp(1j * angle))
+    arg: Any = staticmethod(np.angle)
+    where: Any = staticmethod(np.where)
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def posture(self, link):
+        """As ``at(link)``, of the frame too."""
+        return (0.0, 1.0, 0.0, 0.0) if link in (None, FRAME) else self.at(link)
 
     def point(self, place):
         """Link, position and velocity of a place."""
         link, along, across = point_on_link(self.mechanism, place)
         offset = self.number(along) + 1j * self.number(across)
-        if link == FRAME:
-            return link, offset, 0.0
-        joint, axis, shift, spin = self.at(link)
+        joint, axis, shift, spin = self.posture(link)
         return link, joint + offset * axis, shift + 1j * spin * offset * axis
 
     def of(self, item):
         """Effects of a load: tuples of link, force, point of action, and couple on the link."""
         if isinstance(item, Force):
             link, position, _ = self.point(item.at)
-            axis = 1.0 if item.along is None else self.at(item.along)[1]
+            axis = self.posture(item.along)[1]
             return [(link, self.value(item) * self.expj(self.number(item.direction)) * axis, position, 0.0)]
         if isinstance(item, Torque | TorsionSpring | TorsionDamper):
             couple = self.couple(item)
@@ -220,13 +210,16 @@ class LoadForces:
             return [(link, force, start, 0.0), (other, -force, end, 0.0)]
         raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
 
+    def spring_push(self, item, coordinate):
+        """Force along its guide of a spring on a slider at a coordinate, N."""
+        elongation = coordinate - self.number(item.free_position)
+        return -self.number(item.stiffness) * elongation - self.number(item.cubic) * elongation**3
+
     def couple(self, item):
         """Couple of a load on its link, N m."""
         if isinstance(item, Torque):
             return self.value(item)
-        fixed = item.against in (None, FRAME)
-        _, axis, _, spin = self.at(item.on)
-        _, base, _, turning = (0.0, 1.0, 0.0, 0.0) if fixed else self.at(item.against)
+        (_, axis, _, spin), (_, base, _, turning) = self.posture(item.on), self.posture(item.against)
         if isinstance(item, TorsionDamper):
             return -self.number(item.coefficient) * (spin - turning)
         angle = self.arg(axis / base * self.expj(-self.number(item.free_angle)))
@@ -251,16 +244,10 @@ MAX_FRICTION_ITERATIONS = 2000
 
 
 class FrictionForces:
-    """Friction of joints as forces and couples, from the reactions in one posture.
+    """Friction of joints as forces and couples, from the reactions in one posture (`acting`, a `LoadForces`).
 
     Friction depends on the reactions and changes them: `converge` repeats the solution with the last friction until
     nothing changes. Each repetition reduces the error by about the coefficient of friction.
-
-    Parameters
-    ----------
-    acting : Acting
-        The posture.
-    solution : Solution
     """
 
     def __init__(self, acting, solution):
@@ -273,16 +260,8 @@ class FrictionForces:
     def converge(self, solve, named, largest, limit):
         """Unknowns of the equations, consistent with the friction that their forces cause.
 
-        Parameters
-        ----------
-        solve : function
-            ``solve(effects)`` solves the equations with added effects: link, force, point and couple.
-        named : function
-            Forces by name from the unknowns.
-        largest : function
-            Largest magnitude of the unknowns.
-        limit : number
-            Largest change in the last repetition, relative to the largest unknown.
+        ``solve(effects)`` solves the equations with added effects: link, force, point and couple; ``named(unknowns)``
+        gives forces by name, ``largest(unknowns)`` their magnitude. `limit` is the largest last change relative to it.
         """
         found = solve(())
         for _ in range(MAX_FRICTION_ITERATIONS if self._friction else 0):
@@ -309,7 +288,7 @@ class FrictionForces:
 
     def _turning(self, name, pair, friction, forces):
         other = pair.against or self._acting.mechanism.joints[pair.joint].link
-        turning = self._at(pair.link)[-1] - self._at(other)[-1]
+        turning = self._acting.posture(pair.link)[-1] - self._acting.posture(other)[-1]
         size = self._number(friction.mu) * self._number(friction.radius) * abs(forces[name])
         couple = -size * self._sign(turning)
         return [(pair.link, 0.0, 0.0, couple), (other, 0.0, 0.0, -couple)]
@@ -317,10 +296,10 @@ class FrictionForces:
     def _sliding(self, name, pair, friction, forces):
         place = self._acting.point(pair.joint)[1]
         if pair.against == FRAME:
-            way = self._at(pair.link)[1]
+            way = self._acting.at(pair.link)[1]
         else:
             angle = self._number(self._numbers[f"{pair.against}_{pair.joint}_angle"])
-            way = self._at(pair.against)[1] * self._acting.expj(angle)
+            way = self._acting.at(pair.against)[1] * self._acting.expj(angle)
         press = abs(forces[pair.force])
         if friction.half_length is not None:
             edges = abs(forces[pair.couple]) / self._number(friction.half_length)
@@ -337,18 +316,15 @@ class FrictionForces:
         reach = mu * self._number(friction.pin_radius)
         pressed = forces[pair.force]
         side = self._sign(pressed)
-        turning = -side * (way.conjugate() * moving).real / radius - self._at(pair.link)[-1]
+        turning = -side * (way.conjugate() * moving).real / radius - self._acting.at(pair.link)[-1]
         couple = reach * abs(pressed) / (1 - (reach / radius) ** 2) ** 0.5 * self._sign(turning)
         return [(pair.link, couple / (side * radius) * way, place, couple)]
 
     _KINDS: ClassVar = {Turning: _turning, Sliding: _sliding, Rolling: _rolling}
 
-    def _at(self, link):
-        return (0.0, 1.0, 0.0, 0.0) if link == FRAME else self._acting.at(link)
-
     def _moving(self, link, place):
         """Velocity of the point of a link at a place."""
-        joint, _, shift, spin = self._at(link)
+        joint, _, shift, spin = self._acting.posture(link)
         return shift + 1j * spin * (place - joint)
 
     def _sign(self, part):

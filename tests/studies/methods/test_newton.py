@@ -178,4 +178,4 @@ def test_constraints_reach_the_published_end():
     problem = running.slider_crank()
     assert abs(constraints.prepare(problem, "", 1e-5)() - problem.exact) < 1e-6
     with pytest.raises(ks.errors.NotGivenError, match="change points"):
-        constraints.prepare(running.n_four_bar(), "", 1e-5)
+        constraints.prepare(running.two_four_bars(), "", 1e-5)

@@ -7,7 +7,7 @@ Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics o
     J qdot = -omega dC/dphi        J qddot = gamma - alpha dC/dphi        J^T lambda = M qddot - Q
 
 Each equation is signed so that its multiplier in lambda is a reaction as the library gives it, or the drive torque.
-A follower on a cam that turns with the crank keeps its distance from the pitch curve at zero: `cam_distance`.
+Slots and cams give nonlinear equations, each with its `terms`: the distance from a slot or pitch curve stays zero.
 """
 
 from typing import Any, NamedTuple
@@ -26,81 +26,16 @@ from ..structures import FrictionForces, LoadForces, structure
 MAX_FOOT_ITERATIONS = 30
 
 
-class CamEquation(NamedTuple):
-    """Equation `row`: the point of a link at `along` stays on a cam that turns with the crank."""
+class CurvedTerms(NamedTuple):
+    """A nonlinear equation at given coordinates: its value, derivatives by coordinates, and second derivative.
 
-    row: int
-    crank: int
-    link: int
-    along: Any
-    group: Any
+    `parts` are tuples of a link's number, the derivatives by its x and y as the complex x + iy, and that by its angle.
+    `second` is the second derivative without accelerations, where velocities are given.
+    """
 
-
-class CamDistance(NamedTuple):
-    """Distance from a cam, its derivatives by the coordinates of link and crank (x + iy as one), and second terms."""
-
-    distance: Any
-    normal: Any
-    link_turn: Any
-    crank_turn: Any
+    value: Any
+    parts: Any
     second: Any
-
-
-def cam_distance(at, item, rates=None):
-    """Distance of a follower from its cam; with rates also its second derivative without accelerations."""
-    k = at.model.size
-    spins = [0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link)]
-    ray, axis = (at.cosine[..., place] + 1j * at.sine[..., place] for place in (item.crank, item.link))
-    plane = at._plane(at.q)
-    arm = item.along * axis
-    apart = plane[..., item.link] + arm - plane[..., item.crank]
-    speed: Any = 0.0
-    if rates is not None:
-        moving = at._plane(rates)
-        speed = moving[..., item.link] + 1j * spins[1] * arm - moving[..., item.crank]
-    turned = at.q[..., 2 * k + item.crank]
-    if isinstance(item.group, FlatFollower):
-        return _face_distance(item, turned - at.q[..., 2 * k + item.link], apart, speed, axis, spins)
-    return _roller_distance(item, turned, (apart, speed, arm), ray, spins)
-
-
-def _face_distance(item, psi, apart, speed, axis, spins):
-    angle = psi + item.group.guide.guide_angle
-    law = item.group.cam.law(angle)
-    height, aside = apart * axis.conj(), speed * axis.conj()
-    turning, face = spins
-    second = 2.0 * face * np.imag(aside) - face**2 * height.real - law.acceleration * (turning - face) ** 2
-    return CamDistance(height.real - law.position, axis, height.imag + law.velocity, -law.velocity, second)
-
-
-def _roller_distance(item, turned, moved, ray, spins):
-    apart, speed, arm = (part * ray.conj() for part in moved)
-    disk, phi = item.group.disk, turned
-    for _ in range(MAX_FOOT_ITERATIONS):
-        centre, first, second = disk.curve(phi)
-        off = apart - centre
-        phi = phi - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
-    centre, first, second = disk.curve(phi)
-    tangent = first / np.abs(first)
-    normal = 1j * tangent
-    curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
-    turning, own = spins
-    passing = speed - 1j * turning * apart
-    rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
-    return CamDistance(
-        _dot(normal, apart - centre),
-        normal * ray,
-        _dot(normal, 1j * arm),
-        _dot(normal, -1j * apart),
-        _dot(normal, rest) + curvature * _dot(tangent, passing) ** 2,
-    )
-
-
-def _dot(a, b):
-    return (np.conj(a) * b).real
-
-
-POSITION, RATE, ACCELERATION, FORCE = range(4)
 
 
 class SlotEquation(NamedTuple):
@@ -116,20 +51,95 @@ class SlotEquation(NamedTuple):
     way: complex
     offset: float
 
+    def terms(self, at, rates=None):
+        way, plane, second = self.way * at.axes[..., self.slotted], at.plane(at.q), 0.0
+        apart = (plane[..., self.block] - plane[..., self.slotted]) * way.conj()
+        if rates is not None:
+            moving, turning = at.plane(rates), rates[..., 2 * at.model.size + self.slotted]
+            slides = (moving[..., self.block] - moving[..., self.slotted]) * way.conj()
+            second = -turning * (2 * slides.real + turning * apart.imag)
+        parts = (self.block, 1j * way, 0.0), (self.slotted, -1j * way, -apart.real)
+        return CurvedTerms(apart.imag - self.offset, parts, second)
+
+
+class FixedCamEquation(NamedTuple):
+    """Equation `row`: the joint of a link stays on a fixed cam; the value is the distance inside its curve."""
+
+    row: int
+    link: int
+    cam: Any
+
+    def terms(self, at, rates=None):
+        centre = at.plane(at.q)[..., self.link]
+        distance = np.abs(centre)
+        ray = centre / distance
+        radius, slope, second = self.cam.polar(np.angle(centre), (ray.real, ray.imag))
+        lean = slope / distance
+        unit = np.sqrt(1.0 + lean * lean)
+        curvature = (unit * unit + lean * lean - second / distance) / (distance * unit**3)
+        squared = 0.0 if rates is None else np.abs(at.plane(rates)[..., self.link]) ** 2
+        parts = [(self.link, ray * (1j * lean - 1.0) / unit, 0.0)]
+        return CurvedTerms((radius - distance) / unit, parts, -curvature * squared)
+
+
+class CamEquation(NamedTuple):
+    """Equation `row`: the point of a link at `along` stays on a cam that turns with the crank."""
+
+    row: int
+    crank: int
+    link: int
+    along: Any
+    group: Any
+
+    def terms(self, at, rates=None):
+        k = at.model.size
+        turning, own = (0.0 if rates is None else rates[..., 2 * k + place] for place in (self.crank, self.link))
+        ray, axis = (at.axes[..., place] for place in (self.crank, self.link))
+        plane = at.plane(at.q)
+        arm = self.along * axis
+        apart = plane[..., self.link] + arm - plane[..., self.crank]
+        speed: Any = 0.0
+        if rates is not None:
+            moving = at.plane(rates)
+            speed = moving[..., self.link] + 1j * own * arm - moving[..., self.crank]
+        phi = at.q[..., 2 * k + self.crank]
+        if isinstance(self.group, FlatFollower):
+            law = self.group.cam.law(phi - at.q[..., 2 * k + self.link] + self.group.guide.guide_angle)
+            height, aside = apart * axis.conj(), speed * axis.conj()
+            second = 2.0 * own * np.imag(aside) - own**2 * height.real - law.acceleration * (turning - own) ** 2
+            parts = (self.link, axis, height.imag + law.velocity), (self.crank, -axis, -law.velocity)
+            return CurvedTerms(height.real - law.position, parts, second)
+        apart, speed, arm = (part * ray.conj() for part in (apart, speed, arm))
+        disk = self.group.disk
+        for _ in range(MAX_FOOT_ITERATIONS):
+            centre, first, second = disk.curve(phi)
+            off = apart - centre
+            phi = phi - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
+        centre, first, second = disk.curve(phi)
+        tangent = first / np.abs(first)
+        normal = 1j * tangent
+        curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
+        passing = speed - 1j * turning * apart
+        rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
+        out = normal * ray
+        parts = (self.link, out, _dot(normal, 1j * arm)), (self.crank, -out, _dot(normal, -1j * apart))
+        second = _dot(normal, rest) + curvature * _dot(tangent, passing) ** 2
+        return CurvedTerms(_dot(normal, apart - centre), parts, second)
+
+
+def _dot(a, b):
+    return (np.conj(a) * b).real
+
+
+POSITION, RATE, ACCELERATION, FORCE = range(4)
+
 
 class Model:
     """Constraint equations and masses of a mechanism with k links, in coordinates q (..., 3k): all x, all y, all theta.
 
-    The equations are linear in the terms (q, cos theta, sin theta, 1, phi), except those of slots and cams, which
-    `Configuration` fills in.
-
-    Attributes
-    ----------
-    equations : array (3k, 5k + 2)
-        Coefficients of these terms.
-    readings : dict
-        By quantity: its source, POSITION q, RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients
-        (components, 3k) of the source.
+    The equations are linear in the terms (q, cos theta, sin theta, 1, phi), except `curved`, of slots and cams.
+    `equations` (3k, 5k + 2) are the coefficients of these terms. `readings` give for a quantity its source, POSITION q,
+    RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients (components, 3k) of the source.
     """
 
     def __init__(self, mechanism):
@@ -139,35 +149,36 @@ class Model:
         self.equations: Any = []
         self.readings: dict[str, tuple[int, Any]] = {}
         self.guides: dict[str, complex] = {}
-        self.cam = None
-        self.slidings: list[SlotEquation] = []
-        self.followings: list[CamEquation] = []
+        self.curved: list[SlotEquation | FixedCamEquation | CamEquation] = []
         self._held: list[tuple[str, str | None, float]] = []
         *self._terms, (self._one, self._phi) = np.split(np.eye(5 * self.size + 2), np.arange(1, 6) * self.size)
-        self._write()
-        self.equations = np.array(self.equations)
-        self.linear, self.of_cosine, self.of_sine, _ = np.split(self.equations, np.arange(3, 6) * self.size, axis=1)
-        self.drive = -self.equations @ self._phi
-        links = mechanism.links.values()
-        self.mass, self.inertia = (np.array([getattr(link, name) for link in links]) for name in ("mass", "inertia"))
-        self.centre = np.array([complex(*link.centre) for link in links])
-
-    def _write(self):
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
-        made, self.numbers = structure(self.mechanism)
+        made, self.numbers = structure(mechanism)
         bars = {(end, link) for part in made.parts for _, end, link in part.bars}
-        for part, group in zip(made.parts[1:], self.mechanism.groups, strict=True):
+        for part, group in zip(made.parts[1:], mechanism.groups, strict=True):
             for pin in part.pins:
                 one, other = (self._on(link, pin.joint, bars) for link in (pin.link, pin.other))
                 self._add(pin.name, *(one - other))
             for slide in part.slides:
                 self._slide(slide)
             for cam in part.cams:
-                self._follow(cam, group)
+                row, link = len(self.equations), self.names.index(cam.link)
+                if cam.body == FRAME:
+                    self.curved.append(FixedCamEquation(row, link, group.cam))
+                else:
+                    crank, along = self.names.index(cam.body), self.numbers[f"{cam.joint}_along"]
+                    self.curved.append(CamEquation(row, crank, link, along, group))
+                self._add(cam.force, 0.0 * self._one)
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
             self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
+        self.equations = np.array(self.equations)
+        self.linear, self.of_cosine, self.of_sine, _ = np.split(self.equations, np.arange(3, 6) * self.size, axis=1)
+        self.drive = -self.equations @ self._phi
+        links = mechanism.links.values()
+        self.mass, self.inertia = (np.array([getattr(link, name) for link in links]) for name in ("mass", "inertia"))
+        self.centre = np.array([complex(*link.centre) for link in links])
 
     def _joint(self, name):
         """Joint by name, (2, terms)."""
@@ -192,7 +203,7 @@ class Model:
         offset, angle = self.numbers[f"{place}_offset"], self.numbers[f"{place}_angle"]
         ends = (item.link, item.other) if item.rod else (item.other, item.link)
         slotted, block = (self.names.index(name) for name in ends)
-        self.slidings.append(SlotEquation(len(self.equations), slotted, block, np.exp(1j * angle), offset))
+        self.curved.append(SlotEquation(len(self.equations), slotted, block, np.exp(1j * angle), offset))
         self._add(item.force, 0.0 * self._one)
         ahead = angle + (np.pi if item.rod else 0.0)
         self._held.append((item.link, item.other, ahead))
@@ -210,16 +221,6 @@ class Model:
             self.readings[item.vector] = (FORCE, across[:, None] * force)
         for name, order in {"position": POSITION, "velocity": RATE, "acceleration": ACCELERATION}.items():
             self.readings[f"{slider}_{name}"] = (order, (along @ pin)[None, : 3 * self.size])
-
-    def _follow(self, led, group):
-        """Keep a joint on the cam of a group, fixed to the frame or to the crank."""
-        if led.body == FRAME:
-            self.cam, self.block, self.contact = group.cam, self.names.index(led.link), len(self.equations)
-        else:
-            places = self.names.index(led.body), self.names.index(led.link)
-            along = self.numbers[f"{led.joint}_along"]
-            self.followings.append(CamEquation(len(self.equations), *places, along, group))
-        self._add(led.force, 0.0 * self._one)
 
     def _add(self, name, *equations):
         """Add equations; their multipliers are the components of the force or moment `name`."""
@@ -265,6 +266,11 @@ class Configuration:
         self.model, self.q, self.phi = model, q, np.asarray(phi)[..., None]
         theta = q[..., 2 * model.size :]
         self.cosine, self.sine = np.cos(theta), np.sin(theta)
+        self.axes = self.cosine + 1j * self.sine
+
+    @cached_property
+    def curved(self):
+        return [(item.row, item.terms(self)) for item in self.model.curved]
 
     @cached_property
     def residual(self):
@@ -272,12 +278,8 @@ class Configuration:
         model = self.model
         terms = np.concatenate([self.q, self.cosine, self.sine, np.ones_like(self.phi), self.phi], axis=-1)
         residual = terms @ model.equations.T
-        for item in model.slidings:
-            residual[..., item.row] = self._in_slot(item, self.q).imag - item.offset
-        if model.cam is not None:
-            residual[..., model.contact] = self._contact[0]
-        for item in model.followings:
-            residual[..., item.row] = cam_distance(self, item).distance
+        for row, terms in self.curved:
+            residual[..., row] = terms.value
         return residual
 
     @cached_property
@@ -288,19 +290,10 @@ class Configuration:
         jacobian[...] = model.linear
         jacobian[..., 2 * size :] += model.of_sine * self.cosine[..., None, :]
         jacobian[..., 2 * size :] -= model.of_cosine * self.sine[..., None, :]
-        for item in model.slidings:
-            slot, way = jacobian[..., item.row, :], self._way(item)
-            slot[..., item.block], slot[..., item.slotted] = -way.imag, way.imag
-            slot[..., size + item.block], slot[..., size + item.slotted] = way.real, -way.real
-            slot[..., 2 * size + item.slotted] = -self._in_slot(item, self.q).real
-        if model.cam is not None:
-            cam, (_, normal, _) = jacobian[..., model.contact, :], self._contact
-            cam[..., model.block], cam[..., size + model.block] = normal.real, normal.imag
-        for item in model.followings:
-            row, found = jacobian[..., item.row, :], cam_distance(self, item)
-            for place, sign, turn in ((item.link, 1.0, found.link_turn), (item.crank, -1.0, found.crank_turn)):
-                row[..., place], row[..., size + place] = sign * found.normal.real, sign * found.normal.imag
-                row[..., 2 * size + place] = turn
+        for row, terms in self.curved:
+            for link, normal, turn in terms.parts:
+                jacobian[..., row, link], jacobian[..., row, size + link] = normal.real, normal.imag
+                jacobian[..., row, 2 * size + link] = turn
         return jacobian
 
     def gamma(self, rates):
@@ -308,13 +301,8 @@ class Configuration:
         model = self.model
         square = rates[..., 2 * model.size :] ** 2
         gamma = (square * self.cosine) @ model.of_cosine.T + (square * self.sine) @ model.of_sine.T
-        for item in model.slidings:
-            turning, slides = rates[..., 2 * model.size + item.slotted], self._in_slot(item, rates)
-            gamma[..., item.row] = turning * (2 * slides.real + turning * self._in_slot(item, self.q).imag)
-        if model.cam is not None:
-            gamma[..., model.contact] = self._contact[2] * np.abs(self._plane(rates)[..., model.block]) ** 2
-        for item in model.followings:
-            gamma[..., item.row] = -cam_distance(self, item, rates).second
+        for item in model.curved:
+            gamma[..., item.row] = -item.terms(self, rates).second
         return gamma
 
     def solve(self, right, transposed=False):
@@ -336,29 +324,24 @@ class Configuration:
         """Velocities qdot."""
         return self.solve(self.model.drive * np.ones_like(self.phi)) * np.asarray(speed)[..., None]
 
-    def accelerations(self, rates, acceleration=0.0):
-        """Accelerations qddot."""
-        return self.solve(self.gamma(rates) + self.model.drive * np.asarray(acceleration)[..., None])
-
     def demand(self, rates, accelerations, solution):
         """M qddot - Q: forces and moments at the reference joints that reactions and drive must supply."""
-        model, turned = self.model, self.cosine + 1j * self.sine
+        model = self.model
         turning, turning_up = rates[..., 2 * model.size :], accelerations[..., 2 * model.size :]
-        arm = model.centre * turned
+        arm = model.centre * self.axes
         gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
-        force = model.mass * (self._plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
+        force = model.mass * (self.plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
+        acting = _LoadForces(self, rates)
         for item in solution.loads:
             if hasattr(item, "push"):
                 link, along = model.names.index(item.on), model.guides[item.on]
-                if isinstance(item, Spring):
-                    elongation = (self._plane(self.q)[..., link] * along.conjugate()).real - item.free_position
-                    push = -item.stiffness * elongation - item.cubic * elongation**3
-                else:
-                    push = slider_push(item, solution)
+                coordinate = (self.plane(self.q)[..., link] * along.conjugate()).real
+                is_spring = isinstance(item, Spring)
+                push = acting.spring_push(item, coordinate) if is_spring else slider_push(item, solution)
                 force[..., link] -= push * along
             elif not isinstance(item, Gravity):
-                self._take(_LoadForces(self, rates).of(evaluate_load(item, solution)), force, moment)
+                self._take(acting.of(evaluate_load(item, solution)), force, moment)
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _take(self, effects, force, moment):
@@ -367,7 +350,7 @@ class Configuration:
             if name in self.model.names:
                 link = self.model.names.index(name)
                 force[..., link] -= applied
-                moment[..., link] -= couple + (np.conj(at - self._plane(self.q)[..., link]) * applied).imag
+                moment[..., link] -= couple + (np.conj(at - self.plane(self.q)[..., link]) * applied).imag
 
     def forces(self, rates, demand, solution):
         """Complex reactions, scalar forces and the drive torque that balance a demand, with friction."""
@@ -389,52 +372,22 @@ class Configuration:
         )
         return found | {name: found[name] + force for name, force in friction.along(found).items() if name in found}
 
-    def _plane(self, part):
+    def plane(self, part):
         """The x and y of all links as complex numbers."""
         return part[..., : self.model.size] + 1j * part[..., self.model.size : 2 * self.model.size]
-
-    def _way(self, item):
-        """Direction of a slot."""
-        return item.way * (self.cosine[..., item.slotted] + 1j * self.sine[..., item.slotted])
-
-    def _in_slot(self, item, part):
-        """Vector from the slotted link's joint to the joint in the slot, of q or rates: along it (real) and across."""
-        plane = self._plane(part)
-        return (plane[..., item.block] - plane[..., item.slotted]) * self._way(item).conj()
-
-    @cached_property
-    def _contact(self):
-        """Distance of the roller centre inside the pitch curve, the inward unit normal and the curvature there."""
-        centre = self._plane(self.q)[..., self.model.block]
-        distance = np.abs(centre)
-        ray = centre / distance
-        radius, slope, second = self.model.cam.polar(np.angle(centre), (ray.real, ray.imag))
-        lean = slope / distance
-        unit = np.sqrt(1.0 + lean * lean)
-        curvature = (unit * unit + lean * lean - second / distance) / (distance * unit**3)
-        return (radius - distance) / unit, ray * (1j * lean - 1.0) / unit, curvature
 
 
 class _LoadForces(LoadForces):
     """Loads in a configuration with velocities `rates`."""
 
-    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
-
     def __init__(self, configuration, rates):
         self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
-
-    def number(self, value):
-        return value
-
-    def value(self, item):
-        return item.value_now
 
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
         at, index = self._at, self._at.model.names.index(link)
-        axis = at.cosine[..., index] + 1j * at.sine[..., index]
         spin = self._rates[..., 2 * at.model.size + index]
-        return at._plane(at.q)[..., index], axis, at._plane(self._rates)[..., index], spin
+        return at.plane(at.q)[..., index], at.axes[..., index], at.plane(self._rates)[..., index], spin
 
 
 def components(model, solution, quantity, q, rates=None):
@@ -445,7 +398,7 @@ def components(model, solution, quantity, q, rates=None):
     if order >= RATE:
         found = rates = at.rates(solution.crank_speed) if rates is None else rates
     if order >= ACCELERATION:
-        found = at.accelerations(rates, solution.crank_acceleration)
+        found = at.solve(at.gamma(rates) + model.drive * np.asarray(solution.crank_acceleration)[..., None])
     if order >= FORCE:
         force = at.forces(rates, at.demand(rates, found, solution), solution)[quantity]
         return (force.real, force.imag) if np.iscomplexobj(force) else (force,)

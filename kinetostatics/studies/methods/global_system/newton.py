@@ -84,7 +84,10 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 def _integration(damping, projected, solution, quantity, tolerance):
     model, angle = model_of(solution, quantity), solution.crank_angle
-    _require_constant_speed(solution)
+    if np.ndim(solution.crank_speed) or np.any(solution.crank_acceleration):
+        raise NotGivenError("integration runs at a constant crank speed, without crank acceleration")
+    if len(angle) < 2 or not (np.diff(angle) > 0).all() or angle[-1] - angle[0] > 2 * np.pi:
+        raise NotGivenError("integration runs over one turn: two crank angles or more, rising within 2 pi, are needed")
     _, position, slope = position_table(model, angle)
     start = np.concatenate([position[0], slope[0]])
     size = np.abs(position[0][: 2 * model.size]).max()
@@ -109,14 +112,6 @@ def _integration(damping, projected, solution, quantity, tolerance):
         return components(model, solution, quantity, q, rates * solution.crank_speed)
 
     return run
-
-
-def _require_constant_speed(solution):
-    angle = solution.crank_angle
-    if np.ndim(solution.crank_speed) or np.any(solution.crank_acceleration):
-        raise NotGivenError("integration runs at a constant crank speed, without crank acceleration")
-    if len(angle) < 2 or not (np.diff(angle) > 0).all() or angle[-1] - angle[0] > 2 * np.pi:
-        raise NotGivenError("integration runs over one turn: two crank angles or more, rising within 2 pi, are needed")
 
 
 INTEGRATION_METHODS = (

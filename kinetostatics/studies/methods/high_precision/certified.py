@@ -19,8 +19,6 @@ from ....numbers.parameter_tree import replace_unchecked
 from .enclosures import Enclosure, enclosure, magnitude, on_arb, place_text, require_library
 from .independent import independent, working_digits
 
-__all__ = ["Enclosure", "certified", "differences", "enclosure", "independent", "relative_errors"]
-
 
 def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     """Enclosure of a quantity, confirmed by the independent path.
@@ -68,7 +66,11 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
             own = [mp.mpf(part[index]) for part in found.exact]
             gap = mp.norm([a - b for a, b in zip(own, other, strict=True)]) / unit
             if not gap <= mp.mpf(10) ** -digits:
-                raise KinetostaticsError(_disagreement(mp, solution, quantity, index, own, other, gap, digits))
+                ours, theirs = (", ".join(mp.nstr(part, digits + 3) for part in parts) for parts in (own, other))
+                raise KinetostaticsError(
+                    f"{place_text(solution, index)}: {quantity} is {ours} by the library's kernels but {theirs} by the "
+                    f"independent path; they differ by {mp.nstr(gap, 3)} of the largest value, more than 1e-{digits}"
+                )
             agreement = max(agreement, float(gap))
     return replace(found, agreement=agreement)
 
@@ -81,7 +83,7 @@ def relative_errors(found, reference: Enclosure):
     Parameters
     ----------
     found : tuple of arrays (N,)
-        Components as of `quantities.components`; NaN and infinity stay.
+        Components as of `quantities.components`, or exact ones of another `Enclosure`; NaN and infinity stay.
     reference : Enclosure
 
     Returns
@@ -104,32 +106,17 @@ def relative_errors(found, reference: Enclosure):
     flint = require_library("flint")
 
     def difference(value, exact):
+        if isinstance(value, flint.arb):
+            return float(value - exact)
         return float(flint.arb(float(value)) - exact) if np.isfinite(value) else abs(float(value))
 
-    return _relative(found, reference, difference)
-
-
-def differences(other: Enclosure, reference: Enclosure):
-    """Differences of two enclosures at each crank angle, relative to the largest value of the second, (N,)."""
-    return _relative(other.exact, reference, lambda value, exact: float(value - exact))
-
-
-def _relative(found, reference, difference):
-    with require_library("flint").ctx.workprec(reference.bits):
+    with flint.ctx.workprec(reference.bits):
         parts = [
             np.array([difference(*pair) for pair in zip(np.broadcast_to(values, exact.shape), exact, strict=True)])
             for values, exact in zip(found, reference.exact, strict=True)
         ]
     errors = magnitude(parts)
     return errors / reference.largest if reference.largest else np.where(errors > 0, np.inf, errors)
-
-
-def _disagreement(mp, solution, quantity, index, own, other, gap, digits):
-    own, other = (", ".join(mp.nstr(part, digits + 3) for part in parts) for parts in (own, other))
-    return (
-        f"{place_text(solution, index)}: {quantity} is {own} by the library's kernels but {other} by the independent "
-        f"path; they differ by {mp.nstr(gap, 3)} of the largest value, more than 1e-{digits}"
-    )
 
 
 WORKING_BITS, SPEED_TOLERANCE = 300, 1e-22
@@ -140,34 +127,19 @@ MIN_PIECE_POINTS, MAX_PIECE_POINTS = 24, 96
 
 
 def exact_speed(driven, angles):
-    """Crank speeds of periodic running at crank angles in (0, period), rad/s, rounded to the nearest double.
+    """Crank speeds, rad/s, of periodic running of a `DrivenMachine` at crank angles in (0, period), as nearest doubles.
 
-    Parameters
-    ----------
-    driven : Driven
-        Scene, motor and flywheel; loads must not depend on the speed.
-    angles : array (N,)
-
-    Raises
-    ------
-    NotGivenError
-        Loads depend on the speed, or are computed in double precision only.
-    MissingLibraryError
-        python-flint is not installed.
+    `NotGivenError`: loads depend on the speed, or are computed in double precision only.
     """
     if driven.by_speed:
         raise NotGivenError("exact running is for loads that do not depend on the speed")
     flint = require_library("flint")
     with flint.ctx.workprec(WORKING_BITS):
-        before, points = None, MIN_PIECE_POINTS
-        while points <= MAX_PIECE_POINTS:
-            found = _collocate(flint, driven, angles, points)
-            if (
-                before is not None
-                and max(abs(one / two - 1) for one, two in zip(found, before, strict=True)) < SPEED_TOLERANCE
-            ):
+        found = None
+        for points in range(MIN_PIECE_POINTS, MAX_PIECE_POINTS + 1, 8):
+            before, found = found, _collocate(flint, driven, angles, points)
+            if before and max(abs(one / two - 1) for one, two in zip(found, before, strict=True)) < SPEED_TOLERANCE:
                 return np.array([float(speed) for speed in found])
-            before, points = found, points + 8
     raise NotGivenError(f"{driven.scene.mechanism.name}: running is not resolved by {MAX_PIECE_POINTS} points a piece")
 
 
@@ -188,17 +160,14 @@ def _collocate(flint, driven, angles, points):
         left, change = added / (1 - ends), arb(0)
         for number, (homogeneous, particular, growth, gained) in enumerate(steps):
             new = [left * one + two for one, two in zip(homogeneous, particular, strict=True)]
-            change = max(
-                [change, *(abs(a / b - 1).mid() for a, b in zip(new, energies[number], strict=True))], key=float
-            )
+            changes = (abs(a / b - 1).mid() for a, b in zip(new, energies[number], strict=True))
+            change = max([change, *changes], key=float)
             energies[number] = [value.mid() for value in new]
             left = (left * growth + gained).mid()
         if float(change) < 1e-40:
             break
-    places = np.searchsorted(edges, angles, side="right") - 1
-    return [
-        pieces[place].speed(energies[place], float(angle), driven) for place, angle in zip(places, angles, strict=True)
-    ]
+    places = zip(np.searchsorted(edges, angles, side="right") - 1, angles, strict=True)
+    return [pieces[place].speed(energies[place], float(angle), driven) for place, angle in places]
 
 
 class _CollocationPiece:
@@ -215,11 +184,9 @@ class _CollocationPiece:
         self.whole = flint.arb_mat([self._integrals(self.high, points)]) * self.inverse
 
     def _basis(self, angle, points):
-        x, found = (2 * angle - self.low - self.high) / (self.high - self.low), [self.flint.arb(1)]
-        found.append(x)
-        while len(found) < points:
-            found.append(2 * x * found[-1] - found[-2])
-        return found[:points]
+        """Chebyshev polynomials at an angle."""
+        x = (2 * angle - self.low - self.high) / (self.high - self.low)
+        return [x.chebyshev_t(k) for k in range(points)]
 
     def _integrals(self, angle, points):
         """Integrals of the Chebyshev polynomials from the start of the piece."""
@@ -243,9 +210,8 @@ class _CollocationPiece:
             slope = motor.slope_at_crank(speed) / (inertia * speed)
             slopes.append(slope)
             rests.append(motor.torque_at_crank(speed) - load - slope * value)
-        matrix = flint.arb_mat(
-            [[(i == j) - self.integral[i, j] * slopes[j] for j in range(count)] for i in range(count)]
-        )
+        places = range(count)
+        matrix = flint.arb_mat([[(i == j) - self.integral[i, j] * slopes[j] for j in places] for i in places])
         right = self.integral * flint.arb_mat([[rest] for rest in rests])
         found = matrix.solve(flint.arb_mat([[1, right[i, 0]] for i in range(count)]))
         homogeneous = [found[i, 0].mid() for i in range(count)]

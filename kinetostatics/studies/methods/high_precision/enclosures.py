@@ -188,22 +188,17 @@ def _to_arb(item, arb):
         return arb(value) if isinstance(value, int) else arb(float(value))
 
     def guide(own):
+        offset = map_numbers(own.guide_offset, number)
         if own.exact is None:
-            return replace_unchecked(
-                own, angle=map_numbers(own.angle, number), guide_offset=map_numbers(own.guide_offset, number)
-            )
-        offset, direction = map_numbers(own.guide_offset, number), _direction(own.direction, arb)
+            return replace_unchecked(own, angle=map_numbers(own.angle, number), guide_offset=offset)
+        direction = own.direction
+        if direction != (1.0, 0.0):
+            x, y = (arb(float(part)) for part in direction)
+            length = (x * x + y * y).sqrt()
+            direction = x / length, y / length
         return replace_unchecked(own, angle=None, guide_offset=offset, exact=direction)
 
     return map_numbers(item, number, {Guide: guide})
-
-
-def _direction(pair, arb):
-    if pair == (1.0, 0.0):
-        return pair
-    x, y = (arb(float(part)) for part in pair)
-    length = (x * x + y * y).sqrt()
-    return x / length, y / length
 
 
 def _evaluate_on_arb(what, compute):

@@ -5,6 +5,7 @@ quotients of positions, all forces together from the Newton-Euler equations. A p
 """
 
 from collections.abc import Iterable
+from functools import singledispatchmethod
 from typing import Any
 
 import numpy as np
@@ -61,10 +62,7 @@ class Posture:
         if self.mechanism.crank.length is not None:
             joints["A"] = self.number(self.mechanism.crank.length) * ray
         for group in self.mechanism.groups:
-            if isinstance(group, CamRoller):
-                joints["A"], links["block"] = self.roller(group.cam, angle), ("A", ray)
-            else:
-                entry_for_kind(PLACEMENT_METHODS, group)(self, group, joints, links)
+            self.place(group, joints, links)
         found = {("joint", name): place for name, place in joints.items()}
         for name, (joint, direction) in links.items():
             found["centre", name] = joints[joint] + self.vector(self.mechanism.links[name].centre) * direction
@@ -84,7 +82,17 @@ class Posture:
         passed = {FAR: self.mp.cos(psi / 2), NEAR: half, MEETING: half, OPPOSITE: half}
         return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
 
-    def add_slider(self, group, joints, links):
+    @singledispatchmethod
+    def place(self, group, joints, links):
+        """Add joints and links of a group, by its kind."""
+        raise NotGivenError(f"there is no independent formula for a {type(group).__name__}")
+
+    @place.register
+    def _(self, group: CamRoller, joints, links):
+        joints["A"], links["block"] = self.roller(group.cam, self._angle), ("A", links["crank"][1])
+
+    @place.register
+    def _(self, group: SliderGroup, joints, links):
         mp, side = self.mp, self.side(group)
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
@@ -94,7 +102,8 @@ class Posture:
         joints[group.pin] = start + length * direction
         links[coupler], links[slider] = (group.on, direction), (group.pin, along)
 
-    def add_rocker(self, group, joints, links):
+    @place.register
+    def _(self, group: RockerGroup, joints, links):
         mp, side = self.mp, self.side(group)
         coupler, rocker = group.links
         start, pivot = joints[group.on], self.vector(group.pivot)
@@ -104,7 +113,8 @@ class Posture:
         joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
         links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
 
-    def add_dyad(self, group, joints, links):
+    @place.register
+    def _(self, group: Dyad, joints, links):
         mp = self.mp
         first, second = (joints[name] for name in group.on)
         a, b, d = self.number(group.length1), self.number(group.length2), abs(second - first)
@@ -114,11 +124,13 @@ class Posture:
         directions = direction, (joints[group.pin] - second) / b
         links |= {link: part for link, *part in zip(group.links, group.on, directions, strict=True)}
 
-    def add_pin(self, group, joints, links):
+    @place.register
+    def _(self, group: Pin, joints, links):
         joint, direction = ("O", 1) if group.on == FRAME else links[group.on]
         joints[group.name] = joints[joint] + self.vector(group.at) * direction
 
-    def add_lever(self, group, joints, links):
+    @place.register
+    def _(self, group: LeverGroup, joints, links):
         mp, side = self.mp, self.side(group)
         lever, block = group.links
         joints[group.pivot_name] = pivot = self.vector(group.pivot)
@@ -127,13 +139,15 @@ class Posture:
         direction = mp.expj(mp.arg(to_pin) - (lean if side > 0 else mp.pi - lean))
         links[lever], links[block] = (group.pivot_name, direction), (group.on, direction)
 
-    def add_cylinder(self, group, joints, links):
+    @place.register
+    def _(self, group: CylinderGroup, joints, links):
         rod, cylinder = group.links
         joints[group.pivot_name] = pivot = self.vector(group.pivot)
         direction = self.mp.expj(self.mp.arg(joints[group.on] - pivot))
         links[rod], links[cylinder] = (group.on, -direction), (group.pivot_name, direction)
 
-    def add_yoke(self, group, joints, links):
+    @place.register
+    def _(self, group: YokeGroup, joints, links):
         block, slider = group.links
         along = self.along(group.guide)
         way = along * self.mp.expj(self.number(group.slot_angle))
@@ -141,30 +155,22 @@ class Posture:
         joints[group.pin] = foot + cross(joints[group.on] - foot, way) / cross(along, way) * along
         links[block], links[slider] = (group.on, way), (group.pin, along)
 
-    def add_guided(self, group, joints, links):
-        (follower,) = group.links
-        joints[group.pin], direction = self.follower_pose(group, self._angle)
-        links[follower] = group.pin, direction
-
-    def add_swinging(self, group, joints, links):
-        (arm,) = group.links
-        joints[group.pivot_name] = self.vector(group.pivot)
-        joints[group.pin], direction = self.follower_pose(group, self._angle)
-        links[arm] = group.pivot_name, direction
-
-    def follower_pose(self, group, angle):
-        """Roller centre, or middle of the face, and direction of a follower at a crank angle."""
-        law = group.cam.law
+    @place.register
+    def _(self, group: GuidedFollower | SwingingFollower, joints, links):
+        (follower,), law = group.links, group.cam.law
         if not isinstance(law, Cosine):
             raise NotGivenError(f"there is no independent formula for a law {type(law).__name__}")
         mean, amplitude, phase = map(self.number, (law.mean, law.amplitude, law.phase))
-        value = mean + amplitude * self.mp.cos(angle - phase)
+        value = mean + amplitude * self.mp.cos(self._angle - phase)
         if isinstance(group, SwingingFollower):
-            pivot = self.vector(group.pivot)
+            joints[group.pivot_name] = pivot = self.vector(group.pivot)
             direction = self.mp.expj(self.mp.arg(-pivot) - group.assembly * value)
-            return pivot + self.number(group.arm_length) * direction, direction
-        along = self.along(group.guide)
-        return along * self.mp.mpc(value, self.number(group.guide.guide_offset)), along
+            joints[group.pin] = pivot + self.number(group.arm_length) * direction
+            links[follower] = group.pivot_name, direction
+        else:
+            along = self.along(group.guide)
+            joints[group.pin] = along * self.mp.mpc(value, self.number(group.guide.guide_offset))
+            links[follower] = group.pin, along
 
     def roller(self, cam, angle):
         """Roller centre A on the crank ray."""
@@ -189,28 +195,6 @@ class Posture:
         raise NotGivenError(f"there is no independent formula for cam {type(cam).__name__}")
 
 
-PLACEMENT_METHODS: Any = {
-    SliderGroup: Posture.add_slider,
-    RockerGroup: Posture.add_rocker,
-    Dyad: Posture.add_dyad,
-    Pin: Posture.add_pin,
-    LeverGroup: Posture.add_lever,
-    CylinderGroup: Posture.add_cylinder,
-    YokeGroup: Posture.add_yoke,
-    GuidedFollower: Posture.add_guided,
-    SwingingFollower: Posture.add_swinging,
-}
-"""Method that places each kind of group."""
-
-
-def entry_for_kind(table, group):
-    """Entry of a table for a group's class or its nearest base class."""
-    for kind in type(group).__mro__:
-        if kind in table:
-            return table[kind]
-    raise NotGivenError(f"there is no independent formula for a {type(group).__name__}")
-
-
 def left(a):
     return a * 1j
 
@@ -224,31 +208,10 @@ def cross(a, b):
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):
-    """A quantity at some crank angles by mpmath and independent formulas, all forces from one linear system.
+    """Components of a quantity at some of a solution's crank angles, a tuple of arrays (n,) of `mpmath.mpf`.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of one design; of the library's groups, `CamRoller` with `Circle` or `CosineLaw`.
-    quantity : str
-        Balancing torque, a reaction, force or moment, rate or angular acceleration of a link, motion of a slider,
-        shaking force or moment; named as for `quantities.components`.
-    indices : iterable of int
-        Indices of the solution's crank angles.
-    digits : int
-        Digits of the result; the working precision is far higher, as derivatives are difference quotients.
-
-    Returns
-    -------
-    tuple of arrays (n,) of `mpmath.mpf`
-        Components of the quantity.
-
-    Raises
-    ------
-    NotGivenError
-        There are no such formulas for a group or cam, no such quantity, or friction does not settle.
-    MissingLibraryError
-        mpmath is not installed.
+    `digits` are those of the result; the working precision is far higher, as derivatives are difference quotients.
+    `NotGivenError`: no independent formulas for a group or cam, no such quantity, or friction that does not settle.
     """
     mp = require_library("mpmath").mp
     require_one_design(solution)
@@ -271,6 +234,7 @@ class Machine(Posture, LoadForces):
 
     def __init__(self, mp, solution, index, digits):
         self.mp, self.solution, self.index = mp, solution, index
+        self.expj, self.arg = mp.expj, mp.arg
         self.parts = mp.mpc(1), mp.mpc(1j)
         self.mechanism = solution.mechanism
         self.angle = self.number(solution.crank_angle)
@@ -311,12 +275,15 @@ class Machine(Posture, LoadForces):
         for column, (_, force, moment, at, on, by) in enumerate(unknowns):
             self.enter(matrix, column, on, at, force, moment)
             self.enter(matrix, column, by, at, -force, -moment)
+        items = (item for item in self.solution.loads if isinstance(item, Gravity))
+        pulls = (self.number(item.acceleration) * mp.expj(self.number(item.direction)) for item in items)
+        gravity = sum(pulls, mp.mpc(0))
         shaking = {}
         for name, link in links.items():
             mass, at = self.number(link.mass), self.position["centre", name]
             turning = cross(self.position["direction", name], self.acceleration["direction", name])
             shaking[name] = -mass * self.acceleration["centre", name], -self.number(link.inertia) * turning
-            self.enter(right, 0, name, at, -shaking[name][0] - mass * self.gravity(), -shaking[name][1])
+            self.enter(right, 0, name, at, -shaking[name][0] - mass * gravity, -shaking[name][1])
         for name in self.mechanism.guides:
             pin, along = self.position["joint", self.mechanism.references[name]], self.position["direction", name]
             self.enter(right, 0, name, pin, -self.push(name, dot(along, pin)) * along, 0)
@@ -356,32 +323,30 @@ class Machine(Posture, LoadForces):
                 self.enter(right, 0, link, self.position["centre", link] if force == 0 else at, -force, -couple)
 
     def enter(self, matrix, column, link, at, force, moment):
-        """Add a wrench to the three equations of a link, with moments about its mass centre; None is the ground."""
-        if link is not None:
+        """Add a wrench to the three equations of a link, with moments about its mass centre; none to the frame."""
+        if link != FRAME:
             row = 3 * list(self.mechanism.links).index(link)
             matrix[row, column] += self.mp.re(force)
             matrix[row + 1, column] += self.mp.im(force)
             matrix[row + 2, column] += moment + cross(at - self.position["centre", link], force)
 
     def unknowns(self):
-        """Unit wrenches of the unknowns: name, force, moment, point, link acted on, acting link (None: ground)."""
+        """Unit wrenches of the unknowns: name, force, moment, point, link acted on, acting link."""
         none = self.mp.mpc(0)
         at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
-        found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", None)]
+        found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", FRAME)]
         made, numbers = structure(self.mechanism)
         for part in made.parts:
             for pin in part.pins:
-                found += [(pin.name, way, 0, at[pin.joint], pin.link, link_or_ground(pin.other)) for way in self.parts]
+                found += [(pin.name, way, 0, at[pin.joint], pin.link, pin.other) for way in self.parts]
             for pair in part.slides:
-                ends = at[pair.about], pair.link, link_or_ground(pair.other)
+                ends = at[pair.about], pair.link, pair.other
                 along = self.position["direction", pair.link]
                 if pair.other != FRAME:
                     turned = self.mp.expj(self.number(numbers[f"{pair.other}_{pair.joint}_angle"]))
                     along = self.position["direction", pair.other] * turned
                 found += [(pair.force, left(along), 0, *ends), (pair.couple, none, 1, *ends)]
-            found += [
-                (cam.force, *self.contact(cam, at[cam.joint]), cam.link, link_or_ground(cam.body)) for cam in part.cams
-            ]
+            found += [(cam.force, *self.contact(cam, at[cam.joint]), cam.link, cam.body) for cam in part.cams]
         return found
 
     def contact(self, cam, at):
@@ -394,11 +359,6 @@ class Machine(Posture, LoadForces):
         axis = self.position["direction", cam.link]
         return axis, 0, at - dot(axis, way) * left(axis)
 
-    def gravity(self):
-        items = (item for item in self.solution.loads if isinstance(item, Gravity))
-        pulls = (self.number(item.acceleration) * self.mp.expj(self.number(item.direction)) for item in items)
-        return sum(pulls, self.mp.mpc(0))
-
     def push(self, slider, coordinate):
         """Force on a slider along its guide."""
         total = self.mp.mpf(0)
@@ -406,8 +366,7 @@ class Machine(Posture, LoadForces):
             if not hasattr(item, "push") or item.on != slider:
                 continue
             if isinstance(item, Spring):
-                elongation = coordinate - self.number(item.free_position)
-                total -= self.number(item.stiffness) * elongation + self.number(item.cubic) * elongation**3
+                total += self.spring_push(item, coordinate)
             elif isinstance(item, ProcessForce) and not callable(item.force):
                 total += self.number(item.force)
             else:
@@ -417,12 +376,6 @@ class Machine(Posture, LoadForces):
     def value(self, item):
         """Force or moment of a load, N or N m, that may be a table or a function."""
         return self.given(self.solution.loads.index(item)) if callable(item.value_now) else self.number(item.value_now)
-
-    def expj(self, angle):
-        return self.mp.expj(angle)
-
-    def arg(self, number):
-        return self.mp.arg(number)
 
     def where(self, condition, one, other):
         return one if condition else other
@@ -439,8 +392,3 @@ class Machine(Posture, LoadForces):
         with flint.ctx.workprec(int(3.33 * self.mp.dps)):
             values = np.ravel(on_arb(flint.arb, self.solution).loads[place].value_now)
             return self.mp.mpf(values[self.index if values.size > 1 else 0])
-
-
-def link_or_ground(link):
-    """The link's name, or None for the frame."""
-    return None if link == FRAME else link

@@ -8,7 +8,7 @@ that are 0, 1 or -1. `AppliedLoads` computes tables, functions and loads at poin
 """
 
 from functools import cache
-from itertools import combinations
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
@@ -30,20 +30,8 @@ MAX_EQUATIONS_TOGETHER = 3
 class Equations(Motion):
     """Equations of one structure of mechanism: its motion, and forces by auxiliary speeds.
 
-    Attributes
-    ----------
-    forces : dict of str to tuple of expressions
-        Results by name, in components.
+    `forces` are reactions and drive torque by name, in components; `results` these and motions.
     """
-
-    @property
-    def forces(self):
-        outputs = {"balancing_torque", *(name for part in self.structure.parts for name in part.outputs)}
-        return {name: parts for name, parts in self.reactions.items() if name in outputs}
-
-    @property
-    def results(self):
-        return self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
 
     def __init__(self, structure):
         super().__init__(structure)
@@ -64,6 +52,10 @@ class Equations(Motion):
                 self._slide(slide)
             for cam in part.cams:
                 self._press(cam)
+        outputs = {"balancing_torque", *(name for part in structure.parts for name in part.outputs)}
+        self.forces = {name: parts for name, parts in self.reactions.items() if name in outputs}
+        self.results = self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
+        self._eliminate()
 
     def _part(self, link, body):
         """Give a link its auxiliary speeds, its weight and its applied loads."""
@@ -143,34 +135,25 @@ class Equations(Motion):
         normal = left(x * body.frame.x + y * body.frame.y) / sp.sqrt(x**2 + y**2)
         self._act(cam.link, cam.body, joint, force * normal)
 
-    def with_forces(self):
-        """These equations with the unknown forces added to `steps`."""
+    def _eliminate(self):
+        """Solve Kane's equations in turn, in the smallest groups that determine further unknowns, as `steps`."""
         method = KanesMethod(N, [PHI], [SPEED], [PHI.diff() - SPEED], u_auxiliary=self.speeds)
         active, inertial = method.kanes_equations(self.rigid, self.loads)
         power, *equations = active + inertial
         self._solve([power], [TORQUE])
-        self._eliminate(equations)
-        return self
-
-    def _eliminate(self, equations):
-        """Solve the equations in turn, in the smallest groups that determine further unknowns."""
         left_over = [(equation, equation.free_symbols & self.found) for equation in equations]
         known: set[Any] = set()
         while known < self.found:
             open_ones = [(equation, wanted - known) for equation, wanted in left_over if wanted - known]
-            chosen = next(
-                (
-                    (group, wanted)
-                    for size in range(1, MAX_EQUATIONS_TOGETHER + 1)
-                    for group in combinations(open_ones, size)
-                    if len(wanted := set().union(*(names for _, names in group))) == size
-                ),
-                None,
-            )
-            if chosen is None:
+            sizes = range(1, MAX_EQUATIONS_TOGETHER + 1)
+            for chosen in chain.from_iterable(combinations(open_ones, size) for size in sizes):
+                wanted = set().union(*(names for _, names in chosen))
+                if len(wanted) == len(chosen):
+                    break
+            else:
                 raise NotGivenError("the reactions are not determined one group after another")
-            self._solve([equation for equation, _ in chosen[0]], sorted(chosen[1], key=str))
-            known |= chosen[1]
+            self._solve([equation for equation, _ in chosen], sorted(wanted, key=str))
+            known |= wanted
 
     def _solve(self, equations, wanted):
         """Solve linear equations by Cramer's rule."""
@@ -190,15 +173,8 @@ class AppliedLoads(LoadForces):
 
     Keys: a link's name with "_load_x", "_load_y", "_load_moment" for force and moment about its reference joint; a
     slider's name with "_push" for the force along its guide, and "_stiffness", "_free", "_cubic" for its spring.
-
-    Parameters
-    ----------
-    solution : Solution
-    result : function
-        ``result(name)`` returns a function that computes a result of the equations' own motion.
+    ``result(name)`` returns a function that computes a result of the equations' own motion.
     """
-
-    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
 
     def __init__(self, solution, result):
         self.solution, self.mechanism = solution, solution.mechanism
@@ -233,8 +209,7 @@ class AppliedLoads(LoadForces):
 
         for item in self.springs:
             (travel,) = self.travels[item.on]()
-            away = travel - item.free_position
-            add(f"{item.on}_push", -item.stiffness * away - item.cubic * away**3)
+            add(f"{item.on}_push", self.spring_push(item, travel))
         for item in self.pushes:
             add(f"{item.on}_push", slider_push(item, self.solution))
         self.places = {link: run() for link, run in self.motions.items()}
@@ -246,12 +221,6 @@ class AppliedLoads(LoadForces):
                         add(f"{link}_load_{part}", amount)
         return found
 
-    def number(self, value):
-        return value
-
-    def value(self, item):
-        return item.value_now
-
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
         x, y, cosine, sine, to_x, to_y, spin = self.places[link]
@@ -262,10 +231,8 @@ SUBSTITUTED_VALUES = 0, 1, -1
 """Parameter values that are substituted into the equations."""
 
 
-@cache
-def equations_of(made):
-    """Equations of a structure, solved."""
-    return Equations(made).with_forces()
+equations_of = cache(Equations)
+"""Equations of a structure, solved."""
 
 
 @cache
@@ -311,13 +278,8 @@ def structure_and_numbers(solution):
     made, values = structure(mechanism)
     pulls = [item.vector for item in solution.loads if isinstance(item, Gravity)]
     gravity = [sum(parts) for parts in zip((0, 0), *pulls, strict=True)]
-    values |= {
-        "crank_angle": solution.crank_angle,
-        "crank_speed": solution.crank_speed,
-        "crank_acceleration": solution.crank_acceleration,
-        "gravity_x": gravity[0],
-        "gravity_y": gravity[1],
-    }
+    values |= zip(("gravity_x", "gravity_y"), gravity, strict=True)
+    values |= {name: getattr(solution, name) for name in ("crank_angle", "crank_speed", "crank_acceleration")}
     for group in mechanism.groups:
         values |= cam_numbers(group, solution.crank_angle)
     for side, link in equations_of(made).sides.items():
@@ -348,14 +310,14 @@ def function_of(made, names, values):
 
 
 def evaluation(solution, names):
-    """Function without arguments that computes results by name, as a list of components."""
+    """Function without arguments that computes results by name, as a tuple of components."""
     made, values = structure_and_numbers(solution)
     unknown = [name for name in names if name not in equations_of(made).results]
     if unknown:
         raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)}")
     applied = AppliedLoads(solution, lambda name: function_of(made, (name,), values))
     run = function_of(made, names, values | applied.numbers)
-    return lambda: run(**applied())
+    return lambda: tuple(run(**applied()))
 
 
 def all_forces(solution):
@@ -371,8 +333,7 @@ def all_forces(solution):
 
 
 def _prepare(solution, quantity, setting=None):
-    run = evaluation(solution, (quantity,))
-    return lambda: tuple(run())
+    return evaluation(solution, (quantity,))
 
 
 METHODS = (Method("SymPy Kane, lambdified", _prepare),)

@@ -26,9 +26,9 @@ def left(vector):
     return N.z ^ vector
 
 
-def unknown_functions(*names):
-    """Functions of the crank angle, still undefined."""
-    return [sp.Function(name)(PHI) for name in names]
+def unknown(name):
+    """Function of the crank angle, still undefined."""
+    return sp.Function(name)(PHI)
 
 
 def slope(expression, order=1):
@@ -50,7 +50,7 @@ def linear(expression, *unknowns):
 
 def circle(equations, radius, prefix, terms):
     """Define the radius of a pitch circle with any centre."""
-    (root,) = unknown_functions(f"root_{prefix}")
+    root = unknown(f"root_{prefix}")
     x, y, size = sp.symbols([f"{prefix}_{name}" for name in ("x", "y", "radius")])
     square = size**2 - (y * sp.cos(PHI) - x * sp.sin(PHI)) ** 2
     equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
@@ -59,7 +59,7 @@ def circle(equations, radius, prefix, terms):
 
 def cosine_law(equations, radius, prefix, terms):
     """Define the radius by the sawframe study's cosine law, with a root that changes sign at the singular angle."""
-    height, root = unknown_functions(f"height_{prefix}", f"root_{prefix}")
+    height, root = unknown(f"height_{prefix}"), unknown(f"root_{prefix}")
     names = "mean", "amplitude", "angle", "length", "singular"
     mean, amplitude, guide, length, singular = sp.symbols([f"{prefix}_{name}" for name in names])
     angle, side = PHI - guide, sp.Symbol(f"side_{prefix}")
@@ -81,10 +81,7 @@ def harmonic(equations, radius, prefix, terms):
 
 def sampled(equations, function, prefix, terms):
     """Define a curve by its computed values and derivatives."""
-    value, first, second = sp.symbols([f"{prefix}_{order}" for order in range(3)])
-    equations.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
-    equations.steps[symbol] = value
-    equations.derivatives(function, first, second)
+    equations.define(function, *sp.symbols([f"{prefix}_{order}" for order in range(3)]))
 
 
 CURVES = {"circle": circle, "cosine law": cosine_law, "harmonic": harmonic, "given": sampled}
@@ -108,17 +105,10 @@ class Body:
 class Motion:
     """Motion of one structure of mechanism.
 
-    Attributes
-    ----------
-    steps : dict of Symbol to expression
-        Intermediate values; a step may use others, in any order.
-    motions : dict of str to tuple of expressions
-        Results by name, in components.
-    symbols : dict of expression to Symbol
-        Symbols for the crank angle, functions of it and their derivatives in steps and results.
-    sides : dict of str to link
-        Signs of roots, set by the assembly, and the links whose angles they choose: the sign of a sin(theta) -
-        b cos(theta), with the two results a, b of that name.
+    `steps` are intermediate values by symbol, which may use one another in any order; `motions` results by name, in
+    components; `symbols` stand in both for the crank angle, functions of it and their derivatives. `sides` are signs of
+    roots, set by the assembly, with the link whose angle theta each chooses: the sign of a sin(theta) - b cos(theta),
+    where a, b are the results of that name.
     """
 
     def __init__(self, structure):
@@ -136,7 +126,13 @@ class Motion:
         self.rays: dict[Any, Any] = {}
         self.travels: dict[str, Any] = {}
         for part in structure.parts:
-            self._assemble(part)
+            for link, _ in part.links:
+                self._point(link)
+            for joint, _ in part.joints:
+                self._place(joint)
+            for link, joint in part.links:
+                self.bodies[link].joint = self._place(joint)
+            self._close(part)
         self._report()
 
     def number(self, name):
@@ -145,36 +141,26 @@ class Motion:
 
     # Where everything is
 
-    def _assemble(self, part):
-        for link, _ in part.links:
-            self._point(link)
-        for joint, _ in part.joints:
-            self._place(joint)
-        for link, joint in part.links:
-            self.bodies[link].joint = self._place(joint)
-        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
-        loops = [gap for gap in gaps if gap != 0]
-        lines = [gap for item in part.slides if (gap := self._off(item)) is not None]
-        self._close(part, loops, lines)
-
     def _point(self, link):
         """Body of a link, with the direction of the crank, of its slot or guide, or an unknown angle."""
         if link in self.bodies:
             return self.bodies[link]
         ways: Any = (N.x, N.y)
+        item = self.slides.get(link)
         if link == "crank":
             frame, turning = self._frame(link, PHI), sp.S.One
-        elif link in self.slides:
-            frame, turning = self._slot(self.slides[link])
-            if self.slides[link].other == FRAME:
-                ways = frame.x, frame.y
-        else:
-            (theta,) = unknown_functions(f"theta_{link}")
-            self.angles[link] = theta
+        elif item is None:
+            self.angles[link] = theta = unknown(f"theta_{link}")
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
-        axis = -frame.x if link in self.slides and self.slides[link].rod else frame.x
-        self.bodies[link] = Body(None, frame, axis, turning, ways)
+        elif item.other == FRAME:
+            frame, turning = self._frame(f"{link} guide", sp.Symbol(f"{link}_guide_angle"), turning=0), sp.S.Zero
+            ways = frame.x, frame.y
+        else:
+            body = self._point(item.other)
+            angle, turning = self.number(f"{item.other}_{item.joint}_angle"), body.turning
+            frame = self._frame(f"{link} slot", angle, body.frame, 0) if angle else body.frame
+        self.bodies[link] = Body(None, frame, -frame.x if item and item.rod else frame.x, turning, ways)
         return self.bodies[link]
 
     def _frame(self, name, angle, base=N, turning=None):
@@ -182,14 +168,6 @@ class Motion:
         frame.orient_axis(base, base.z, angle)
         frame.set_ang_vel(base, (slope(angle) if turning is None else turning) * PHI.diff() * N.z)
         return frame
-
-    def _slot(self, item):
-        """Frame of the guide or slot of a link, and the derivative of its angle by the crank angle."""
-        if item.other == FRAME:
-            return self._frame(f"{item.link} guide", sp.Symbol(f"{item.link}_guide_angle"), turning=0), sp.S.Zero
-        body = self._point(item.other)
-        angle = self.number(f"{item.other}_{item.joint}_angle")
-        return (self._frame(f"{item.link} slot", angle, body.frame, 0) if angle else body.frame), body.turning
 
     def _foot(self, item):
         """Foot of the perpendicular on the line of a pair, from the slotted link's reference joint or from O."""
@@ -208,8 +186,7 @@ class Motion:
                 position = body.joint + along * body.axis + across * left(body.axis)
                 self.places[joint] = position.express(N) if link == "crank" else position
             elif link in self.slides and self.slides[link].joint == joint:
-                (travel,) = unknown_functions(f"travel_{link}")
-                self.travels[link] = travel
+                self.travels[link] = travel = unknown(f"travel_{link}")
                 self.places[joint] = self._foot(self.slides[link]) + travel * body.frame.x
             else:
                 reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
@@ -226,17 +203,17 @@ class Motion:
         body = self.bodies[link]
         return body.joint + self.number(f"{link}_length") * body.axis
 
-    def _off(self, item):
-        """Distance of a joint from its line of sliding; None if the joint is placed on the line."""
-        if item.link in self.travels:
-            return None
-        body = self.bodies[item.link]
-        return (self.places[item.joint] - self._foot(item)) & body.frame.y
-
     # Loops
 
-    def _close(self, part, loops, lines):
+    def _close(self, part):
         """Define the unknown functions of a group and their derivatives from its loops."""
+        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
+        loops = [gap for gap in gaps if gap != 0]
+        lines = [
+            (self.places[item.joint] - self._foot(item)) & self.bodies[item.link].frame.y
+            for item in part.slides
+            if item.link not in self.travels
+        ]
         links = [link for link, _ in part.links]
         for link in links:
             if link in self.led:
@@ -266,16 +243,15 @@ class Motion:
         if cam.link in self.travels:
             curve(self, self.travels[cam.link], prefix, cam.terms)
             return
-        theta, (law,) = self.angles[cam.link], unknown_functions(f"law_{cam.link}")
+        theta, law = self.angles[cam.link], unknown(f"law_{cam.link}")
         curve(self, law, prefix, cam.terms)
         start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
         self._define_direction(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
-        self.derivatives(theta, sense * slope(law), sense * slope(law, 2))
+        self.define(theta, None, sense * slope(law), sense * slope(law, 2))
 
     def _define_direction(self, theta, cosine, sine):
         for function, value in ((sp.cos, cosine), (sp.sin, sine)):
-            self.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_{theta.func}")
-            self.steps[symbol] = value
+            self._set(function(theta), f"{function}_{theta.func}", value)
 
     def _turn(self, theta, gap):
         """Define an angle by an equation linear in its cosine and sine."""
@@ -312,31 +288,26 @@ class Motion:
         """Define a travel by a linear equation."""
         travel = self.travels[link]
         steepness, rest = linear(gap, travel)
-        self.symbols[travel] = symbol = sp.Symbol(f"{travel.func}_0")
-        self.steps[symbol] = -rest / steepness
+        self._set(travel, f"{travel.func}_0", -rest / steepness)
         for order in (1, 2):
             self._derivative(travel, slope(gap, order), order)
 
     def _derivative(self, function, equation, order):
         """Define a derivative of a function by the derivative of an equation, linear in it."""
         steepness, rest = linear(equation, slope(function, order))
-        self._name(function, order, -rest / steepness)
+        self._set(slope(function, order), f"{function.func}_{order}", -rest / steepness)
 
-    def _name(self, function, order, value):
-        self.symbols[slope(function, order)] = symbol = sp.Symbol(f"{function.func}_{order}")
+    def _set(self, expression, name, value):
+        """Add a step for an expression, with the name of its symbol."""
+        self.symbols[expression] = symbol = sp.Symbol(name)
         self.steps[symbol] = value
 
-    def derivatives(self, function, first, second):
-        """Define both derivatives of a function."""
-        self._name(function, 1, first)
-        self._name(function, 2, second)
-
-    def define(self, function, value, first=None):
-        """Define a function of the crank angle by its value and, if that is shorter, its derivative."""
-        self.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
-        self.steps[symbol] = value
+    def define(self, function, value, first=None, second=None):
+        """Define a function of the crank angle by its value and, where these are shorter, its derivatives."""
         first = slope(value) if first is None else first
-        self.derivatives(function, first, slope(first))
+        for order, part in enumerate((value, first, slope(first) if second is None else second)):
+            if part is not None:
+                self._set(slope(function, order), f"{function.func}_{order}", part)
 
     # Results of motion
 
