@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.mirror import mirrored
 from support.turning_machines import ANGLES, turning_scene
 
@@ -31,8 +32,7 @@ def motor(transmission):
 # Coasting
 
 
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-@pytest.mark.parametrize("others", [(), (FAINT,)])
+@pytest.mark.parametrize(("sense", "others"), [(1.0, ()), (-1.0, (FAINT,))])
 def test_coasting_reads_the_stroke_by_its_motion(sense, others):
     scene = press([ks.ProcessForce(INDICATOR), *others])
     motion = ks.drive.coast(scene, 1.0, from_angle=-sense * 0.7, from_speed=sense * 8.0, until=1.0)
@@ -111,8 +111,8 @@ def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
     assert slower == pytest.approx(0.0, abs=1e-12) if ratio > 0.0 else slower > 0.3
 
 
-@pytest.mark.parametrize("law", STROKES)
-@pytest.mark.parametrize("sense", [1.0, -1.0])
+@every("law", STROKES)
+@every("sense", [1.0, -1.0])
 def test_weak_motor_names_one_torque_for_all_laws(law, sense):
     scene = press(ks.ProcessForce(STROKES[law]))
     weak = ks.drive.Motor.constant(20.0, transmission=sense)
@@ -194,10 +194,8 @@ slider = { mass = "4 kg" }
 gravity = {}"""
 
 
-@pytest.mark.parametrize("law", STROKES)
-@pytest.mark.parametrize(
-    "drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}]
-)
+@every("law", STROKES)
+@every("drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}])
 def test_functions_know_the_motion_as_tables_do(law, drive):
     """By the velocity, and of the acceleration's sense where the scene has none."""
     angle, speed = [1.0, 2.0, 4.0], np.zeros(3) if np.ndim(drive.get("crank_acceleration", 0.0)) else 0.0
@@ -234,7 +232,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("drive", "words"), REFUSED.values(), ids=REFUSED)
+@every(("drive", "words"), REFUSED.values(), ids=REFUSED)
 def test_a_sense_that_cannot_be_is_refused(drive, words):
     with pytest.raises(ks.ParameterError, match=words):
         _ = ks.solve(PRESS, 0.5, loads=ks.ProcessForce(INDICATOR), **drive).balancing_torque
