@@ -99,9 +99,10 @@ def test_ambiguous_start_asks_for_a_direction():
 # Starting
 
 
-@pytest.mark.parametrize("law", STROKES)
 @pytest.mark.parametrize("ratio", [10.0, -10.0])
-@pytest.mark.parametrize("others", [(), (ks.TorsionDamper(1e-3, on="crank"),)])
+@pytest.mark.parametrize(
+    ("law", "others"), [*((law, ()) for law in STROKES), ("sign", (ks.TorsionDamper(1e-3, on="crank"),))]
+)
 def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
     """At 1 rad the crank that turns counter-clockwise draws the slider in: no force; the other way it must push."""
     scene = press([ks.ProcessForce(STROKES[law]), *others])
@@ -315,8 +316,7 @@ OPPOSED = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", OPPOSED)
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-@pytest.mark.parametrize("until", ["standstill", 0.2])
+@pytest.mark.parametrize(("sense", "until"), [(1.0, "standstill"), (-1.0, 0.2)])
 @pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
 def test_machine_stops_against_opposing_loads(law, sense, until, friction):
     """Steps of the integration end beyond the standstill; the loads may take no speed against the sense for it."""
@@ -375,8 +375,9 @@ def test_nothing_is_derived_by_the_sense(name):
     assert "sense" not in slopes
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("kind", ["crank slider", "lever", "roller follower", "two sliders"])
+@pytest.mark.parametrize(
+    ("kind", "sense"), [("crank slider", 1), ("lever", -1), ("roller follower", 1), ("two sliders", -1)]
+)
 def test_machine_at_rest_equals_one_that_creeps(kind, sense):
     turning = turning_scene(kind, 60, friction=True)
     rest = ks.Scene(turning.mechanism, 0.0, 0.0, turning.loads, turning.friction, sense=sense)
