@@ -9,10 +9,9 @@ import types
 from functools import cache
 from pathlib import Path
 
-import pytest
-
 import kinetostatics as ks
 from kinetostatics.machine import group
+from support.every import every
 
 NOTEBOOKS = sorted((Path(__file__).parent.parent / "notebooks").glob("*.ipynb"))
 FIRST_SCREEN = 24
@@ -145,7 +144,7 @@ def test_help_names_every_public_module():
     assert all(re.search(rf"\b{name}\b", shown) for name in modules())
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@every("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_imports_public_names_only(path):
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")

@@ -17,6 +17,7 @@ from support.case_chains import (
     rpm,
 )
 from support.case_files import case_file, problems
+from support.every import every
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)
@@ -40,7 +41,7 @@ def test_a_chain_is_swept_and_its_tolerances_are_read(tmp_path):
     assert len(set(found["largest D [N]"])) == 6
 
 
-@pytest.mark.parametrize("name", IN_PYTHON)
+@every("name", IN_PYTHON)
 def test_a_case_varies_in_other_processes(name):
     case = ks.load_case(EXAMPLES / f"{name}.toml")
     sent, variant = pickle.loads(pickle.dumps(case)).variant(case.reference), case.variant(case.reference)

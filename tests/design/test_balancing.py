@@ -35,8 +35,8 @@ MASSLESS = ks.crank_slider(0.3, 0.8)
 # Full
 
 
-@pytest.mark.parametrize(("speed", "acceleration"), [(10.0, 0.0), (0.0, 30.0), (-7.0, 50.0)])
-@pytest.mark.parametrize(
+@every(("speed", "acceleration"), [(10.0, 0.0), (0.0, 30.0), (-7.0, 50.0)])
+@every(
     ("mechanism", "weights"),
     [
         (SKEW, {"crank": Counterweight(arm=-0.2), "coupler": Counterweight(arm=-0.3)}),
@@ -60,10 +60,8 @@ def test_full_balancing_removes_the_shaking_force(mechanism, weights, speed, acc
 # Partial
 
 
-@pytest.mark.parametrize(
-    ("ratio", "value"), [("across", 1.0), ("along", 0.0), ("overall", 0.5), (0.3, 0.3), (0.8, 0.8)]
-)
-@pytest.mark.parametrize("mechanism", [mower(), mower(0.0), INCLINED, BEHIND])
+@every(("ratio", "value"), [("across", 1.0), ("along", 0.0), ("overall", 0.5), (0.3, 0.3), (0.8, 0.8)])
+@every("mechanism", [mower(), mower(0.0), INCLINED, BEHIND])
 def test_partial_balancing_reaches_the_ratio(mechanism, ratio, value):
     found = partial(mechanism, ratio, crank=HEAVY)
     assert found.ratio == pytest.approx(value, rel=1e-13, abs=1e-14)

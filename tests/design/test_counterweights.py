@@ -22,6 +22,7 @@ from support.balanced import (
     unbalance,
 )
 from support.case_files import shipped
+from support.every import every
 from support.machines import largest
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
@@ -119,7 +120,7 @@ NEEDED = 0.209 / 3
 """Unbalance, kg m, of the counterweight on the mower's crank that leaves no force across the guide."""
 
 
-@pytest.mark.parametrize(
+@every(
     ("weight", "message"),
     [
         ({"arm": -0.035, "largest_mass": 1.5}, "crank: the counterweight needed, 1.99048 kg, exceeds .* mass 1.5 kg"),

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.design.linkage import grashof
+from support.every import every
 from support.machines import TURN, planar
 from support.machines import four_bar_of as four_bar
 from support.machines import swept as solved
@@ -129,8 +130,8 @@ def assert_intervals_complement(mechanism):
     assert np.all(np.isfinite(s.position("A")))
 
 
-@pytest.mark.parametrize("frame_angle", [0.0, 0.1, 2.0, -2.5, np.pi])
-@pytest.mark.parametrize("kind", ["double-rocker", "rocker-crank", "triple-rocker"])
+@every("frame_angle", [0.0, 0.1, 2.0, -2.5, np.pi])
+@every("kind", ["double-rocker", "rocker-crank", "triple-rocker"])
 def test_closed_intervals_complement_assembly_errors(kind, frame_angle):
     assert_intervals_complement(four_bar(EXAMPLES[kind], frame_angle))
 
@@ -151,8 +152,8 @@ def test_closed_intervals_of_random_bars_fit_the_gaps(lengths, frame_angle):
 # Change points
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
-@pytest.mark.parametrize("name", CHANGE_POINTS)
+@every("assembly", [1, -1])
+@every("name", CHANGE_POINTS)
 def test_change_point_results_are_finite_and_warned(name, assembly):
     """Every one of these has its links in line at crank angle 0, where no direction of motion is preferred."""
     _, coupler, rocker, frame = lengths = CHANGE_POINTS[name]

@@ -8,6 +8,7 @@ import kinetostatics as ks
 from kinetostatics.design import spring_follower
 from kinetostatics.errors import ParameterError
 from kinetostatics.numbers.panels import Panels
+from support.every import every
 
 VARIANTS = ("rho-0.1", "rho-0.5", "free-start")
 LOADS = {
@@ -27,8 +28,7 @@ def balanced(scene, mass=0.3, travel=0.012, **others):
     return ks.design.torque_balancing_cam(scene, mass=mass, travel=travel, **others)
 
 
-@pytest.mark.parametrize("load", LOADS)
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize(("variant", "load"), [*zip(VARIANTS, LOADS, strict=True), ("rho-0.5", "switching")])
 def test_only_the_mean_torque_remains_with_contact(variant, load):
     scene = drive(variant, load)
     found = balanced(scene, guide_angle=0.4, guide_offset=0.003)
@@ -153,8 +153,8 @@ def residual(slope, level, mass, stiffness):
     return mass * first**2 / 2 + stiffness * x**2 / 2 + e(ANGLES) - level, mass * second + stiffness * x
 
 
-@pytest.mark.parametrize("mass", [1e-6, 0.1, 1.0])
-@pytest.mark.parametrize("slope", [np.sin, lambda x: np.sin(x) + 0.8 * np.cos(2 * x), lambda x: np.abs(np.sin(x - 1))])
+@every("mass", [1e-6, 0.1, 1.0])
+@every("slope", [np.sin, lambda x: np.sin(x) + 0.8 * np.cos(2 * x), lambda x: np.abs(np.sin(x - 1))])
 def test_energy_is_held_and_the_cam_presses(slope, mass):
     missing, force = residual(slope, 8.0, mass, 2.0)
     assert np.max(np.abs(missing)) < 3.0 * spring_follower.SERIES_TOLERANCE * 8.0

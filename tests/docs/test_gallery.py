@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from support import pages
+from support.every import every
 
 pytestmark = pages.needed
 gallery, pictures = pages.script("draw_gallery"), pages.script("pictures")
@@ -22,7 +23,7 @@ def test_every_picture_is_drawn_by_lines_on_the_page():
     assert 10 <= len(SNIPPETS) <= 14
 
 
-@pytest.mark.parametrize("name", SNIPPETS)
+@every("name", SNIPPETS)
 def test_a_picture_is_small_and_bears_no_date(name):
     assert len([line for line in SNIPPETS[name].splitlines() if line.strip()]) <= 6
     assert max(map(len, SNIPPETS[name].splitlines())) <= 120

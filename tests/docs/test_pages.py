@@ -10,6 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile import schema
 from kinetostatics.casefile.schema import MechanismVariant
+from support.every import every
 from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, script, shown_code, text_of
 
 PAGES = pages()
@@ -19,7 +20,7 @@ RUN_BY_TESTS = {"gallery": "tests/docs/test_gallery.py", "api/loads": "tests/mac
 """Pages that show code as the repository's own page does, and the test that runs it."""
 
 
-@pytest.mark.parametrize("name", PAGES)
+@every("name", PAGES)
 def test_links_lead_to_pages_and_files(name):
     for link in links(text_of(PAGES[name])):
         path, _, _ = link.partition("#")
@@ -42,7 +43,7 @@ def test_every_page_stands_in_one_list_of_pages():
     assert set(PAGES) - {"index"} <= set(below)
 
 
-@pytest.mark.parametrize("name", PAGES)
+@every("name", PAGES)
 def test_python_on_pages_is_run_by_build_or_test(name):
     text = text_of(PAGES[name])
     if code_cells(text):
@@ -51,7 +52,7 @@ def test_python_on_pages_is_run_by_build_or_test(name):
         assert (DOCS.parent / RUN_BY_TESTS[name]).exists()
 
 
-@pytest.mark.parametrize("name", PAGES)
+@every("name", PAGES)
 def test_pages_name_no_host_to_load_from(name):
     assert not re.search(r"!\[[^\]]*\]\((?:https?:)?//|<(?:script|img|iframe)\b[^>]*//", text_of(PAGES[name]))
 
@@ -125,7 +126,7 @@ def test_each_public_name_stands_on_one_page():
 NOTEBOOKS = script("execute_notebooks")
 
 
-@pytest.mark.parametrize("path", sorted(NOTEBOOKS.FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
+@every("path", sorted(NOTEBOOKS.FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
 def test_notebook_is_kept_with_its_outputs(path):
     assert not list(NOTEBOOKS.problems(path)), "run: python docs/execute_notebooks.py " + path.stem
 
@@ -143,7 +144,7 @@ def test_every_table_of_a_case_file_has_a_section():
     assert {model.__name__ for model in whole} == {model.__name__ for model in told}
 
 
-@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.title)
+@every("part", PARTS, ids=lambda part: part.title)
 def test_every_key_of_a_table_is_told_of(part):
     elsewhere = set(MechanismVariant.model_fields) if part.title.startswith("Mechanism") else set()
     assert {key.name for key in part.keys} | elsewhere >= set(MODELS[part.title].model_fields)
@@ -154,7 +155,7 @@ def test_every_key_of_a_table_is_told_of(part):
         assert key.example, key.name
 
 
-@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.title)
+@every("part", PARTS, ids=lambda part: part.title)
 def test_examples_are_toml(part):
     for key in part.keys:
         assert tomllib.loads(key.example)

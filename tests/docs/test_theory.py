@@ -7,6 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from support import pages
+from support.every import every
 
 pytestmark = pages.needed
 theory = pages.script("draw_theory")
@@ -25,7 +26,7 @@ def test_formulas_of_a_page_are_those_of_the_library(path):
     assert "ks" in names
 
 
-@pytest.mark.parametrize("path", CHECKED)
+@every("path", CHECKED)
 def test_a_page_names_sources_and_shows_pictures(path):
     text = (pages.DOCS / path).read_text(encoding="utf-8")
     assert "*Source:*" in text or path == "theory/signs.md"

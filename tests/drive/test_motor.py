@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.drive.resolution import require_inertia, resolved
 from kinetostatics.drive.steady_running import operating_speed, settle_by_integration
 from support.drives import DISC, DISC_MOTOR, driven
+from support.every import every
 
 Motor = ks.drive.Motor
 MOTORS = {
@@ -48,7 +49,7 @@ def test_motor_table_passes_rows_without_overshoot():
 GOOD = {"power": 55e3, "speed": 153.9, "synchronous_speed": 157.0, "overload": 2.5}
 
 
-@pytest.mark.parametrize(
+@every(
     ("changes", "words"),
     [
         ({"power": -1.0}, "power must be greater than 0, got -1"),

@@ -10,6 +10,7 @@ import kinetostatics as ks
 from support.case_files import shipped
 from support.drives import DISC as WHEEL
 from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
+from support.every import every
 
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 
@@ -177,7 +178,7 @@ def test_balanced_saw_does_not_start_against_springs(angle, words):
         assert caught.value.missing == pytest.approx(held.load_torque - rest, rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@every(
     ("call", "words"),
     [
         (lambda: ks.drive.coast(PENDULUM, until=None), "give until, a time in s"),

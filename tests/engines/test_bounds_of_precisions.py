@@ -208,6 +208,7 @@ def test_numpy_functions_in_single_keep_to_their_ulp(function, name):
     assert off(compute(numbers), compute(numbers.astype(float)), U) <= SINGLE.ulp[name]
 
 
+@pytest.mark.slow
 @every("function, name", FUNCTIONS)
 def test_loop_functions_in_single_keep_to_their_ulp(numba, function, name):
     own = getattr(math, name)
@@ -216,6 +217,7 @@ def test_loop_functions_in_single_keep_to_their_ulp(numba, function, name):
     assert off(compute(numbers), getattr(np, function)(numbers.astype(float)), U) <= SINGLE.ulp[name]
 
 
+@pytest.mark.slow
 @every("function, name", FUNCTIONS)
 def test_jax_functions_on_the_cpu_keep_to_their_ulp(jax, function, name):
     numbers = single_numbers()

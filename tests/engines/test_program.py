@@ -18,10 +18,8 @@ from kinetostatics.engines.engines import KERNELS
 from kinetostatics.engines.graph import Graph, needed, operations
 from kinetostatics.engines.program import plausibility_test, program_of
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.mechanics.dynamics import Dynamics
-from kinetostatics.mechanics.quantities import components, magnitude
+from kinetostatics.mechanics.quantities import magnitude
 from kinetostatics.numbers import parameter_tree
-from kinetostatics.numbers.parameter_tree import unflatten
 from support import DATA, graphs
 from support.case_files import shipped
 from support.every import every
@@ -140,9 +138,8 @@ def test_enclosures_equal_50_digit_tables_to_24_digits(flint, variant):
 # dask
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if place else []) for place, name in enumerate(DIVERSE)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DIVERSE[2:])
 def test_dask_arrays_stay_lazy_and_equal_numpy(name):
     dask = pytest.importorskip("dask", reason="dask is not installed (extra: distributed)")
     array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
@@ -189,8 +186,8 @@ def test_compiled_programs_equal_solve(numba):
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
 
 
-@pytest.mark.parametrize("angles", [ANGLES[7:8], ANGLES[:5]])
-@pytest.mark.parametrize("name", SCENES)
+@every("angles", [ANGLES[7:8], ANGLES[:5]])
+@every("name", SCENES)
 def test_program_on_plain_numbers_equals_the_kernels(name, angles):
     """A few crank angles are computed one by one."""
     s = solve(SCENES[name], angles)
@@ -208,37 +205,6 @@ def test_programs_in_blocks_equal_one_block(monkeypatch):
     monkeypatch.setattr("kinetostatics.engines.program.BUFFER_VALUES", 10_000)
     found.append(program(s, everything(s))[1]())
     assert np.array_equal(*found)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_derivatives_equal_60_digit_differences(interpreted, flint, name):
-    """By NumPy and by the loop, against central differences of the kernels on arb numbers."""
-    s = solve(SCENES[name], ANGLES[5::45])
-    names, state = ("balancing_torque", *s.reactions), s.dynamics
-    made, leaves = program_of(state, names)
-    places = tuple(range(len(leaves.numbers)))
-    assert len(places) > 4
-    angles = np.array([flint.arb(angle) for angle in s.crank_angle.tolist()])
-    structure, _ = state.apart
-    step = flint.arb(2) ** -60
-
-    def beside(place, way):
-        numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
-        mechanism, speed, acceleration, loads, *_ = unflatten(structure, lambda: next(numbers), None, None)
-        moved = Dynamics(mechanism, angles, speed, acceleration, loads)
-        return [part for quantity in names for part in components(moved, quantity)]
-
-    slopes = [
-        [(ahead - behind) / (2 * step) for ahead, behind in zip(beside(place, 1), beside(place, -1), strict=True)]
-        for place in places
-    ]
-    expected = np.array(slopes).swapaxes(0, 1).astype(float)
-    for compiled_loop in (False, True):
-        found = (
-            made.by_parameters(places).run(state, leaves, compiled_loop)[len(made.outputs) :].reshape(expected.shape)
-        )
-        size = np.abs(expected).max(axis=-1, keepdims=True)
-        assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 
 
 @pytest.mark.slow
@@ -419,7 +385,7 @@ def test_a_scene_with_hints_always_gets_a_closer_look(crank, length, mass, inert
     assert odd or mechanism.hints == ()
 
 
-@pytest.mark.parametrize("name", SCENES)
+@every("name", SCENES)
 def test_ordinary_machines_need_no_closer_look(name):
     s = solve(SCENES[name], SCENES[name].mechanism.turns * [0.3])
     proportion, odd = s.first_look

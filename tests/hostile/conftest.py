@@ -49,7 +49,6 @@ def saw(tmp_path):
     case, table = tmp_path / "saw.toml", tmp_path / "saw_precision.csv"
     case.write_text(TEXT, encoding="utf-8")
     table.write_text(CAM, encoding="utf-8")
-    ks.load_case(case)
     yield case
     assert case.read_text(encoding="utf-8") == TEXT
     assert table.read_text(encoding="utf-8") == CAM

@@ -12,6 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
+from support.every import each, every
 
 TURN = np.linspace(0.1, 6.2, 40)
 PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.01, 0.01), slider=ks.Link(1.0))
@@ -199,167 +200,93 @@ def test_command_with_failed_designs_reports_failure(capsys):
 # groups of one's own that do less than they declare
 
 
-class Own(ks.SliderGroup):
-    """A slider group of the user's own: nothing of it is taken for granted."""
+def own(**methods):
+    """A slider group of the user's own, with some methods of its own: nothing of it is taken for granted."""
+    return type("Own", (ks.SliderGroup,), methods)
 
 
-class WithoutPin(Own):
+def placed(change):
+    """A group whose place does what a slider's does, and then this to the placement."""
+
     def place(self, placement):
-        """Add no pin."""
-        super().place(placement)
-        del placement.joints["B"]
+        ks.SliderGroup.place(self, placement)
+        change(placement)
+
+    return own(place=place)
 
 
-class WithoutLink(Own):
-    def place(self, placement):
-        """Add no slider."""
-        super().place(placement)
-        del placement.links["slider"]
+def closing(found):
+    """A group whose closure is found from its placement."""
+    return own(closure=lambda self, placement: found(placement))
 
 
-class WithoutTravel(Own):
-    def place(self, placement):
-        """Add no travel."""
-        super().place(placement)
-        del placement.travels["slider"]
-
-
-class Nothing(Own):
-    def place(self, placement):
-        """Add nothing."""
-
-
-class PlainJoint(Own):
-    def place(self, placement):
-        """Add a joint that is none."""
-        super().place(placement)
-        placement.joints["B"] = (0.1, 0.2)
-
-
-class Strange(Own):
-    def place(self, placement):
-        """Ask for a joint of no part."""
-        super().place(placement)
-        placement.joints["B"] = placement.joints["Q"]
-
-
-class ThreeMargins(Own):
-    def closure(self, placement):
-        """Three numbers."""
-        return np.ones(3)
-
-
-class SeveralDesigns(Own):
-    def closure(self, placement):
-        """Numbers of two designs."""
-        return np.ones((2, 1))
-
-
-class Pair(Own):
-    def closure(self, placement):
-        """Two margins."""
-        return 1.0, 2.0
-
-
-class Text(Own):
-    def closure(self, placement):
-        """A word."""
-        return "yes"
-
-
-class Truth(Own):
-    def closure(self, placement):
-        """Truth values."""
-        return placement.angle > -1.0
-
-
-class NoMargin(Own):
-    def closure(self, placement):
-        """Nothing at all."""
-        return None
-
-
-class Unresolved(Own):
-    def resolve(self, placement, loads, along):
-        """Find nothing."""
-        return None
-
-
-WRONG = [
-    (WithoutPin, r"its place must put a Joint for the joint 'B' into placement\.joints"),
-    (WithoutLink, r"its place must put a LinkMotion for the link 'slider' into placement\.links"),
-    (WithoutTravel, r"its place must put a Joint for the travel of 'slider' into placement\.travels"),
-    (Nothing, r"joint 'B'.*link 'coupler'.*link 'slider'"),
-    (PlainJoint, r"its place must put a Joint for the joint 'B'.*puts \(0\.1, 0\.2\)"),
-    (Strange, r"hangs on 'A', but its place asks for 'Q'"),
-    (ThreeMargins, r"its closure must return its margin.*of shape \(3,\)"),
-    (SeveralDesigns, r"its closure must return its margin.*of shape \(2, 1\)"),
-    (Pair, r"its closure must return its margin.*one value, not several"),
-    (Text, r"its closure must return its margin.*a text"),
-    (Truth, r"its closure must return its margin.*truth value"),
-    (NoMargin, r"its closure must return its margin.*got None"),
-    (Unresolved, r"its resolve must return a Resolved"),
+NO_PLACES = [
+    (placed(lambda placement: placement.joints.pop("B")), r"a Joint for the joint 'B' into placement\.joints"),
+    (
+        placed(lambda placement: placement.links.pop("slider")),
+        r"LinkMotion for the link 'slider' into placement\.links",
+    ),
+    (own(place=lambda self, placement: None), r"joint 'B'.*link 'coupler'.*link 'slider'"),
+    (
+        placed(lambda placement: placement.joints.update(B=(0.1, 0.2))),
+        r"its place must put a Joint for the joint 'B'.*puts \(0\.1, 0\.2\)",
+    ),
+    (
+        placed(lambda placement: placement.joints.update(B=placement.joints["Q"])),
+        r"hangs on 'A', but its place asks for 'Q'",
+    ),
+    (own(resolve=lambda self, placement, loads, along: None), r"its resolve must return a Resolved"),
 ]
+MARGIN = r"its closure must return its margin.*"
+WRONG = [
+    *NO_PLACES,
+    (placed(lambda placement: placement.travels.pop("slider")), r"the travel of 'slider' into placement\.travels"),
+    (closing(lambda placement: np.ones(3)), rf"{MARGIN}of shape \(3,\)"),
+    (closing(lambda placement: np.ones((2, 1))), rf"{MARGIN}of shape \(2, 1\)"),
+    (closing(lambda placement: (1.0, 2.0)), f"{MARGIN}one value, not several"),
+    (closing(lambda placement: "yes"), f"{MARGIN}a text"),
+    (closing(lambda placement: placement.angle > -1.0), f"{MARGIN}truth value"),
+    (closing(lambda placement: None), f"{MARGIN}got None"),
+]
+ALWAYS, NEVER = closing(lambda placement: 1.0), closing(lambda placement: np.full_like(placement.angle, np.nan))
 
 
 def with_group(group, crank=0.05):
     return ks.Mechanism("own", ks.Crank(crank), (group(0.2, slider=ks.Link(1.0)),))
 
 
-@pytest.mark.parametrize(("group", "message"), WRONG)
-@pytest.mark.parametrize("on_gap", ["raise", "nan"])
-def test_incomplete_groups_are_refused_when_solved(group, message, on_gap):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.solve(with_group(group), TURN, crank_speed=10.0, on_gap=on_gap).reaction("O")
-
-
-@pytest.mark.parametrize(("group", "message"), WRONG)
-def test_the_check_of_groups_says_what_they_lack(group, message):
+@every(("group", "message"), WRONG)
+def test_incomplete_groups_are_refused_when_solved_or_checked(group, message):
+    for on_gap in ("raise", "nan"):
+        with pytest.raises(ks.ParameterError, match=message):
+            ks.solve(with_group(group), TURN, crank_speed=10.0, on_gap=on_gap).reaction("O")
     with pytest.raises(ks.ParameterError, match=message):
         ks.check(group(0.2, slider=ks.Link(1.0)))
 
 
-@pytest.mark.parametrize("group", [WithoutPin, WithoutLink, Nothing, PlainJoint, Strange, Unresolved])
-def test_programs_of_such_groups_are_refused(group):
-    with pytest.raises(ks.ParameterError, match=r"its (place|resolve)"):
+@every(("group", "message"), NO_PLACES)
+def test_programs_of_such_groups_are_refused(group, message):
+    with pytest.raises(ks.ParameterError, match=message):
         ks.compile(ks.Scene(with_group(group), 10.0), "O", engine="numpy")
 
 
-class AlwaysCloses(Own):
-    def closure(self, placement):
-        """The same everywhere."""
-        return 1.0
-
-
-class NeverKnows(Own):
-    def closure(self, placement):
-        """No number."""
-        return np.full_like(placement.angle, np.nan)
-
-
 def test_constant_closure_without_position_is_refused():
-    within = ks.solve(with_group(AlwaysCloses), TURN, crank_speed=10.0)
+    within = ks.solve(with_group(ALWAYS), TURN, crank_speed=10.0)
     assert np.isfinite(within.balancing_torque).all()
     with pytest.raises(ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ such"):
-        ks.solve(with_group(AlwaysCloses, 0.3), TURN, crank_speed=10.0)
+        ks.solve(with_group(ALWAYS, 0.3), TURN, crank_speed=10.0)
     with pytest.raises(ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ such"):
-        ks.check(AlwaysCloses(0.2))
+        ks.check(ALWAYS(0.2))
 
 
 def test_a_closure_that_is_no_number_is_refused():
     with pytest.raises(ks.ParameterError, match=r"its closure must be a number.*but is nan at 40"):
-        ks.solve(with_group(NeverKnows), TURN, crank_speed=10.0)
-
-
-class WithoutWords(Own):
-    def requirement(self, placement):
-        """No words."""
-        return None
+        ks.solve(with_group(NEVER), TURN, crank_speed=10.0)
 
 
 def test_missing_requirement_names_the_group():
-    with pytest.raises(ks.AssemblyError, match="the closure of WithoutWords is negative there"):
-        ks.solve(with_group(WithoutWords, 0.3), TURN, crank_speed=10.0)
+    with pytest.raises(ks.AssemblyError, match="the closure of Own is negative there"):
+        ks.solve(with_group(own(requirement=lambda self, placement: None), 0.3), TURN, crank_speed=10.0)
 
 
 # loads that do nothing where they stand
@@ -399,126 +326,95 @@ def test_idle_loads_take_no_torque(mechanism, load):
 # names, mappings, seeds and numbers of a wrong kind
 
 
-ODD = [None, 1.5, True, [], {}, object(), b"O", (), ["O", "A"], ("O",), {"O"}, np.array(["O", "A"]), float]
+ODD = [1.5, True, [], {}, object(), b"O", (), ["O", "A"], ("O",), {"O"}, np.array(["O", "A"]), float]
+NAMED = (
+    *("reaction", "scalar", "measure", "rate", "angular_acceleration", "inertia_force", "pin_load"),
+    *("friction_at", "friction_loss_at", "travel_velocity"),
+)
+NO_SEEDS = ["x", 1.5, -1, True, {}, [1.5], np.nan, object()]
+NO_NAMES = [None, 1, 1.5, ("a",), b"x"]
+NO_PATHS = [[], {}, np.array([1.0]), {"O"}, 1.5, None]
+NO_MAPPINGS = [None, 1.5, "slider.mass", ["slider.mass"], np.array([1.0, 2.0]), {"slider.mass"}]
+NO_TEXTS = [1.5, -1, True, object(), float, b"O"]
+DRAWN = [ks.designs.sobol, ks.designs.latin_hypercube, ks.designs.random]
+SOLUTION = SCENE.solve(8)
+ONE = pd.DataFrame({"slider.mass [kg]": [1.0]})
 
 
-@pytest.mark.parametrize("method", ["sobol", "latin_hypercube", "random"])
-@pytest.mark.parametrize("seed", ["x", 1.5, -1, True, {}, [1.5], np.nan, object()])
-def test_seeds_of_designs_that_are_none_are_refused(method, seed):
-    with pytest.raises(ks.ParameterError, match="seed must be a whole number of at least 0"):
-        getattr(ks.designs, method)(SPREADS, 4, seed)
+def program():
+    return ks.compile(SCENE, "balancing_torque", engine="numpy")
 
 
-def test_the_seed_of_tolerances_is_looked_at():
-    with pytest.raises(ks.ParameterError, match="seed must be a whole number"):
-        ks.tolerances(SCENE, ["largest O"], {"slider.mass": "1..2 kg"}, count=4, seed=1.5, progress=False)
-
-
-@pytest.mark.parametrize("method", ["sobol", "latin_hypercube", "random", "grid"])
-@pytest.mark.parametrize("name", [None, 1, 1.5, ("a",), b"x"])
-def test_design_parameters_must_be_names(method, name):
-    given = ({name: "1..2 kg:2"},) if method == "grid" else ({name: "1..2 kg"}, 4)
-    with pytest.raises(ks.ParameterError, match="a parameter must be a name"):
-        getattr(ks.designs, method)(*given)
-
-
-@pytest.mark.parametrize("uniform", ["half", [["a"]], [[object()]], [[0.5], [0.5, 0.6]], lambda size: "x"])
-def test_samples_that_are_no_numbers_are_refused(uniform):
-    with pytest.raises(ks.ParameterError, match=r"uniform must be numbers from 0 to 1, an array \(designs, 1\)"):
-        ks.designs.sample(SPREADS, uniform)
-
-
-NAMED = [
-    "reaction",
-    "scalar",
-    "measure",
-    "rate",
-    "angular_acceleration",
-    "inertia_force",
-    "pin_load",
-    "friction_at",
-    "friction_loss_at",
-    "travel_velocity",
+REFUSED = [
+    *each(
+        ks.QuantityError,
+        *((getattr(SOLUTION, name), ODD, "allowed") for name in NAMED),
+        (SOLUTION.reaction, [["O", "A"], ("O", "A"), {"O", "A"}, np.array(["O", "A"])], "ask for one at a time"),
+    ),
+    *each(
+        ks.errors.CaseError,
+        *(
+            (lambda bad, call=call: call(ks.load_case("compressor"), bad), [*NO_PATHS, ["plain"]], "variant is")
+            for call in (
+                ks.Case.variant,
+                ks.Case.solve,
+                lambda case, bad: case.compare(bad, "loaded"),
+                ks.Case.comparison_table,
+            )
+        ),
+    ),
+    *each(
+        ks.ParameterError,
+        *((lambda bad, draw=draw: draw(SPREADS, 4, bad), NO_SEEDS, "seed must be a whole number") for draw in DRAWN),
+        (
+            lambda bad: ks.tolerances(
+                SCENE, ["largest O"], {"slider.mass": "1..2 kg"}, count=4, seed=bad, progress=False
+            ),
+            [1.5],
+            "seed must be a whole number",
+        ),
+        *((lambda bad, draw=draw: draw({bad: "1..2 kg"}, 4), NO_NAMES, "a parameter must be a name") for draw in DRAWN),
+        (lambda bad: ks.designs.grid({bad: "1..2 kg:2"}), NO_NAMES, "a parameter must be a name"),
+        (
+            lambda bad: ks.designs.sample(SPREADS, bad),
+            ["half", [["a"]], [[object()]], [[0.5], [0.5, 0.6]], lambda size: "x"],
+            r"uniform must be numbers from 0 to 1, an array \(designs, 1\)",
+        ),
+        (
+            SOLUTION.elongation,
+            ["far", None, [0.1, 0.2], np.array([0.1, 0.2]), np.array(["a"]), object()],
+            "free_position",
+        ),
+        *(
+            (call, NO_MAPPINGS, "values must be a dict of path to number")
+            for call in (
+                SCENE.varied,
+                lambda bad: ks.load_case("compressor").variants["loaded"].varied(bad),
+                lambda bad: program()(0.5, bad),
+                lambda bad: program().error_bound(0.5, bad),
+                lambda bad: program().derivatives(0.5, None, bad),
+            )
+        ),
+        (lambda bad: ks.compile(SCENE, bad), NO_TEXTS, "must be a name, or several in a list"),
+        (lambda bad: ks.compile(SCENE, "O", bad), NO_TEXTS, "must be a name, or several in a list"),
+        (lambda bad: program().derivatives(0.5, bad), NO_TEXTS, "must be a name, or several in a list"),
+        (lambda bad: program().depends_on(bad), NO_PATHS, "parameter is"),
+        (ks.Scene.of, [None, 1, [], {}, "O", PUMP, SCENE], "solution must be a Solution"),
+        (
+            lambda bad: ks.sweep(SCENE, ONE, ["largest O"], progress=bad),
+            [None, 1.5, "yes", np.array([1.0, 2.0])],
+            "progress must be True or False",
+        ),
+        (ks.two_mass_coupler, [None, SCENE, "saw", [], 1.5], "mechanism must be a Mechanism"),
+    ),
 ]
+"""Calls, what they are given, and what they say to it."""
 
 
-@pytest.mark.parametrize("method", NAMED)
-@pytest.mark.parametrize("name", [item for item in ODD if item is not None])
-def test_methods_that_take_a_name_refuse_all_else(method, name):
-    solution = SCENE.solve(8)
-    with pytest.raises(ks.QuantityError, match="allowed"):
-        getattr(solution, method)(name)
-
-
-@pytest.mark.parametrize("names", [["O", "A"], ("O", "A"), {"O", "A"}, np.array(["O", "A"])])
-def test_several_names_are_refused_at_once(names):
-    with pytest.raises(ks.QuantityError, match="ask for one at a time"):
-        SCENE.solve(8).reaction(names)
-
-
-@pytest.mark.parametrize("position", ["far", None, [0.1, 0.2], np.array([0.1, 0.2]), np.array(["a"]), object()])
-def test_a_free_position_that_is_no_number_is_refused(position):
-    with pytest.raises(ks.ParameterError, match="free_position"):
-        SCENE.solve(8).elongation(position)
-
-
-@pytest.mark.parametrize("values", [None, 1.5, "slider.mass", ["slider.mass"], np.array([1.0, 2.0]), {"slider.mass"}])
-def test_numbers_by_path_are_a_mapping_everywhere(values):
-    program = ks.compile(SCENE, "balancing_torque", engine="numpy")
-    variant = ks.load_case("compressor").variants["loaded"]
-    for call in (
-        SCENE.varied,
-        variant.varied,
-        lambda given: program(0.5, given),
-        lambda given: program.error_bound(0.5, given),
-        lambda given: program.derivatives(0.5, None, given),
-    ):
-        with pytest.raises(ks.ParameterError, match="values must be a dict of path to number"):
-            call(values)
-
-
-@pytest.mark.parametrize("given", [1.5, -1, True, object(), float, b"O"])
-def test_names_asked_of_programs_are_texts(given):
-    program = ks.compile(SCENE, "balancing_torque", engine="numpy")
-    for call in (
-        lambda: ks.compile(SCENE, given),
-        lambda: ks.compile(SCENE, "O", given),
-        lambda: program.derivatives(0.5, given),
-    ):
-        with pytest.raises(ks.ParameterError, match="must be a name, or several in a list"):
-            call()
-
-
-@pytest.mark.parametrize("path", [[], {}, np.array([1.0]), {"O"}, 1.5, None])
-def test_a_path_that_is_no_text_is_unknown_to_programs(path):
-    with pytest.raises(ks.ParameterError, match="parameter is"):
-        ks.compile(SCENE, "balancing_torque", engine="numpy").depends_on(path)
-
-
-@pytest.mark.parametrize("given", [None, 1, [], {}, "O", PUMP, SCENE])
-def test_the_scene_of_what_is_no_solution_is_refused(given):
-    with pytest.raises(ks.ParameterError, match="solution must be a Solution"):
-        ks.Scene.of(given)
-
-
-@pytest.mark.parametrize("progress", [None, 1.5, "yes", np.array([1.0, 2.0])])
-def test_whether_a_bar_is_shown_is_a_truth_value(progress):
-    with pytest.raises(ks.ParameterError, match="progress must be True or False"):
-        ks.sweep(SCENE, pd.DataFrame({"slider.mass [kg]": [1.0]}), ["largest O"], progress=progress)
-
-
-@pytest.mark.parametrize("name", [[], {}, ["plain"], {"plain"}, np.array([1.0, 2.0]), None, 1.5])
-def test_variants_are_asked_for_by_name(name):
-    case = ks.load_case("compressor")
-    for call in (case.variant, case.solve, lambda given: case.compare(given, "loaded"), case.comparison_table):
-        with pytest.raises(ks.errors.CaseError, match="variant is"):
-            call(name)
-
-
-@pytest.mark.parametrize("given", [None, SCENE, "saw", [], 1.5])
-def test_two_masses_need_a_mechanism(given):
-    with pytest.raises(ks.ParameterError, match="mechanism must be a Mechanism"):
-        ks.two_mass_coupler(given)
+@every(("error", "call", "bad", "words"), REFUSED)
+def test_values_of_a_wrong_kind_are_refused(error, call, bad, words):
+    with pytest.raises(error, match=words):
+        call(bad)
 
 
 # more numbers than any memory holds
@@ -544,8 +440,8 @@ TAKEN = {
 }
 
 
-@pytest.mark.parametrize("numbers", HUGE.values(), ids=HUGE)
-@pytest.mark.parametrize("taken", TAKEN.values(), ids=TAKEN)
+@every("numbers", HUGE.values(), ids=HUGE)
+@every("taken", TAKEN.values(), ids=TAKEN)
 def test_arrays_that_no_memory_holds_are_refused(taken, numbers):
     with pytest.raises(ks.ParameterError, match=r"GB of memory|too many for one table"):
         taken(numbers)

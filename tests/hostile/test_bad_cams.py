@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 laws, TURN = ks.laws, 2 * np.pi
 CAM = ks.cams.CosineLaw(0.3, 2.0)
@@ -94,23 +95,23 @@ FIELDS = {
 }
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=[f"{n}-{type(x).__name__}" for n, x in enumerate(NO_NUMBERS)])
-@pytest.mark.parametrize("field", FIELDS)
+@every("value", NO_NUMBERS, ids=[f"{n}-{type(x).__name__}" for n, x in enumerate(NO_NUMBERS)])
+@every("field", FIELDS)
 def test_non_numbers_are_refused_by_field(field, value):
     make, name, _ = FIELDS[field]
     with pytest.raises(ks.ParameterError, match=f"{name} must"):
         make(value)
 
 
-@pytest.mark.parametrize("value", NOT_POSITIVE, ids=repr)
-@pytest.mark.parametrize("field", [field for field, (_, _, positive) in FIELDS.items() if positive])
+@every("value", NOT_POSITIVE, ids=repr)
+@every("field", [field for field, (_, _, positive) in FIELDS.items() if positive])
 def test_what_must_be_greater_than_zero_is(field, value):
     make, name, _ = FIELDS[field]
     with pytest.raises(ks.ParameterError, match=f"{name} must"):
         make(value)
 
 
-@pytest.mark.parametrize(
+@every(
     ("make", "message"),
     [
         (lambda: laws.cycloidal(0.0, 1.0, 7.0), "angle must be less than 6.28"),
@@ -189,7 +190,7 @@ def test_what_cannot_be_is_refused_in_one_sentence(make, message):
 
 
 @pytest.mark.slow_start  # matplotlib
-@pytest.mark.parametrize(
+@every(
     ("make", "message"),
     [
         (lambda: ks.plots.cam_profile(None, 0.05), "must be one of ks.cams"),
@@ -324,15 +325,15 @@ def drive():
     return ks.load_case("chain_unit").variants["rho-0.1"].scene
 
 
-@pytest.mark.parametrize("number", range(len(KINDS)))
-@pytest.mark.parametrize("law", LAWS, ids=range(len(LAWS)))
+@every("number", range(len(KINDS)))
+@every("law", LAWS, ids=range(len(LAWS)))
 def test_what_is_no_law_is_refused(number, law):
     with pytest.raises(ks.ParameterError, match="cam"):
         KINDS[number](cam=law)
 
 
-@pytest.mark.parametrize("value", [part for part in NUMBERS if part != "text"], ids=range(len(NUMBERS) - 1))
-@pytest.mark.parametrize("name", ["pin", "label"])
+@every("value", [part for part in NUMBERS if part != "text"], ids=range(len(NUMBERS) - 1))
+@every("name", ["pin", "label"])
 def test_names_must_be_texts(name, value):
     for kind in KINDS:
         with pytest.raises(ks.ParameterError, match=f"{name} must be a name"):

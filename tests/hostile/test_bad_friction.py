@@ -221,7 +221,7 @@ DEPENDENT = {
 }
 
 
-@pytest.mark.parametrize("value", DEPENDENT.values(), ids=DEPENDENT)
+@every("value", DEPENDENT.values(), ids=DEPENDENT)
 def test_a_function_of_the_speed_is_known_as_one(value):
     with pytest.raises(ks.DriveError, match="loads depend on the speed"):
         _steady(value)

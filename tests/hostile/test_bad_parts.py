@@ -59,7 +59,7 @@ def test_a_cam_is_made_and_has_a_pitch_curve(bad):
         ks.cam_crank_slider(bad, 2.0)
 
 
-@pytest.mark.parametrize(
+@every(
     "bad",
     [
         0.3,
@@ -261,9 +261,7 @@ def test_load_numbers_are_refused_by_field(field, what):
         MAKERS[field](NO_NUMBERS[what])
 
 
-@pytest.mark.parametrize(
-    "field", [name for name in MAKERS if "stiffness" in name or "coefficient" in name or "length" in name]
-)
+@every("field", [name for name in MAKERS if "stiffness" in name or "coefficient" in name or "length" in name])
 def test_negative_stiffness_and_damping_are_refused(field):
     with pytest.raises(ks.ParameterError, match="at least 0"):
         MAKERS[field](-1.0)

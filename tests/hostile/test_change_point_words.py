@@ -56,7 +56,7 @@ MIXED = [
 ]
 
 
-@pytest.mark.parametrize("changes", MIXED, ids=lambda changes: "-".join(changes))
+@every("changes", MIXED, ids=lambda changes: "-".join(changes))
 def test_batches_of_several_kinds_are_refused(changes):
     given = {"crank_length": 1.0, "coupler_length": 2.0, "rocker_length": 1.0, "rocker_pivot": (2.0, 0.0)} | changes
     with pytest.raises(ks.ParameterError, match="must be of one kind"):

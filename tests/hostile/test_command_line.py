@@ -44,8 +44,10 @@ def filled(command, **values):
     return [text.format(**values) for text in WRITERS[command]]
 
 
-@pytest.mark.parametrize("spelling", SPELLINGS)
-@pytest.mark.parametrize("command", WRITERS)
+@pytest.mark.parametrize(
+    ("command", "spelling"),
+    [*(("run", spelling) for spelling in SPELLINGS), *((command, SPELLINGS[0]) for command in WRITERS)],
+)
 def test_no_command_overwrites_its_input(saw, idle, command, spelling, capsys):
     message = refused(filled(command, case=saw, out=named(saw, spelling)), capsys)
     assert "is read as input and would be replaced; give another name" in message
@@ -79,8 +81,7 @@ def places(tmp_path):
     assert (tmp_path / "link.csv").is_symlink()
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("command", ["run", "sweep"])
+@pytest.mark.parametrize(("command", "place"), [*(("run", place) for place in PLACES), ("sweep", "folder")])
 def test_unwritable_files_are_refused_first(saw, places, idle, command, place, capsys):
     name, text = PLACES[place]
     assert text in refused(filled(command, case=saw, out=places / name), capsys)
@@ -94,8 +95,7 @@ FOLDERS = {
 }
 
 
-@pytest.mark.parametrize("below", ["", "deeper/still"])
-@pytest.mark.parametrize("command", FOLDERS)
+@pytest.mark.parametrize(("command", "below"), [*((command, "") for command in FOLDERS), ("plot", "deeper/still")])
 def test_impossible_folders_are_refused_first(saw, idle, command, below, capsys):
     file = saw.parent / "file"
     file.write_text("old")
@@ -208,7 +208,7 @@ def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
 # Whatever the output takes, and whatever stops a command, it ends in a line
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
 def test_unencodable_output_is_replaced(saw, encoding, monkeypatch):
     raw = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw, encoding=encoding, errors="strict"))

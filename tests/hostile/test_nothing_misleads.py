@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 ROD, BODY = ks.Link(2.0, (0.1, 0.03), 0.02), ks.Link(3.0, (0.1, 0.03), 0.02)
 
@@ -64,7 +65,12 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "table", "name", "state", "flipped"), WRONG)
+@every("kind", GROUPS)
+def test_groups_as_they_are_pass_the_check(kind):
+    assert ks.check(GROUPS[kind]).ok
+
+
+@every(("kind", "table", "name", "state", "flipped"), WRONG)
 def test_check_finds_each_wrong_state(kind, table, name, state, flipped):
     group = GROUPS[kind]
 
@@ -78,13 +84,12 @@ def test_check_finds_each_wrong_state(kind, table, name, state, flipped):
         part = part._replace(**{field: zero if value is None else spoiled(value, flipped)})
         found[name] = whole._replace(joint=part) if of_joint else part
 
-    assert ks.check(group).ok
     report = ks.check(own(group, place=place))
     assert not report.ok
     assert any(name in problem for problem in report.problems)
 
 
-@pytest.mark.parametrize("kind", ["slider", "lever", "cylinder", "yoke", "cam"])
+@every("kind", ["slider", "lever", "cylinder", "yoke", "cam"])
 def test_check_finds_friction_that_drives(kind):
     group = GROUPS[kind]
 
@@ -169,7 +174,7 @@ HINTS = {
 }
 
 
-@pytest.mark.parametrize("name", HINTS)
+@every("name", HINTS)
 def test_slips_are_hinted_at_the_callers_line(name):
     ask, words = HINTS[name]
     with pytest.warns(ks.HintWarning, match=words) as caught:
@@ -209,8 +214,8 @@ INTERVALS = {"crank-slider": [(56.4427, 123.557), (236.443, 303.557)], "four-bar
 
 
 @pytest.mark.slow_start
-@pytest.mark.parametrize("norm", ["largest", "mean", "weighted"])
-@pytest.mark.parametrize("name", OPEN)
+@every("norm", ["largest", "mean", "weighted"])
+@every("name", OPEN)
 def test_gaps_leave_no_optimal_counterweight(name, norm):
     with pytest.raises(ks.AssemblyError, match="so that the crank turns all round") as caught:
         ks.balancing.optimal(OPEN[name], norm, crank=WEIGHT)
@@ -303,7 +308,7 @@ def test_a_spring_that_balances_nothing_is_refused(mass, speed, words):
 SPREADS = {"slider.mass": "500..700 kg", "spring.stiffness": "normal 712 kN/m +- 5 kN/m"}
 
 
-@pytest.mark.parametrize(
+@every(
     ("uniform", "words"),
     [
         ([[2.0, 0.5]], "must be from 0 to 1, .* but 1 of 2 are not, 2 for instance"),
@@ -452,8 +457,8 @@ WAYS = {
 }
 
 
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", IMPURE)
+@every("way", WAYS)
+@every("name", IMPURE)
 def test_impure_load_functions_are_refused(name, way):
     make, words = IMPURE[name]
     with pytest.raises(ks.ParameterError, match=words):

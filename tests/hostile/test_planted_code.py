@@ -114,8 +114,9 @@ DAMAGE = {
 }
 
 
-@pytest.mark.parametrize("damage", DAMAGE)
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize(
+    ("file", "damage"), [*((FILES[2], damage) for damage in DAMAGE), *((file, "flipped") for file in FILES)]
+)
 def test_damaged_machine_code_is_recompiled(entry, file, damage):
     DAMAGE[damage](next(entry.rglob(file)))
     with warnings.catch_warnings(record=True) as caught:

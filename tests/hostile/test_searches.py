@@ -19,7 +19,7 @@ VARY = {"slider.mass": (0.5, 2.0)}
 TORQUE = "mean_absolute balancing_torque"
 
 
-@pytest.mark.parametrize(
+@every(
     ("vary", "message"),
     [
         (None, "vary must be a dict"),
@@ -43,7 +43,7 @@ def test_bounds_that_are_none_are_refused(vary, message):
         ks.design.optimise(PUMP, vary, TORQUE)
 
 
-@pytest.mark.parametrize(
+@every(
     ("limit", "message"),
     [
         ("largest O", "must be an output, a relation and a value"),
@@ -70,7 +70,7 @@ def test_all_wrong_limits_are_told_at_once():
         ks.design.optimise(PUMP, VARY, TORQUE, ["largest O <= 3", "greatest O <= 3 N"])
 
 
-@pytest.mark.parametrize(
+@every(
     ("options", "message"),
     [
         ({}, "give either minimise or maximise"),
@@ -125,7 +125,7 @@ def test_it_is_told_why_no_design_can_be_built(vary, message):
         ks.design.optimise(PUMP, vary, TORQUE)
 
 
-@pytest.mark.parametrize(
+@every(
     ("minimise", "options", "message"),
     [
         (None, {}, "minimise must be two outputs"),
@@ -148,13 +148,13 @@ def test_absent_quantity_is_refused(quantity):
         ks.design.optimise(PUMP, VARY, f"largest {quantity}")
 
 
-@pytest.mark.parametrize("source", [None, 3, "sawframe_2r63", PUMP.mechanism, PUMP.solve(12)])
+@every("source", [None, 3, "sawframe_2r63", PUMP.mechanism, PUMP.solve(12)])
 def test_what_is_no_scene_is_refused(source):
     with pytest.raises(ks.ParameterError, match="source must be a Case"):
         ks.design.optimise(source, VARY, TORQUE)
 
 
-@pytest.mark.parametrize(
+@every(
     ("make", "message"),
     [
         (lambda: ks.design.Spread(0.0, {"slider.mass": "normal 0 % +- 1 %"}), "quantile must lie"),
@@ -186,7 +186,7 @@ def spread(spreads, damped=False, count=16, **options):
     return ks.design.over_spread(scene, TORQUE, ks.design.Spread(0.05, spreads, **options), samples=count)
 
 
-@pytest.mark.parametrize(
+@every(
     ("options", "error", "message"),
     [
         ({"cosine": 0}, ks.ParameterError, "cosine"),

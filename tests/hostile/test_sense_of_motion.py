@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.mirror import mirrored
 from support.turning_machines import ANGLES, turning_scene
 
@@ -31,8 +32,7 @@ def motor(transmission):
 # Coasting
 
 
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-@pytest.mark.parametrize("others", [(), (FAINT,)])
+@pytest.mark.parametrize(("sense", "others"), [(1.0, ()), (-1.0, (FAINT,))])
 def test_coasting_reads_the_stroke_by_its_motion(sense, others):
     scene = press([ks.ProcessForce(INDICATOR), *others])
     motion = ks.drive.coast(scene, 1.0, from_angle=-sense * 0.7, from_speed=sense * 8.0, until=1.0)
@@ -99,9 +99,10 @@ def test_ambiguous_start_asks_for_a_direction():
 # Starting
 
 
-@pytest.mark.parametrize("law", STROKES)
 @pytest.mark.parametrize("ratio", [10.0, -10.0])
-@pytest.mark.parametrize("others", [(), (ks.TorsionDamper(1e-3, on="crank"),)])
+@pytest.mark.parametrize(
+    ("law", "others"), [*((law, ()) for law in STROKES), ("sign", (ks.TorsionDamper(1e-3, on="crank"),))]
+)
 def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
     """At 1 rad the crank that turns counter-clockwise draws the slider in: no force; the other way it must push."""
     scene = press([ks.ProcessForce(STROKES[law]), *others])
@@ -111,8 +112,8 @@ def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
     assert slower == pytest.approx(0.0, abs=1e-12) if ratio > 0.0 else slower > 0.3
 
 
-@pytest.mark.parametrize("law", STROKES)
-@pytest.mark.parametrize("sense", [1.0, -1.0])
+@every("law", STROKES)
+@every("sense", [1.0, -1.0])
 def test_weak_motor_names_one_torque_for_all_laws(law, sense):
     scene = press(ks.ProcessForce(STROKES[law]))
     weak = ks.drive.Motor.constant(20.0, transmission=sense)
@@ -194,10 +195,8 @@ slider = { mass = "4 kg" }
 gravity = {}"""
 
 
-@pytest.mark.parametrize("law", STROKES)
-@pytest.mark.parametrize(
-    "drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}]
-)
+@every("law", STROKES)
+@every("drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}])
 def test_functions_know_the_motion_as_tables_do(law, drive):
     """By the velocity, and of the acceleration's sense where the scene has none."""
     angle, speed = [1.0, 2.0, 4.0], np.zeros(3) if np.ndim(drive.get("crank_acceleration", 0.0)) else 0.0
@@ -234,7 +233,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("drive", "words"), REFUSED.values(), ids=REFUSED)
+@every(("drive", "words"), REFUSED.values(), ids=REFUSED)
 def test_a_sense_that_cannot_be_is_refused(drive, words):
     with pytest.raises(ks.ParameterError, match=words):
         _ = ks.solve(PRESS, 0.5, loads=ks.ProcessForce(INDICATOR), **drive).balancing_torque
@@ -317,8 +316,7 @@ OPPOSED = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", OPPOSED)
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-@pytest.mark.parametrize("until", ["standstill", 0.2])
+@pytest.mark.parametrize(("sense", "until"), [(1.0, "standstill"), (-1.0, 0.2)])
 @pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
 def test_machine_stops_against_opposing_loads(law, sense, until, friction):
     """Steps of the integration end beyond the standstill; the loads may take no speed against the sense for it."""
@@ -377,8 +375,9 @@ def test_nothing_is_derived_by_the_sense(name):
     assert "sense" not in slopes
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("kind", ["crank slider", "lever", "roller follower", "two sliders"])
+@pytest.mark.parametrize(
+    ("kind", "sense"), [("crank slider", 1), ("lever", -1), ("roller follower", 1), ("two sliders", -1)]
+)
 def test_machine_at_rest_equals_one_that_creeps(kind, sense):
     turning = turning_scene(kind, 60, friction=True)
     rest = ks.Scene(turning.mechanism, 0.0, 0.0, turning.loads, turning.friction, sense=sense)

@@ -194,7 +194,7 @@ def test_a_solution_is_no_case():
             ks.load_case(thing)
 
 
-@pytest.mark.parametrize("path", [None, 5, b"case.toml", ["case.toml"], object()])
+@every("path", [None, 5, b"case.toml", ["case.toml"], object()])
 def test_what_is_no_path_is_no_case(path):
     with pytest.raises(ks.ParameterError, match=r"takes a path or the name of a shipped case"):
         ks.load_case(path)

@@ -176,7 +176,7 @@ RUNNING = {
 
 
 @pytest.mark.filterwarnings("ignore:lsoda")
-@pytest.mark.parametrize(("of", "loads", "motor", "flywheel", "words"), RUNNING.values(), ids=RUNNING)
+@every(("of", "loads", "motor", "flywheel", "words"), RUNNING.values(), ids=RUNNING)
 def test_no_running_is_told_with_what_is_missing(of, loads, motor, flywheel, words):
     with pytest.raises(ks.DriveError, match=words):
         steady(scene(*loads, of=of), motor, flywheel)
@@ -304,7 +304,7 @@ OTHERS = {
 }
 
 
-@pytest.mark.parametrize(("call", "kind", "words"), OTHERS.values(), ids=OTHERS)
+@every(("call", "kind", "words"), OTHERS.values(), ids=OTHERS)
 def test_what_cannot_be_driven_says_why(call, kind, words):
     with pytest.raises(kind, match=words):
         call()
@@ -339,7 +339,7 @@ EXTREME = {
 }
 
 
-@pytest.mark.parametrize(("load", "motor", "speed"), EXTREME.values(), ids=EXTREME)
+@every(("load", "motor", "speed"), EXTREME.values(), ids=EXTREME)
 def test_what_is_extreme_but_possible_runs(load, motor, speed):
     run = steady(scene(load), motor, 1.0)
     assert run.mean_speed == pytest.approx(speed, rel=2e-3)

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.machine.cams.cam import Cam
+from support.every import every
 from support.machines import ANGLES, assert_close, largest, planar
 from support.multibody import (
     FINE_DIGITS,
@@ -69,8 +70,8 @@ def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
             assert (mean + amplitude * other) * mp.sqrt(1 - other**2) < length
 
 
-@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
-@pytest.mark.parametrize("guide_angle", [0.0, 0.8])
+@every(("amplitude", "mean"), LAWS)
+@every("guide_angle", [0.0, 0.8])
 def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
     """Position, velocity and acceleration, at the singular angles too."""
     cam = ks.cams.CosineLaw(amplitude, mean, guide_angle)
@@ -109,8 +110,8 @@ def test_sawframe_forces_at_the_singular_angle():
     assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)
 
 
-@pytest.mark.parametrize("nearness", [0.03, 1e-6, 1e-12])
-@pytest.mark.parametrize("direction", [(-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
+@every("nearness", [0.03, 1e-6, 1e-12])
+@every("direction", [(-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
 def test_circle_close_to_o_is_off_by_rounding(direction, nearness):
     cam = ks.cams.Circle(0.3, tuple(0.3 * (1.0 - nearness) * part for part in direction))
     angles = np.linspace(0.0, 2 * np.pi, 37) + 0.01

@@ -6,6 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import AssemblyError, ConditionWarning, ParameterError
+from support.every import every
 from support.machines import planar
 
 ANGLES = np.linspace(0.1, 6.2, 7)
@@ -130,7 +131,7 @@ def test_dyad_near_its_limit_warns():
 # What is refused
 
 
-@pytest.mark.parametrize(
+@every(
     ("fields", "words"),
     [
         ({"length1": -0.1}, "length1 must be greater than 0"),

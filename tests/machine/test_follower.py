@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.machine.followers.follower import FollowerLaw, path_curvature
+from support.every import every
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
@@ -47,8 +48,8 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("kind", [ks.RollerFollower, ks.FlatFollower])
-@pytest.mark.parametrize("name", WRONG)
+@every("kind", [ks.RollerFollower, ks.FlatFollower])
+@every("name", WRONG)
 def test_what_is_no_law_is_refused(name, kind):
     law, text = WRONG[name]
     with pytest.raises(ks.ParameterError, match=text):

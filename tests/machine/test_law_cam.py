@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from support.every import every
 
 laws, TURN = ks.laws, 2 * np.pi
 QUARTER = np.pi / 2
@@ -143,7 +144,7 @@ def test_a_law_of_ones_own_is_told_how_to_shift_itself():
         ks.cams.from_law(lambda phi: own(phi), guide_offset=0.02)
 
 
-@pytest.mark.parametrize(
+@every(
     ("law", "message"),
     [
         (laws.cosine(0.3, -2.0), "the slider must stay ahead of the roller along the guide, but is 2.02"),

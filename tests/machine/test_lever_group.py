@@ -9,6 +9,7 @@ from kinetostatics.errors import AssemblyError, ConditionWarning, ParameterError
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
+from support.every import every
 
 R = 0.1
 SHAPER, WHITWORTH = (0.03, -0.25), (0.02, -0.05)
@@ -45,8 +46,8 @@ def dead_centres(pivot):
     return np.array([towards - opening, towards + opening])
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.03, -0.02])
-@pytest.mark.parametrize("pivot", [SHAPER, WHITWORTH, (0.0, 0.0)])
+@every("offset", [0.0, 0.03, -0.02])
+@every("pivot", [SHAPER, WHITWORTH, (0.0, 0.0)])
 def test_motion_is_that_of_the_angles_to_rounding(pivot, offset):
     angles = np.linspace(0.05, 6.2, 9)
     if offset == 0.0 and pivot == SHAPER:
@@ -149,7 +150,7 @@ def test_pin_meeting_the_pivot_warns():
 # What is refused
 
 
-@pytest.mark.parametrize(
+@every(
     ("fields", "words"),
     [
         ({"pivot": 0.2}, "lever pivot must be a pair"),

@@ -52,8 +52,8 @@ def test_fast_spin_keeps_the_moment_exact():
 # The straight guide
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.7, -2.5, np.pi / 2])
-@pytest.mark.parametrize("offset", [0.0, -0.3])
+@every("angle", [0.0, 0.7, -2.5, np.pi / 2])
+@every("offset", [0.0, -0.3])
 def test_two_points_on_a_guide_make_the_same_guide(angle, offset):
     along, left = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     made = ks.Guide.through(*(tuple(offset * left + s * along) for s in (-0.4, 1.1)))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 
 def two_sliders(*labels):
@@ -130,7 +131,7 @@ def solve(made=None, angle=AROUND, **changes):
     return ks.solve(made or mechanism(), angle, **{"crank_speed": 5.0, "loads": ks.Gravity()} | changes)
 
 
-@pytest.mark.parametrize(
+@every(
     "angles",
     [
         np.arange(0, 360, 5),
@@ -149,7 +150,7 @@ def test_angles_in_degrees_are_hinted_at(angles):
     assert [item.filename for item in caught] == [__file__]
 
 
-@pytest.mark.parametrize(
+@every(
     "angles",
     [
         AROUND,

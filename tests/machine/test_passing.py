@@ -77,7 +77,7 @@ def found(solution, place):
     return {name: np.broadcast_to(values, solution.shape)[place] for name, values in scalars.items()}
 
 
-NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
+NEAR = [sign * 10.0**-power for power in (1, 4, 8, 14) for sign in (1, -1)]
 
 
 @every

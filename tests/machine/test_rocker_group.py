@@ -247,7 +247,7 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 2))
+@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 4))
 def test_error_near_a_toggle_is_of_rounded_lengths(kind, margin):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 
@@ -259,8 +259,7 @@ def test_error_near_a_toggle_is_of_rounded_lengths(kind, margin):
         assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
-@pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
+@pytest.mark.parametrize(("longer", "assembly"), [(1e2, 1), (1e4, -1), (1e6, 1)])
 def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):

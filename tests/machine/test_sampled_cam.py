@@ -320,7 +320,7 @@ def test_compiled_loop_jax_and_enclosures_agree(numba, double, flint):
     assert_allclose([float(part.mid()) for part in enclosed], expected, rtol=1e-11, atol=1e-8)
 
 
-@pytest.mark.parametrize(
+@every(
     ("cosine", "sine", "message"),
     [
         ((), (), r"cosine must be a tuple of numbers \(a0, a1, \.\.\.\), got \(\)"),

@@ -22,7 +22,7 @@ CLOSE = 1e-13
 KINDS = ("plain", "circle", "cosine law", "four-bar", "six-bar")
 TURN = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
 each_kind = pytest.mark.parametrize("kind", KINDS)
-seeded = settings(reproducible, max_examples=8)
+seeded = settings(reproducible, max_examples=5)
 
 
 def link(size):

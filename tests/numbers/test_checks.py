@@ -147,7 +147,7 @@ def test_single_precision_angles_are_warned_of():
 # Names
 
 
-@pytest.mark.parametrize(
+@every(
     ("ask", "message"),
     [
         (lambda s: s.reaction("guid"), "crank-slider: reaction is 'guid', allowed: .*'guide'.*; did you mean 'guide'?"),

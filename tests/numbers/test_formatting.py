@@ -36,7 +36,7 @@ def test_uncertain_digits_are_not_shown(value, bound, text):
     assert number(value, bound=bound) == text
 
 
-@pytest.mark.parametrize("power", [-300, -12, -3, 0, 4, 8, 12, 300])
+@every("power", [-300, -12, -3, 0, 4, 8, 12, 300])
 def test_shown_value_is_within_half_a_place(power):
     for share in (1.0, 0.3, 2e-2, 7e-4, 3e-6, 5e-9):
         value = 1.7632549871 * 10.0**power

@@ -6,7 +6,7 @@ import pytest
 
 from kinetostatics.numbers import units
 from kinetostatics.numbers.units import USUAL_UNITS, base_factor, dimension, factor, quoted, to_si, unit_name
-from tests.support.every import every
+from support.every import every
 
 
 @pytest.mark.parametrize(
@@ -29,8 +29,8 @@ def test_what_measures_something_else_is_refused(text, unit):
         to_si(text, unit)
 
 
-@pytest.mark.parametrize("unit", ["degC", "°C", "degF", "°F", "dB"])
-@pytest.mark.parametrize("wanted", ["K", "m"])
+@every("unit", ["degC", "°C", "degF", "°F", "dB"])
+@every("wanted", ["K", "m"])
 def test_units_with_their_own_zero_are_refused(unit, wanted):
     with pytest.raises(ValueError, match=f'unit "{unit}" has a zero of its own.* as K, or delta_degC'):
         to_si(f"20 {unit}", wanted)
@@ -49,7 +49,7 @@ def test_long_values_are_shown_short():
     assert len(quoted("x" * 1000)) < 100
 
 
-@pytest.mark.parametrize(
+@every(
     ("text", "unit", "advice"),
     [
         ("250", "rad", '"250 deg" or "250 rad"'),

@@ -5,6 +5,7 @@ import pytest
 import kinetostatics as ks
 from support import kept
 from support.case_files import shipped
+from support.every import every
 
 pytestmark = pytest.mark.skipif(
     not kept.FOLDER.is_dir(), reason="nothing is kept: python tests/references/make_kept.py writes it"
@@ -90,7 +91,7 @@ def test_compiled_values_are_kept_but_for_rounding(name, variant):
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize(
+@every(
     ("text", "same"),
     [
         ("reaction O  N  63.3033  355.308", True),

@@ -15,6 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import kinetostatics as ks
 from support import DATA
+from support.every import every
 from support.machines import largest
 from support.multibody import Body, CrankSlider, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank
 
@@ -101,8 +102,8 @@ def test_every_column_equals_the_50_digit_table(variant):
     assert wrong_columns(variant, found) == {}
 
 
-@pytest.mark.parametrize("variant", TABLES)
-@pytest.mark.parametrize("count", [360, 3600, 36000])
+@every("variant", TABLES)
+@every("count", [360, 3600, 36000])
 def test_error_does_not_grow_with_the_number_of_angles(variant, count):
     """A package that differences sampled positions fails here; so would one that carries state between angles."""
     found = columns(variant, 2 * np.pi * np.arange(count) / count)

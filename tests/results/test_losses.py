@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.losses import losses
+from support.every import every
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn
 
 R, MASS, MU, G, SPEED = 0.1, 3.0, 0.2, 9.81, 6.0
@@ -167,10 +168,8 @@ JAMMING = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0))
 GAP = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
 
 
-@pytest.mark.parametrize(
-    "of", [losses, lambda s: s.efficiency, lambda s: s.losses], ids=["losses", "efficiency", "s.losses"]
-)
-@pytest.mark.parametrize(
+@every("of", [losses, lambda s: s.efficiency, lambda s: s.losses], ids=["losses", "efficiency", "s.losses"])
+@every(
     ("solution", "error", "words"),
     [
         (lambda: yoke(speed=0.0, friction=None), ks.ParameterError, "the crank stands still"),

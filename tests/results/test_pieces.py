@@ -9,6 +9,7 @@ from kinetostatics.results.changes import sign_changes
 from kinetostatics.results.pieces import Pieces
 from kinetostatics.results.reductions import parsed
 from kinetostatics.results.refining import GOAL, MOST, refined
+from support.every import every
 
 TURN = 2 * np.pi
 BENDS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
@@ -31,7 +32,7 @@ def spike(angle):
     return np.where(angle < top, rise, fall)
 
 
-@pytest.mark.parametrize(
+@every(
     ("text", "expected"),
     [
         ("largest O", [10.0, 10.0]),
@@ -48,7 +49,7 @@ def test_a_spike_between_two_bends_is_seen_whole(text, expected):
     np.testing.assert_allclose(found(text, spike), expected, rtol=1e-12, atol=1e-11)
 
 
-@pytest.mark.parametrize(
+@every(
     ("text", "expected"),
     [
         ("largest O", 1.5),
@@ -157,8 +158,8 @@ def hyperbola(width):
     return lambda angle, designs: 1.0 + np.hypot(2.0 * np.sin(0.5 * (angle - PLACE[designs])), width)
 
 
-@pytest.mark.parametrize("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
-@pytest.mark.parametrize("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
+@every("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
+@every("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
 def test_size_passing_near_zero_is_found(text, width):
     numbers, rough, pieces = run(text, hyperbola(width))
     high, angle = np.hypot(2.0, width), np.linspace(0.0, TURN, 7)

@@ -12,6 +12,7 @@ import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.results.reductions import parsed
 from kinetostatics.solution.piecewise_turns import PiecewiseTurns
+from support.every import every
 
 ANGLES = np.linspace(0.0, 6.0, 25)
 QUANTITIES = ("balancing_torque", "O", "guide_force", "slider_acceleration", "coupler_rate", "shaking_force")
@@ -102,7 +103,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("name", BAD)
+@every("name", BAD)
 def test_numbers_no_machine_can_have_are_refused(name):
     values, words = BAD[name]
     with pytest.raises(ks.ParameterError, match=words):
@@ -132,7 +133,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@every("name", WRONG)
 def test_what_cannot_be_compiled_is_refused(name):
     call, words = WRONG[name]
     with pytest.raises((ks.ParameterError, ks.QuantityError), match=words):
@@ -207,7 +208,7 @@ def test_one_kept_parameter_may_be_a_text():
     assert "guide_offset" in ks.compile(saw(), "O", "guide_offset", "numpy").parameters
 
 
-@pytest.mark.parametrize(
+@every(
     ("call", "words"),
     [
         (lambda program: program(0.5, ["slider.mass"]), "values must be a dict"),

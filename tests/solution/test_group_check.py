@@ -179,7 +179,7 @@ def mine(change=None):
     return Mine(0.4, 0.3, (0.35, 0.1), coupler=ROD, rocker=ROD, change=change)
 
 
-@pytest.mark.parametrize("change", SEEN)
+@every("change", SEEN)
 def test_check_says_what_is_wrong_with_a_group(change):
     report = ks.check(mine(change))
     assert not report
@@ -215,7 +215,7 @@ def test_check_reports_wrong_elongation_parts():
 TABLE = 0.3 + 0.05 * np.cos(TURN)
 
 
-@pytest.mark.parametrize(
+@every(
     "group",
     [
         mine(),
@@ -236,7 +236,7 @@ def test_check_passes_right_groups(group):
     assert "checks pass" in repr(report)
 
 
-@pytest.mark.parametrize(
+@every(
     ("group", "words"),
     [
         (3.0, "group must be a group"),
@@ -315,7 +315,7 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@every("name", NAMES)
 def test_each_comparison_is_made_and_holds_to_rounding(name):
     group, what = NAMES[name]
     assert ks.check(group).errors[what] < 1e-12

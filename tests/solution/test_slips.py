@@ -134,7 +134,7 @@ def test_one_number_is_told_once():
     assert len(hints(loads=ks.Gravity(direction=-90), friction={"O": ks.PinFriction(0.05, 30.0)})) == 2
 
 
-@pytest.mark.parametrize("name", SCENES)
+@every("name", SCENES)
 def test_far_off_lengths_and_angles_are_reported(name):
     s = solve(SCENES[name], SCENES[name].mechanism.turns * [0.3])
     look, (_, leaves) = s.kind.answer(parameters.scene_plausibility_test), s.apart

@@ -9,6 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.mechanism import Mechanism
 from support.cam_contacts import rolled, solved
+from support.every import every
 
 TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
@@ -71,7 +72,7 @@ def test_slider_that_never_moves_is_warned_of(mechanism):
         ks.solve(mechanism, 0.3, crank_speed=1.0)
 
 
-@pytest.mark.parametrize(
+@every(
     "mechanism",
     [
         ks.crank_slider(0.1, 0.1, assembly="open"),
@@ -259,7 +260,7 @@ def test_every_method_is_listed_with_its_arguments():
             assert told == list(inspect.signature(getattr(ks.Solution, name)).parameters)[1:], name
 
 
-@pytest.mark.parametrize("name", MACHINES)
+@every("name", MACHINES)
 def test_reactions_are_listed_with_their_body(name):
     section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("For groups and loads")].split())
     for joint, output in MACHINES[name].outputs.items():
@@ -270,7 +271,7 @@ def test_reactions_are_listed_with_their_body(name):
         assert output.text in section or (giver == "ground" and f"on {taker}" in section) or "from what" in output.text
 
 
-@pytest.mark.parametrize("name", MACHINES)
+@every("name", MACHINES)
 def test_every_scalar_is_listed(name):
     scalars = [scalar for scalar, output in MACHINES[name].outputs.items() if not output.vector]
     assert scalars

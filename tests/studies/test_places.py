@@ -21,7 +21,7 @@ BOUND, MEETING = 200, 20_000
 """
 
 
-@pytest.mark.parametrize("place", PLACES, ids=lambda place: place.name)
+@every("place", PLACES, ids=lambda place: place.name)
 def test_every_place_has_a_scene_of_one_design(place):
     for number in (place.numbers[0], place.numbers[-1]):
         solution = place.scene(number)

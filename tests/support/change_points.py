@@ -41,7 +41,7 @@ def solve(made, angles, **options):
     return ks.solve(made, angles, **given | options)
 
 
-NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
+NEAR = [sign * 10.0**-power for power in (1, 4, 8, 14) for sign in (1, -1)]
 
 
 # Reference: the side of the branch in the equations of all bodies

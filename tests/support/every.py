@@ -39,6 +39,11 @@ def every(names, values, ids=None):
     return taking
 
 
+def each(error, *rows):
+    """Rows (error, call, input, words) of rows (call, inputs, words), for tests of refusals by `every`."""
+    return [(error, call, given, words) for call, inputs, words in rows for given in inputs]
+
+
 def _of_all(function, axes):
     signature = inspect.signature(function)
     given = {name for axis in axes for name in axis[0][1]}

@@ -10,7 +10,7 @@ from .machines import BARS, TORQUES, FourBar
 from .multibody import Body, CrankSlider, pin_by_cosine_law, pin_on_circle, pin_on_crank
 
 reproducible = settings(
-    derandomize=True, database=None, deadline=None, max_examples=20, phases=[Phase.explicit, Phase.generate]
+    derandomize=True, database=None, deadline=None, max_examples=10, phases=[Phase.explicit, Phase.generate]
 )
 
 

@@ -16,6 +16,7 @@ from kinetostatics.sweeps import workers as dispatch
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.case_files import written
+from support.every import every
 from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import SAW, assert_equal, sweep
 
@@ -30,7 +31,7 @@ def counted(calls):
     return made
 
 
-@pytest.mark.parametrize("folder", [5, 2.5, ["here"], b"here", True])
+@every("folder", [5, 2.5, ["here"], b"here", True])
 def test_a_folder_that_is_no_path_is_refused(folder):
     with pytest.raises(ks.ParameterError, match="sweep: folder must be a path, got"):
         sweep(factories.pump, DESIGNS, OUTPUTS, folder=folder)

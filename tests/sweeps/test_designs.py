@@ -103,7 +103,7 @@ def test_no_parameters_are_no_designs(kind):
         kind({})
 
 
-@pytest.mark.parametrize("kind", ["grid", "sobol", "latin_hypercube", "random", "sample", "distributions"])
+@every("kind", ["grid", "sobol", "latin_hypercube", "random", "sample", "distributions"])
 def test_spreads_must_be_a_dict(kind):
     more = () if kind in ("grid", "distributions") else (4,)
     for spreads in (None, 5, "slider.mass", [1, 2], np.array([1.0, 2.0]), KG):

@@ -240,7 +240,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@every("name", WRONG)
 def test_what_cannot_be_done_is_refused(name):
     source, designs, outputs, options, message = WRONG[name]
     with pytest.raises(ks.ParameterError, match=message):

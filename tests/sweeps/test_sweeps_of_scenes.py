@@ -9,6 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
 from support.case_files import shipped
+from support.every import every
 
 sweep = partial(ks.sweep, progress=False, angles=36)
 SAW = shipped("sawframe_2r63")
@@ -120,7 +121,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("source", "designs", "options", "message"), WRONG)
+@every(("source", "designs", "options", "message"), WRONG)
 def test_what_cannot_be_varied_is_refused(source, designs, options, message):
     with pytest.raises(ks.ParameterError, match=message):
         sweep(source, pd.DataFrame(designs), "ratio rms O", **options)

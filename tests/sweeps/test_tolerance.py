@@ -9,6 +9,7 @@ from scipy import stats
 
 import kinetostatics as ks
 from support.case_files import written
+from support.every import every
 from support.units import UNITS
 
 SPREADS = {"mass": "normal 1 kg +- 0.1 kg", "push": "100..300 N"}
@@ -81,7 +82,7 @@ def test_a_study_goes_on_from_its_folder(tmp_path, monkeypatch):
     pd.testing.assert_frame_equal(again.sensitivity, expected.sensitivity, check_exact=True)
 
 
-@pytest.mark.parametrize("count", [0, 1, 3, 100, 64.0])
+@every("count", [0, 1, 3, 100, 64.0])
 def test_counts_that_are_no_power_of_two_are_refused(count):
     with pytest.raises(ks.ParameterError, match="count must be a power of two"):
         tolerances(ram, OUTPUT, SPREADS, count=count)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import second_harmonic
 
 MACHINES = ("compressor", "pumpjack", "shaper", "v_twin", "in_line_twin", "toggle_press", "yoke_pump")
@@ -26,7 +27,7 @@ def test_shipped_variants_balance_their_powers(name):
         assert np.isfinite(s.balancing_torque).all()
 
 
-@pytest.mark.parametrize("name", MACHINES)
+@every("name", MACHINES)
 def test_shipped_machines_name_their_sources(name):
     assert "ssumed" in case(name).source
 

@@ -7,6 +7,7 @@ from kinetostatics.casefile.schema.designs import (
     OneDesign,
     RobustTable,
 )
+from support.every import every
 
 VARY = {"spring.stiffness": ["600 kN/m", "900 kN/m"]}
 SPREADS = {"slider.mass": "normal 0 % +- 1 %"}
@@ -38,7 +39,7 @@ def test_a_robust_table_is_the_spread_of_python():
     assert dict(spread.spreads) == SPREADS
 
 
-@pytest.mark.parametrize(
+@every(
     ("keys", "message"),
     [
         ({"kind": "optimum", "vary": VARY}, "needs either minimise or maximise"),
