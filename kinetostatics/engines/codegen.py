@@ -17,7 +17,7 @@ from ..numbers.arithmetic import (
     square_difference_terms,
     sum_corrections,
 )
-from .graph import BY_ANGLE, Node, needed
+from .graph import BY_ANGLE, Node, is_of_angle, needed
 from .simplify import drop_unused, fused_sums
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
@@ -256,11 +256,6 @@ def _is_computed_by_angle(node):
 def _is_given(node):
     """Whether the caller passes a node's value."""
     return node.operation in ("angle", "table") or is_of_angle(node)
-
-
-def is_of_angle(node):
-    """Whether a node is the sine or cosine of the crank angle."""
-    return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
 
 
 _IN_LINE = {

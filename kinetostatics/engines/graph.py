@@ -131,6 +131,11 @@ def is_negative(part):
     return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
 
 
+def is_of_angle(part):
+    """Whether a part is the sine or cosine of the crank angle."""
+    return isinstance(part, Node) and part.operation in ("sin", "cos") and part.arguments[0].operation == "angle"
+
+
 def needed(outputs):
     """Nodes from which outputs (nodes or plain numbers) are computed, in the order of computation."""
     found: set[Node] = set()

@@ -116,7 +116,7 @@ def _row(context, builder, kinds, given):
 
 
 def over_columns(function, rows):
-    """For numba: ``over(table, count)`` replaces the first rows of a table by a function of all rows, in `count` columns.
+    """For numba: ``over(table, count)`` replaces the first rows of a table by a function of all, in `count` columns.
 
     ``function(parts, chosen, sqrt)`` returns fewer rows than the table has. The number of columns is rounded up to a
     multiple of `COLUMNS`, which the table must have.

@@ -9,7 +9,7 @@ else is computed.
 from itertools import product
 from typing import Any, NamedTuple
 
-from .graph import BY_ANGLE, Graph, Node, is_negative, is_number, varies
+from .graph import BY_ANGLE, Graph, Node, is_negative, is_number, is_of_angle, varies
 
 MIN_DIVISOR = 2.0**-1022
 """Divisors below this may have no finite reciprocal."""
@@ -102,12 +102,7 @@ def _are_inverse(one, other):
 
 def _is_none_of_turn(part, other):
     """Whether a part is 0 and the other the sine or cosine of the crank angle, which is finite."""
-    return (
-        is_number(part, 0.0)
-        and isinstance(other, Node)
-        and other.operation in ("sin", "cos")
-        and other.arguments[0].operation == "angle"
-    )
+    return is_number(part, 0.0) and is_of_angle(other)
 
 
 def _secant(square):
@@ -135,9 +130,9 @@ def _turned(square):
         if x is same and y is alike:
             for (size, sine), (beside, cosine) in product(_either_way(x, "*"), _either_way(y, "*")):
                 operations = [getattr(part, "operation", None) for part in (sine, cosine)]
-                if size is not None and size is beside and operations == ["sin", "cos"]:
-                    if sine.arguments == cosine.arguments:
-                        return size
+                is_turn = operations == ["sin", "cos"] and sine.arguments == cosine.arguments
+                if is_turn and size is not None and size is beside:
+                    return size
     return None
 
 

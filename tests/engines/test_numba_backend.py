@@ -276,9 +276,8 @@ def test_bits_are_set_exactly_where_conditions_hold(numba):
 def test_what_holds_is_what_reductions_mean():
     values = np.array([0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0])
     after = np.roll(values, -1)
-    places = {
-        name: np.flatnonzero(getattr(simd_reductions, name)(by_arrays.WRITER, values, after)).tolist() for name in SCANS
-    }
+    found = {name: getattr(simd_reductions, name)(by_arrays.WRITER, values, after) for name in SCANS}
+    places = {name: np.flatnonzero(mask).tolist() for name, mask in found.items()}
     assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
