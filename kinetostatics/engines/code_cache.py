@@ -40,26 +40,21 @@ def programs_folder() -> Path:
     """
     given = os.environ.get("KINETOSTATICS_CACHE")
     try:
-        folder = Path(given).expanduser().absolute() if given else _user_folder()
-    except RuntimeError as error:
-        raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}") from error
-    for step in reversed([folder, *folder.parents]):
-        step.mkdir(mode=0o700, exist_ok=True)
-    require_private(folder)
-    return folder
+        if given:
+            folder = Path(given).expanduser().absolute()
+        else:
+            from platformdirs import user_cache_path
 
-
-def _user_folder():
-    try:
-        from platformdirs import user_cache_path
-
-        home, folder = Path.home(), Path(user_cache_path("kinetostatics"))
+            home, folder = Path.home(), Path(user_cache_path("kinetostatics"))
+            if not folder.is_absolute() or (folder.is_relative_to(home) and not home.is_dir()):
+                raise FileNotFoundError(f"there is no home folder for {folder}")
     except ImportError as error:
         raise OSError('platformdirs, which finds it, is missing: pip install "kinetostatics[fast]"') from error
     except RuntimeError as error:
-        raise OSError(str(error)) from error
-    if not folder.is_absolute() or (folder.is_relative_to(home) and not home.is_dir()):
-        raise FileNotFoundError(f"there is no home folder for {folder}")
+        raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}" if given else str(error)) from error
+    for step in reversed([folder, *folder.parents]):
+        step.mkdir(mode=0o700, exist_ok=True)
+    require_private(folder)
     return folder
 
 

@@ -17,7 +17,7 @@ from ..numbers.arithmetic import (
     square_difference_terms,
     sum_corrections,
 )
-from .graph import BY_ANGLE, Node, needed
+from .graph import BY_ANGLE, Node, is_of_angle, needed
 from .simplify import drop_unused, fused_sums
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
@@ -139,48 +139,33 @@ def loop_source(outputs, fuse=True, kind="float64") -> str:
     lines = [LOOP.format(rows=len(outputs))]
     lines += [f"        {_defined(node, _IN_LOOP)}" for node in nodes if node.varies < BY_ANGLE]
     lines += ["        for i in range(count):", "            angle = angles[first, i]"]
-    lines += [
-        f"            {_fused(node, sums[node]) if node in sums else _defined(node, _IN_LOOP)}" for node in of_loop
-    ]
+    for node in of_loop:
+        text = _defined(node, _IN_LOOP)
+        if found := sums.get(node):
+            signs = ["-" if sign < 0 else "" for sign in (found.sign, found.rest_sign)]
+            one, other, rest = map(_name, (found.one, found.other, found.rest))
+            text = f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
+        lines.append(f"            {text}")
     lines += [
         f"            results[start + uint64({row}) * count + i] = {_name(part)}" for row, part in enumerate(outputs)
     ]
-    fma = FUSED if sums or any(node.operation == "fma" for node in nodes) else ""
-    header = LOOP_HEADER.format(threshold=-SQUARE_TOLERANCE) + _helpers(nodes) + fma
-    return (header + "\n".join(lines) + "\n").replace("float64", kind)
-
-
-def _helpers(nodes):
-    """Source of the compensated sums that nodes use."""
+    operations = {node.operation for node in nodes}
     calls = {(node.operation, len(node.arguments)) for node in nodes if node.operation in ("total", "lost")}
-    squares = any(node.operation in ("rest", "lost_by_squares") for node in nodes)
-    calls |= {("total", 6), ("lost", 6)} if squares else set()
-    return (TWO_SUM if calls else "") + "".join(_sum_of(*call) for call in sorted(calls)) + (SQUARES if squares else "")
+    if squares := not operations.isdisjoint(("rest", "lost_by_squares")):
+        calls |= {("total", 6), ("lost", 6)}
+    helpers = [TWO_SUM * bool(calls), *(_sum_of(*call) for call in sorted(calls)), SQUARES * squares]
+    helpers.append(FUSED * bool(sums or "fma" in operations))
+    header = LOOP_HEADER.format(threshold=-SQUARE_TOLERANCE) + "".join(helpers)
+    return (header + "\n".join(lines) + "\n").replace("float64", kind)
 
 
 def _sum_of(name, count):
     """Source of `total` or `lost` of `count` terms, see `arithmetic.compensated_sum`."""
     terms = [f"t{k}" for k in range(count)]
     steps = [f"    {there}, {here} = two_sum({here}, {there})" for here, there in pairwise(terms)]
-    found = (
-        f"t{count - 1} + ({' + '.join(terms[:-1])})"
-        if name == "total"
-        else " + ".join(f"abs({term})" for term in terms[:-1])
-    )
-    lines = [
-        '@njit(error_model="numpy")',
-        f"def {name}{count}({', '.join(terms)}):",
-        *steps,
-        *steps,
-        f"    return {found}",
-    ]
-    return "\n".join(lines) + "\n\n\n"
-
-
-def _fused(node, found):
-    one, other, rest = (_name(part) for part in (found.one, found.other, found.rest))
-    signs = ["-" if sign < 0 else "" for sign in (found.sign, found.rest_sign)]
-    return f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
+    total, lost = f"t{count - 1} + ({' + '.join(terms[:-1])})", " + ".join(f"abs({term})" for term in terms[:-1])
+    head = '@njit(error_model="numpy")', f"def {name}{count}({', '.join(terms)}):"
+    return "\n".join([*head, *steps, *steps, f"    return {total if name == 'total' else lost}"]) + "\n\n\n"
 
 
 def line_source(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
@@ -273,11 +258,6 @@ def _is_given(node):
     return node.operation in ("angle", "table") or is_of_angle(node)
 
 
-def is_of_angle(node):
-    """Whether a node is the sine or cosine of the crank angle."""
-    return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
-
-
 _IN_LINE = {
     "parameter": "parameters[{}]",
     "table": "tables[{}]",
@@ -329,14 +309,6 @@ def _plain_root(square, unit):
     return 0.0 if square > -SQUARE_TOLERANCE * unit else math.nan
 
 
-def _plain_divisor(root, unit):
-    return unit if root < unit else root
-
-
-def _root(square, unit):
-    return np.where(square > -SQUARE_TOLERANCE * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
-
-
 def _root_of(square, unit, out):
     np.maximum(square, 0.0, out=out)
     np.sqrt(out, out)
@@ -350,27 +322,6 @@ def _plain_total(*terms):
         return compensated_sum(*terms)
 
 
-def _plain_rest(length, x, y):
-    return _plain_total(*square_difference_terms(length, x, y)) / (2.0 * length)
-
-
-def _lost_by_squares(length, x, y):
-    return sum_corrections(*square_difference_terms(length, x, y))
-
-
-def _scalar_total(*terms):
-    return np.float64(_plain_total(*terms))
-
-
-def _scalar_lost(*terms):
-    return np.float64(sum_corrections(*map(float, terms)))
-
-
-def _total_of(*terms_and_out):
-    *terms, out = terms_and_out
-    np.copyto(out, compensated_sum(*terms))
-
-
 def compile_line(source, scope):
     """Function `line` of a source, whose operations are looked up in a scope."""
     scope = dict(scope)
@@ -378,51 +329,41 @@ def compile_line(source, scope):
     return scope["line"]
 
 
-def _sqrt(square):
-    return math.sqrt(square) if square >= 0.0 else math.nan
-
-
 PLAIN = {
     "sin": lambda angle: float(np.sin(angle)),
     "cos": lambda angle: float(np.cos(angle)),
     "atan": lambda slope: float(np.arctan(slope)),
-    "sqrt": _sqrt,
+    "sqrt": lambda square: math.sqrt(square) if square >= 0.0 else math.nan,
     "abs": abs,
     "copysign": math.copysign,
     "root": _plain_root,
-    "divisor": _plain_divisor,
+    "divisor": lambda root, unit: unit if root < unit else root,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
     "lost": sum_corrections,
-    "lost_by_squares": _lost_by_squares,
-    "rest": _plain_rest,
+    "lost_by_squares": lambda length, x, y: sum_corrections(*square_difference_terms(length, x, y)),
+    "rest": lambda length, x, y: _plain_total(*square_difference_terms(length, x, y)) / (2.0 * length),
     "nan": math.nan,
     "inf": math.inf,
 }
-BY_DESIGN = {
+BY_DESIGN = PLAIN | {
     "sin": np.sin,
     "cos": np.cos,
     "atan": np.arctan,
     "sqrt": np.sqrt,
-    "abs": abs,
     "copysign": np.copysign,
-    "root": _root,
+    "root": lambda square, unit: np.where(square > -SQUARE_TOLERANCE * unit, np.sqrt(np.maximum(square, 0.0)), np.nan),
     "divisor": np.maximum,
-    "fma": lambda one, other, more: one * other + more,
     "total": compensated_sum,
-    "lost": sum_corrections,
-    "lost_by_squares": _lost_by_squares,
     "rest": length_error,
-    "nan": math.nan,
-    "inf": math.inf,
 }
 SCALARS = BY_DESIGN | {
     "root": lambda square, unit: np.float64(_plain_root(square, unit)),
-    "divisor": lambda root, unit: np.float64(_plain_divisor(root, unit)),
-    "total": _scalar_total,
-    "lost": _scalar_lost,
-    "lost_by_squares": lambda length, x, y: _scalar_lost(*square_difference_terms(length, x, y)),
-    "rest": lambda length, x, y: _scalar_total(*square_difference_terms(length, x, y)) / (2.0 * length),
+    "divisor": lambda root, unit: np.float64(unit if root < unit else root),
+    "total": lambda *terms: np.float64(_plain_total(*terms)),
+    "lost": lambda *terms: np.float64(sum_corrections(*map(float, terms))),
+    "lost_by_squares": lambda *vector: np.float64(sum_corrections(*map(float, square_difference_terms(*vector)))),
+    "rest": lambda length, x, y: np.float64(_plain_total(*square_difference_terms(length, x, y))) / (2.0 * length),
 }
 """The same on NumPy scalars, which report underflow; sums never underflow."""
 ARRAYS = {
@@ -439,6 +380,6 @@ ARRAYS = {
     "absolute": np.absolute,
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
-    "total_of": _total_of,
+    "total_of": lambda *terms_and_out: np.copyto(terms_and_out[-1], compensated_sum(*terms_and_out[:-1])),
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }

@@ -7,6 +7,7 @@ for each output; the shorter way is taken.
 
 import operator
 from collections.abc import Callable
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,18 @@ from .graph import INPUTS, Node, needed
 
 def gradients(graph, outputs, parameters):
     """Derivatives of outputs by parameters: a tuple of nodes or numbers for each output."""
-    if len(outputs) < len(parameters):
-        return [_adjoints(graph, output, parameters) for output in outputs]
-    columns = [tangents(graph, outputs, {parameter: 1.0}) for parameter in parameters]
-    return list(zip(*columns, strict=True))
+    if len(outputs) >= len(parameters):
+        columns = [tangents(graph, outputs, {parameter: 1.0}) for parameter in parameters]
+        return list(zip(*columns, strict=True))
+    rows = []
+    for output in outputs:
+        wanted = set(parameters)
+        for node in needed([output]):
+            if any(part in wanted for part in node.arguments if isinstance(part, Node)):
+                wanted.add(node)
+        found = adjoints(graph, output, wanted)
+        rows.append(tuple(found.get(parameter, 0.0) for parameter in parameters))
+    return rows
 
 
 def tangents(graph, outputs, slopes):
@@ -36,19 +45,8 @@ def tangents(graph, outputs, slopes):
             if argument in slopes
         ]
         if parts:
-            slopes[node] = _total(parts)
+            slopes[node] = reduce(operator.add, parts)
     return tuple(slopes.get(output, 0.0) for output in outputs)
-
-
-def _adjoints(graph, output, parameters):
-    if not isinstance(output, Node):
-        return (0.0,) * len(parameters)
-    wanted = set(parameters)
-    for node in needed([output]):
-        if any(part in wanted for part in node.arguments if isinstance(part, Node)):
-            wanted.add(node)
-    found = adjoints(graph, output, wanted)
-    return tuple(found.get(parameter, 0.0) for parameter in parameters)
 
 
 def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
@@ -61,7 +59,7 @@ def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
     found = {}
     for node in reversed(needed([output])):
         if node in parts and node in wanted:
-            whole = found[node] = _total(parts[node])
+            whole = found[node] = reduce(operator.add, parts[node])
             if node in ends:
                 continue
             if node.operation == "held" and held:
@@ -77,25 +75,12 @@ def _times(one, other):
     return one * other
 
 
-def _total(parts):
-    total = parts[0]
-    for part in parts[1:]:
-        total = total + part
-    return total
-
-
 def _partials(graph, node, wanted):
     """Pairs of an argument among those wanted, and the derivative of the node by it."""
-    kind, arguments = node.operation, node.arguments
-    if kind in _RULES:
-        partials = _RULES[kind](graph, node, *arguments)
-        return [pair for pair in zip(arguments, partials, strict=True) if pair[0] in wanted]
-    return []
-
-
-def _division(graph, node, above, below):
-    over = 1.0 / below
-    return over, -(node * over)
+    if node.operation not in _RULES:
+        return []
+    partials = _RULES[node.operation](graph, node, *node.arguments)
+    return [pair for pair in zip(node.arguments, partials, strict=True) if pair[0] in wanted]
 
 
 _RULES: dict[str, Callable[..., tuple]] = {
@@ -103,7 +88,7 @@ _RULES: dict[str, Callable[..., tuple]] = {
     "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
     "total": lambda graph, node, *parts: (1.0,) * len(parts),
     "*": lambda graph, node, left, right: (right, left),
-    "/": _division,
+    "/": lambda graph, node, above, below: (over := 1.0 / below, -(node * over)),
     "sin": lambda graph, node, angle: (graph.node("cos", angle),),
     "cos": lambda graph, node, angle: (-graph.node("sin", angle),),
     "sqrt": lambda graph, node, square: (0.5 / node,),

@@ -28,20 +28,21 @@ class Kernels:
         """Values by name; None: closure and all results of the groups."""
         state = state if self.way is None else replace(state, way=self.way)
         names = resolved_names(state) if names is None else names
-        behind = required_groups(state.mechanism)
-        return {name: self._values(state, name, behind) for name in names}
+        behind, found = required_groups(state.mechanism), {}
+        for name in names:
+            if name == "closure":
+                found[name] = read_only(stack(state.closure))
+                continue
+            value = of_scene(state)[name].read(state)
+            is_open = None if name in FRICTION_CHECKS else gap_mask(state.placement, behind[name])
+            found[name] = value if name in FRICTION_CHECKS else read_only(plus(value, is_open))
+        return found
 
     def with_bounds(self, state, names, tight=False):
         raise NotGivenError(
             f"{state.mechanism.name}: bounds belong to recorded arithmetic, and this solution is computed by the "
             "kernels themselves, or in another way; solve it with plain numbers"
         )
-
-    def _values(self, state, name, behind):
-        if name == "closure":
-            return read_only(stack(state.closure))
-        found = of_scene(state)[name].read(state)
-        return found if name in FRICTION_CHECKS else read_only(plus(found, gap_mask(state.placement, behind[name])))
 
 
 KERNELS = Kernels()
@@ -86,12 +87,8 @@ class Recorded:
         program, leaves = program_of(state, names)
         values, bounds = with_bounds(program, state, leaves, self.compiled, tight)
         named = program.recording.named
-        small = all(map(_is_small, leaves.numbers))
+        small = all(np.all(np.abs(leaf) <= CAP) for leaf in leaves.numbers)
         return named(values), named(bounds if small else np.full_like(bounds, np.inf))
-
-
-def _is_small(leaf):
-    return abs(leaf) <= CAP if type(leaf) is float else np.all(np.abs(leaf) <= CAP)
 
 
 def is_plain(angle):

@@ -23,7 +23,7 @@ from ..errors import NotGivenError
 from ..numbers.arithmetic import NEGLIGIBLE_LENGTH, RELATIVE_OFFSET, UNIT_ROUNDOFF
 from ..numbers.planar import plus, product
 from .derivatives import adjoints
-from .graph import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, needed, varies
+from .graph import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, is_of_angle, needed, varies
 
 SAFE = 1.0 + 1e-9
 """Factor on bounds for the rounding of their own arithmetic and for products of counted roundings."""
@@ -172,18 +172,15 @@ class ErrorBounds:
         return bound
 
     def _error_of(self, node):
-        if self._given is not None and is_handed_over(node):
-            return self._rounded_once(node)
-        if node in self.inputs:
-            return self.inputs[node](self)
-        return EXACT if node.operation in INPUTS else RULES[node.operation](self, node, *node.arguments)
-
-    def _rounded_once(self, node):
+        if self._given is None or not is_handed_over(node):
+            if node in self.inputs:
+                return self.inputs[node](self)
+            return EXACT if node.operation in INPUTS else RULES[node.operation](self, node, *node.arguments)
         self._given.look_at([node])
         relative, rest = self._given.error(node)
         if self.arithmetic.as_recorded:
             return Error(relative, rest)
-        finer = UNIT_ROUNDOFF / self.arithmetic.unit
+        finer = UNIT_ROUNDOFF / self.arithmetic.unit  # it is rounded once
         return Error(float(finer < 1.0) + finer * relative, plus(product(finer, rest), self.arithmetic.dust))
 
     def _require_small(self, node):
@@ -281,8 +278,12 @@ class ErrorBounds:
         return abs(above) == 1.0 and (self.cap(below) or math.inf) < MAX_DIVISOR
 
     def rounds(self, *factors):
-        """Roundings of a product or quotient: none with a sign or a power of two near one."""
-        return 0.0 if self.arithmetic.as_recorded and any(map(is_scaling, factors)) else 1.0
+        """Roundings of a product or quotient: none with a sign or a power of two near one, but for underflow."""
+        for part in factors if self.arithmetic.as_recorded else ():
+            is_power = not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+            if is_power or getattr(part, "operation", None) == "sign":
+                return 0.0
+        return 1.0
 
     def fused(self, one, other, more):
         """Product and sum, in one operation where the processor has it."""
@@ -316,20 +317,13 @@ class ErrorBounds:
 
 def is_handed_over(node):
     """Whether a node is computed in double beforehand: by design, from a table, or as sine or cosine of the crank."""
-    return node.varies < BY_ANGLE or node.operation in INPUTS or _is_of_angle(node)
+    return node.varies < BY_ANGLE or node.operation in INPUTS or is_of_angle(node)
 
 
 def is_zero(part):
     """Whether a part of an operation is a product with the number 0."""
     factors = part.arguments if isinstance(part, Node) and part.operation == "*" else ()
     return any(not isinstance(factor, Node) and factor == 0.0 for factor in factors)
-
-
-def is_scaling(part):
-    """Whether a factor is a sign, or a power of two near one: only underflow loses digits."""
-    if isinstance(part, Node):
-        return part.operation == "sign"
-    return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
 # Rules: the error of a result from those of its arguments
@@ -363,17 +357,12 @@ def _of_total(bounds, node, *parts):
             pairs = (other for other in alone if signed[other][0] == sign and signed[other][1] is part.arguments[0])
             if (length := next(pairs, None)) is not None:
                 del alone[place], alone[length]
-                more = plus(_beside_length(bounds, part), more)
+                whole, x, y = part.arguments
+                lost = bounds.graph.node("lost_by_squares", whole, x, y)
+                own = 4.0 * abs(part) + (part * part * (1.0 / UNIT_ROUNDOFF) + 8.0 * lost) / whole
+                dust = product(1.0 / whole, bounds.arithmetic.dust)
+                more = plus(reduce(plus, map(bounds.total, (x, y)), plus(own, dust)), more)
     return Error(1.0, reduce(plus, map(bounds.total, alone.values()), more))
-
-
-def _beside_length(bounds, rest):
-    """Bound on the error of a length and its rest together, in units, with those of the components."""
-    length, x, y = rest.arguments
-    lost = bounds.graph.node("lost_by_squares", length, x, y)
-    own = 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT_ROUNDOFF) + 8.0 * lost) / length
-    dust = product(1.0 / length, bounds.arithmetic.dust)
-    return reduce(plus, map(bounds.total, (x, y)), plus(own, dust))
 
 
 def _of_product(bounds, node, left, right):
@@ -480,33 +469,23 @@ def _beside_one(bounds, node):
     Where the sum vanishes, as linkages fold, its error does so as well, which the error of the function does not
     show. Along an axis the function is times a sign of the design: its doubt makes the whole bound infinite.
     """
-    turn, sign = _turn_beside_one(node)
-    if turn is None:
+    if len(node.arguments) != 2:
+        return None
+    turn, one = sorted(node.arguments, key=lambda part: not isinstance(part, Node))
+    if isinstance(one, Node) or abs(one) != 1.0:
+        return None
+    sign = None
+    if turn.operation == "*":
+        sign, turn = sorted(turn.arguments, key=is_of_angle)
+        if not (isinstance(sign, Node) and sign.operation == "sign" and sign.varies == BY_DESIGN):
+            return None
+    if not is_of_angle(turn):
         return None
     other = bounds.graph.node("cos" if turn.operation == "sin" else "sin", *turn.arguments)
     unsure = None if sign is None else bounds.total(sign)
     square = (-TURN_SHARE / bounds.arithmetic.unit) * (other * other)
     most = -plus(OWN.ulp["sin"], unsure)  # of every precision: it is rounded once
     return -bounds.graph.node("divisor", square - plus(LOST_SQUARE, unsure), most)
-
-
-def _turn_beside_one(node):
-    """The sine or cosine of the crank angle to which, or to its opposite, one is added, and the sign it is times."""
-    if len(node.arguments) != 2:
-        return None, None
-    turn, one = sorted(node.arguments, key=lambda part: not isinstance(part, Node))
-    if isinstance(one, Node) or abs(one) != 1.0:
-        return None, None
-    sign = None
-    if turn.operation == "*":
-        sign, turn = sorted(turn.arguments, key=_is_of_angle)
-        if not (isinstance(sign, Node) and sign.operation == "sign" and sign.varies == BY_DESIGN):
-            return None, None
-    return (turn, sign) if _is_of_angle(turn) else (None, None)
-
-
-def _is_of_angle(part):
-    return isinstance(part, Node) and part.operation in ("sin", "cos") and part.arguments[0].operation == "angle"
 
 
 def _moved_apart(parts, unit):
@@ -551,7 +530,11 @@ def _tight_bound(output, most, running, plain):
 
     def cuts(node, error):
         uses = users.get(node, ())
-        return isinstance(error.rest, Node) and (len(uses) > 1 or any(_divides(node, user) for user in uses))
+        divides = any(
+            user.operation in ("sqrt", "root", "divisor") or (user.operation == "/" and user.arguments[1] is node)
+            for user in uses
+        )
+        return isinstance(error.rest, Node) and (len(uses) > 1 or divides)
 
     first = ErrorBounds(graph, running.inputs, running.arithmetic._replace(dust=None), plain, 0.0, cuts)
     (own,) = first.of([output])
@@ -566,11 +549,6 @@ def _tight_bound(output, most, running, plain):
         shared = first.fused(abs(slopes[node]), error, shared) if node in slopes else shared
     bound = first.fused(first.off / SEED, shared, own)
     return -graph.node("divisor", -first.fused(2.0 / STRETCH, most, bound), -most)
-
-
-def _divides(node, user):
-    """Whether a node is what its user divides by, or takes the root of."""
-    return user.operation in ("sqrt", "root", "divisor") or (user.operation == "/" and user.arguments[1] is node)
 
 
 # Bounds as users have them

@@ -4,6 +4,8 @@ A graph keeps each operation once. `record` fills it with the kernels' arithmeti
 writes source from it; the number of operations at each crank angle is its cost.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ..numbers.arithmetic import RELATIVE_OFFSET
@@ -17,6 +19,22 @@ INPUTS = ("angle", "parameter", "table")
 """Operations whose arguments are not nodes."""
 
 
+def _operators(operation) -> tuple[Any, Any]:
+    """Methods of an operator with the node on its left, and on its right."""
+
+    def node_first(self, other):
+        return NotImplemented if isinstance(other, OTHERS) else self.graph.node(operation, self, other)
+
+    def node_last(self, other):
+        return NotImplemented if isinstance(other, OTHERS) else self.graph.node(operation, other, self)
+
+    return node_first, node_last
+
+
+def _method(operation) -> Any:
+    return lambda self, *others: self.graph.node(operation, self, *others)
+
+
 class Node:
     """A recorded number: an operation, its arguments, and what it varies with."""
 
@@ -27,66 +45,10 @@ class Node:
         self.index = len(graph)
         graph.append(self)
 
-    def __add__(self, other):
-        return _combined(self, "+", self, other)
-
-    def __radd__(self, other):
-        return _combined(self, "+", other, self)
-
-    def __sub__(self, other):
-        return _combined(self, "-", self, other)
-
-    def __rsub__(self, other):
-        return _combined(self, "-", other, self)
-
-    def __mul__(self, other):
-        return _combined(self, "*", self, other)
-
-    def __rmul__(self, other):
-        return _combined(self, "*", other, self)
-
-    def __truediv__(self, other):
-        return _combined(self, "/", self, other)
-
-    def __rtruediv__(self, other):
-        return _combined(self, "/", other, self)
-
     def __pow__(self, exponent):
         if exponent != 2:
             raise TypeError(f"only squares are recorded, not powers of {exponent}")
         return self * self
-
-    def __neg__(self):
-        return self.graph.node("-", self)
-
-    def __abs__(self):
-        return self.graph.node("abs", self)
-
-    def sin(self):
-        """Called by `numpy.sin` for an array of objects, as `cos` and `sqrt` are."""
-        return self.graph.node("sin", self)
-
-    def cos(self):
-        return self.graph.node("cos", self)
-
-    def sqrt(self):
-        return self.graph.node("sqrt", self)
-
-    def arctan(self):
-        return self.graph.node("atan", self)
-
-    def sign(self):
-        return self.graph.node("sign", self)
-
-    def held(self):
-        return self.graph.node("held", self)
-
-    def forgiving_root(self, unit):
-        """Called by `arithmetic.clamped_sqrt`, as the next two by `guarded_divisor` and `offset_from_zero`."""
-        return self.graph.node("root", self, unit)
-
-    def kept_off_zero(self, unit):
-        return self.graph.node("divisor", self, unit)
 
     def moved_apart(self, unit):
         return self + RELATIVE_OFFSET * unit
@@ -105,11 +67,15 @@ class Node:
     __bool__ = __float__ = __int__ = __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _unknown
     __hash__ = object.__hash__
 
-
-def _combined(node, operation, left, right):
-    if isinstance(left, OTHERS) or isinstance(right, OTHERS):
-        return NotImplemented
-    return node.graph.node(operation, left, right)
+    __add__, __radd__ = _operators("+")
+    __sub__, __rsub__ = _operators("-")
+    __mul__, __rmul__ = _operators("*")
+    __truediv__, __rtruediv__ = _operators("/")
+    __neg__, __abs__ = _method("-"), _method("abs")
+    # called by NumPy for arrays of objects
+    sin, cos, sqrt, arctan = map(_method, ("sin", "cos", "sqrt", "atan"))
+    # called by `arithmetic`: `sign`, `stop_gradient`, `clamped_sqrt`, `guarded_divisor`
+    sign, held, forgiving_root, kept_off_zero = map(_method, ("sign", "held", "root", "divisor"))
 
 
 class Graph(list):
@@ -121,10 +87,15 @@ class Graph(list):
 
     def node(self, operation, *arguments):
         arguments = tuple(part if isinstance(part, Node) else float(part) for part in arguments)
-        if operation in "+-":
-            operation, arguments = _with_signs_taken_in(operation, *arguments)
-            if len(arguments) == 1 and operation == "+":
-                return arguments[0]
+        if operation in "+-":  # without negations of its terms, the same to the last bit
+            *left, right = arguments
+            if is_negative(right):
+                operation, right = "-" if operation == "+" else "+", right.arguments[0]
+            if left and is_negative(left[0]) and operation == "+":
+                operation, left, right = "-", [right], left[0].arguments[0]
+            if not left and operation == "+":
+                return right
+            arguments = (*left, right)
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
@@ -151,16 +122,6 @@ def is_number(part, number):
     return not isinstance(part, Node) and part == number
 
 
-def _with_signs_taken_in(operation, *arguments):
-    """The same sum or difference, to the last bit, without negations of its terms."""
-    *left, right = arguments
-    if is_negative(right):
-        operation, right = "-" if operation == "+" else "+", right.arguments[0]
-    if left and is_negative(left[0]) and operation == "+":
-        return "-", (right, left[0].arguments[0])
-    return operation, (*left, right)
-
-
 def varies(part):
     """Whether a part varies with the crank angle."""
     return isinstance(part, Node) and part.varies == BY_ANGLE
@@ -168,6 +129,11 @@ def varies(part):
 
 def is_negative(part):
     return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
+
+
+def is_of_angle(part):
+    """Whether a part is the sine or cosine of the crank angle."""
+    return isinstance(part, Node) and part.operation in ("sin", "cos") and part.arguments[0].operation == "angle"
 
 
 def needed(outputs):

@@ -5,7 +5,6 @@ rows of tables are computed in double and rounded once; the operations at each c
 asked for. So a crank angle may be a million turns, and masses may nearly cancel.
 """
 
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -15,7 +14,6 @@ import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.arithmetic import SQUARE_TOLERANCE, compensated_sum
-from ..numbers.lazy import cached_property
 from . import numba_backend
 from .codegen import BY_DESIGN, compile_line, line_source, loop_source
 from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
@@ -93,35 +91,16 @@ class DeviceProgram:
     def run(self, given):
         """Outputs (outputs, *shape) for given inputs."""
         jax = _jax()
-        with jax.default_device(self._device), _width(jax, given.angle.dtype):
-            dtype = given.angle.dtype
-            arrays = *given[:3], _stacked(given.parameters, dtype), _stacked(given.rows, dtype)
+        dtype = given.angle.dtype
+        home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
+        with jax.default_device(self._device), home.enable_x64(dtype == np.float64):
+            # one array of all: a transfer for each would take longer than computing
+            inputs = (np.array(np.broadcast_arrays(*parts), dtype) for parts in (given.parameters, given.rows))
+            arrays = *given[:3], *inputs
             key = given.shape, *(part.shape for part in arrays)
             if key not in self._compiled:
                 self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
             return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
-
-
-def _stacked(parts, dtype):
-    """One array of numbers and arrays: a transfer for each would take longer than computing."""
-    return np.array(np.broadcast_arrays(*parts), dtype)
-
-
-@contextmanager
-def _width(jax, dtype):
-    """JAX in the precision of a dtype."""
-    home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
-    with home.enable_x64(dtype == np.float64):
-        yield
-
-
-def require_known_rounding(device):
-    """Raise `NotGivenError` for a device on which the rounding of functions has not been tested."""
-    if device.platform != PROVEN:
-        raise NotGivenError(
-            f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile the "
-            f'program with device="{PROVEN}", engine="numpy" or engine="compiled" to have one'
-        )
 
 
 class Given(NamedTuple):
@@ -157,7 +136,7 @@ class MixedPrecision:
         self._whole = program
         given, outputs = parted(program.outputs)
         self._fixed = compile_line(line_source(given), BY_DESIGN)
-        self.at_angles = Program(program.recording, outputs)
+        self.at_angles, self._loop = Program(program.recording, outputs), None
 
     def given(self, state, leaves, dtype):
         """Inputs, in a dtype, for a `Dynamics` with its leaves."""
@@ -166,8 +145,10 @@ class MixedPrecision:
         if angle.shape[-1:] != shape[-1:]:
             angle = np.broadcast_to(angle, angle.shape[:-1] + shape[-1:])
         with np.errstate(all="ignore"):
-            parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
-            rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
+            parameters, rows = (
+                [float(part) if isinstance(part, float) else np.asarray(part, dtype) for part in parts]
+                for parts in (self._fixed_by(leaves.numbers), self._whole.rows(state, leaves))
+            )
             angle, sine, cosine = (part.astype(dtype) for part in (angle, *numpy_sines(angle)))
         return Given(angle, sine, cosine, parameters, rows, shape)
 
@@ -203,18 +184,10 @@ class MixedPrecision:
         ]
         rows = numba_backend.row_table(given.rows, shape).astype(dtype)
         results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
-        angle, sine, cosine = turn
-        numba_backend.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
+        if self._loop is None:
+            self._loop = load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
+        numba_backend.run_loop(self._loop, *turn, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
-
-    @cached_property
-    def _loop(self):
-        """The loop compiled for single precision."""
-        return load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
-
-
-def _of_type(part, dtype):
-    return float(part) if isinstance(part, float) else np.asarray(part, dtype)
 
 
 _splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()
@@ -277,20 +250,19 @@ class Backend:
         NotGivenError
             The rounding of user code, or of a device, is not known.
         """
-        if self.engine == "jax":
-            require_known_rounding(device_of(self.platform))
+        if self.engine == "jax" and (device := device_of(self.platform)).platform != PROVEN:
+            raise NotGivenError(
+                f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile "
+                f'the program with device="{PROVEN}", engine="numpy" or engine="compiled" to have one'
+            )
         compiled = self.engine == "compiled"
         if self.is_own:
             values, found = with_bounds(program, state, leaves, compiled, tight)
         else:
-            count, rows = len(program.outputs), self._elsewhere(program).run(state, leaves, compiled)
-            values, found = rows[:count], rows[count:]
+            if program not in self._bounded:
+                recording = program.recording
+                bounds = ErrorBounds(recording.graph, recording.inputs, PRECISIONS[self.precision])
+                self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
+            values, found = np.split(self._bounded[program].run(state, leaves, compiled), 2)
         small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
         return where_known(values, found if small else np.nan)
-
-    def _elsewhere(self, program):
-        if program not in self._bounded:
-            recording = program.recording
-            bounds = ErrorBounds(recording.graph, recording.inputs, PRECISIONS[self.precision])
-            self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
-        return self._bounded[program]

@@ -22,7 +22,7 @@ from .derivatives import gradients
 from .error_bounds import OWN, ErrorBounds, tight_bounds
 from .graph import needed, operations
 from .numba_backend import keep_for_same_angles, load_compiled, numba_available
-from .record import record, recorded_scene
+from .record import Recorder, record
 
 MAX_PLAIN_ANGLES = 12
 """Largest number of crank angles that are computed one by one on plain numbers."""
@@ -49,7 +49,7 @@ class Program:
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
         self._bounded: dict[bool, Program] = {}
-        self._computed = 0.0
+        self._computed, self._operations = 0.0, operations(self.outputs)
 
     def by_parameters(self, places):
         """Program of all outputs, followed by their derivatives by the parameters at some places.
@@ -126,8 +126,9 @@ class Program:
         angle, shape = state.crank_angle, state.shape
         count = math.prod(shape)
         if len(shape) < 2 and count <= MAX_PLAIN_ANGLES and not self.recording.tables:
-            few = self._by_short_loop if compiled and self._has_paid(count) else self._by_numbers
-            return few(angle, leaves.numbers, shape)
+            if compiled and self._has_paid(count):
+                return self._of_one_design(self._short_loop, angle, leaves.numbers, shape, _sines)
+            return self._by_numbers(angle, leaves.numbers, shape)
         run = self.by_loop if compiled else self.by_numpy
         if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
             angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
@@ -142,21 +143,21 @@ class Program:
         with np.errstate(all="ignore", under=self.extremes, over=self.extremes):
             sine, cosine = numpy_sines(angle)
             if len(shape) == 1:
+                size = max(1, count * min(shape[0], BUFFER_VALUES))
+                if not hasattr(_memory, "held") or _memory.held.size < size:
+                    _memory.held = np.empty(size)
                 try:
                     for start in range(0, shape[0], BUFFER_VALUES):
                         part = slice(start, start + BUFFER_VALUES)
                         given = [row[part] if np.size(row) > 1 else row for row in rows]
-                        own, free = results[:, part], _buffers(count, results[0, part].shape)
+                        own = results[:, part]
+                        free = _memory.held[: count * own.shape[1]].reshape(count, own.shape[1])
                         single(angle[part], sine[part], cosine[part], numbers, given, free, own)
                     return results
                 except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
                     numbers = list(map(np.float64, numbers))
             batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
         return results
-
-    @cached_property
-    def _operations(self):
-        return operations(self.outputs)
 
     def _has_paid(self, count):
         """Whether all computations of few angles so far took longer than compiling.
@@ -173,15 +174,11 @@ class Program:
     def at_one(self, angle, numbers, compiled):
         """Outputs at one crank angle, a list of floats; for programs without tables."""
         if compiled and self._has_paid(1):
-            return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
+            return self._of_one_design(self._short_loop, np.array([[angle]]), numbers, (1,), _sines)[:, 0].tolist()
         try:
             return self._plain(angle, float(np.sin(angle)), float(np.cos(angle)), _plain_numbers(numbers), ())
         except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
             return self.by_numpy(np.array([angle]), numbers, (), (1,))[:, 0].tolist()
-
-    def _by_short_loop(self, angle, numbers, shape):
-        """Outputs by the loop, with NumPy's sines, as on plain numbers."""
-        return self._of_one_design(self._short_loop, angle, numbers, shape, _sines)
 
     def _of_one_design(self, loop, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
@@ -271,15 +268,7 @@ numpy_sines = keep_for_same_angles(_sines)
 
 
 _memory = threading.local()
-
-
-def _buffers(count, shape):
-    """Scratch buffers, reused in each thread; allocating costs more than the computation."""
-    size = count * math.prod(shape)
-    held = getattr(_memory, "held", None)
-    if held is None or held.size < size:
-        held = _memory.held = np.empty(max(size, 1))
-    return held[:size].reshape(count, *shape)
+"""Scratch buffers, reused in each thread; allocating costs more than the computation."""
 
 
 # Programs kept by structure
@@ -344,24 +333,21 @@ def plausibility_test(kind, judged=()):
         outputs.append(value)
         return f"v[{len(outputs) - 1}]"
 
-    def outside(number, usual):
-        """Source of the condition that a number is outside its usual range."""
-        most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
-        too_large = f"not -{most} <= {number} <= {most}"
-        return f"{too_large} or abs({number}) < {least}" if usual.least else too_large
-
     try:
-        scene = recorded_scene(kind.structure)
+        scene = Recorder(kind.structure).recorded
         extent, reaches, bars, bodies, turning, arms = plausibility.compared_sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
-    odd = [outside(f"numbers[{leaf}]", usual) for leaf, usual in judged if bars or not usual.in_links]
-    odd += [f"not extent < {MAX_LENGTH_IN_LINKS} * longest"] if bars else []
-    odd += (
-        [f"longest > {plausibility.MAX_LENGTH}", f"longest > {plausibility.MAX_LENGTH_RATIO} * shortest"]
-        if bars
-        else []
-    )
+    odd = []
+    for leaf, usual in judged:
+        if bars or not usual.in_links:
+            most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
+            odd.append(f"not -{most} <= numbers[{leaf}] <= {most}")
+            odd += [f"abs(numbers[{leaf}]) < {least}"] if usual.least else []
+    if bars:
+        odd.append(f"not extent < {MAX_LENGTH_IN_LINKS} * longest")
+        odd.append(f"longest > {plausibility.MAX_LENGTH}")
+        odd.append(f"longest > {plausibility.MAX_LENGTH_RATIO} * shortest")
     odd += [
         f"{noted(inertia)} > {plausibility.LARGE_INERTIA_FACTOR} * {noted(mass)} * {noted(long)} ** 2"
         for inertia, mass, long in turning

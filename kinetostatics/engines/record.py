@@ -7,6 +7,7 @@ if no arithmetic links them, as for the weight of the crank, zero moments, or en
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -199,11 +200,6 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     )
 
 
-def recorded_scene(structure):
-    """The scene of a structure, with a `Node` for each of its numbers."""
-    return Recorder(structure).recorded
-
-
 class Recorder:
     """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
 
@@ -216,11 +212,12 @@ class Recorder:
         mechanism, speed, acceleration, items, friction, sense = unflatten(
             structure, self._parameter, self._array, lambda: None
         )
-        self.angle = self._nodes(self.graph.angle())
+        self.angle = _nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
         for guide in mechanism.guides.values():
-            self.inputs.update((part, _rounded_once) for part in guide.rounded if isinstance(part, Node))
+            rounded = (part for part in guide.rounded if isinstance(part, Node))
+            self.inputs |= dict.fromkeys(rounded, lambda bounds: Error(1.0, None))
         idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
@@ -234,15 +231,21 @@ class Recorder:
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
     def _tabled(self, names, compute, moved_by="", of="", bounded=None):
-        first, self._rows = self._rows, self._rows + len(names)
-        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of, bounded))
-        found = [self.graph.row(row) for row in range(first, self._rows)]
-        if moved_by:
-            self.inputs.update((node, _unproven(moved_by)) for node in found)
-        return [self._nodes(node) for node in found]
+        """Nodes of the rows of a new table."""
+        rows = range(self._rows, self._rows + len(names))
+        self._rows = rows.stop
+        self.tables.append(Table(rows, compute, moved_by, names, of, bounded))
+        found = list(map(self.graph.row, rows))
 
-    def _nodes(self, *nodes):
-        return np.array(nodes, dtype=object)
+        def unproven(bounds):
+            raise NotGivenError(
+                f"no bound can be given: {moved_by} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
+                "so its own rounding is not known"
+            )
+
+        if moved_by:
+            self.inputs.update(dict.fromkeys(found, unproven))
+        return list(map(_nodes, found))
 
     def _with_cam(self, group, place):
         """The group, with its cam's values from a table if the cam takes plain numbers only."""
@@ -308,7 +311,8 @@ class Recorder:
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
-            self.inputs |= _errors_of_piece(value[0], slope[0], [row[0] for row in kinks], travel, rate)
+            self.inputs[value[0]] = partial(_error_of_piece, kinks=[row[0] for row in kinks], travel=travel, rate=rate)
+            self.inputs[slope[0]] = lambda bounds: Error(3.0, None)
             return table.read(motion, (start, value, slope))
 
         return read
@@ -324,7 +328,7 @@ class Recorder:
                 return True
             other = self.graph.angle()
             for place, pair in enumerate([(self.angle[0], other), (other, self.angle[0])]):
-                beside = [np.broadcast_to(found, 2)[place] for found in compute(self._nodes(*pair))]
+                beside = [np.broadcast_to(found, 2)[place] for found in compute(_nodes(*pair))]
                 if any(one is not two and one != two for one, two in zip(alone, beside, strict=True)):
                     return False
         except Exception:  # whatever fails on recorded numbers
@@ -348,32 +352,18 @@ ERRORS = tuple(("error", order, "") for order in range(4))
 """Names of rows that only bounds need."""
 
 
-def _rounded_once(bounds):
-    return Error(1.0, None)
+def _nodes(*nodes):
+    return np.array(nodes, dtype=object)
 
 
-def _errors_of_piece(value, slope, kinks, travel, rate):
-    """Errors of a piece of a table over travel: the exact travel may lie in the next one, or on the other stroke."""
+def _error_of_piece(bounds, kinks, travel, rate):
+    """Error of a value of a table over travel: the exact travel may lie in the next piece, or on the other stroke."""
     change, jump, near, distance = kinks
-
-    def of_value(bounds):
-        bounds.look_at((travel, rate))
-        jumps = plus(jump / UNIT_ROUNDOFF, 0.0 / bounds.above(near, bounds.total(rate)))
-        total = bounds.total(travel)
-        if total is None:  # the travel is exact
-            return Error(0.0, jumps)
-        off = 2.0 * total  # also of the travel by which the piece was chosen
-        jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT_ROUNDOFF, None), jumps))
-
-    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
-
-
-def _unproven(what):
-    def error(bounds):
-        raise NotGivenError(
-            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `arithmetic`, so its "
-            "own rounding is not known"
-        )
-
-    return error
+    bounds.look_at((travel, rate))
+    jumps = plus(jump / UNIT_ROUNDOFF, 0.0 / bounds.above(near, bounds.total(rate)))
+    total = bounds.total(travel)
+    if total is None:  # the travel is exact
+        return Error(0.0, jumps)
+    off = 2.0 * total  # also of the travel by which the piece was chosen
+    jumps = plus(jumps, 0.0 / bounds.above(near, off))
+    return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT_ROUNDOFF, None), jumps))

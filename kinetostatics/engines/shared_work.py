@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .codegen import is_of_angle, loop_source
-from .graph import BY_ANGLE, INPUTS, Graph, Node, needed, operations, varies
+from .codegen import loop_source
+from .graph import BY_ANGLE, INPUTS, Graph, Node, is_of_angle, needed, operations, varies
 from .numba_backend import load_compiled
 from .program import Program
 from .simplify import drop_unused, fused_sums, operands_of

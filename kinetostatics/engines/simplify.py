@@ -9,7 +9,7 @@ else is computed.
 from itertools import product
 from typing import Any, NamedTuple
 
-from .graph import BY_ANGLE, BY_DESIGN, Graph, Node, is_negative, is_number, varies
+from .graph import BY_ANGLE, Graph, Node, is_negative, is_number, is_of_angle, varies
 
 MIN_DIVISOR = 2.0**-1022
 """Divisors below this may have no finite reciprocal."""
@@ -52,14 +52,14 @@ class SimplifiedGraph(Graph):
     def _quotient(self, above, below):
         if is_negative(above):
             return -self.node("/", above.arguments[0], below)
-        if _varies(below) == BY_ANGLE:
+        if varies(below):
             if isinstance(above, Node) and above.operation == "*":
                 left, right = above.arguments
                 if below is left or below is right:
                     return right if below is left else left
             if _is_root(below):
                 return self.node("*", above, self._over(below))
-        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= MIN_DIVISOR):
+        elif varies(above) and (isinstance(below, Node) or abs(below) >= MIN_DIVISOR):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
@@ -73,11 +73,8 @@ class SimplifiedGraph(Graph):
         if part.operation == "/":
             above, below = arguments
             return below if is_number(above, 1.0) else super().node("/", below, above)
-        if (
-            part.operation == "*"
-            and min(map(_varies, arguments)) < part.varies
-            and not any(is_number(part, 0.0) for part in arguments)
-        ):
+        is_mixed = part.operation == "*" and varies(part) and not all(map(varies, arguments))
+        if is_mixed and not any(is_number(part, 0.0) for part in arguments):
             return self.node("*", *map(self._over, arguments))
         return super().node("/", 1.0, part)
 
@@ -85,39 +82,27 @@ class SimplifiedGraph(Graph):
 def _is_root(part):
     """Whether a part is a root, or a root times numbers of the design."""
     while part.operation in ("*", "-"):
-        own = [other for other in part.arguments if _varies(other) == BY_ANGLE]
+        own = [other for other in part.arguments if varies(other)]
         if len(own) > 1 or (part.operation == "-" and len(part.arguments) > 1):
             return False
         (part,) = own
     return part.operation in ("divisor", "sqrt", "root")
 
 
-def _varies(part):
-    return part.varies if isinstance(part, Node) else BY_DESIGN
-
-
 def _are_inverse(one, other):
-    return _is_over(one, other) or _is_over(other, one)
-
-
-def _is_over(part, other):
-    """Whether a part is 1 / other."""
-    return (
+    """Whether one part is 1 over the other."""
+    return any(
         isinstance(part, Node)
         and part.operation == "/"
-        and part.arguments[1] is other
+        and part.arguments[1] is divisor
         and is_number(part.arguments[0], 1.0)
+        for part, divisor in ((one, other), (other, one))
     )
 
 
 def _is_none_of_turn(part, other):
     """Whether a part is 0 and the other the sine or cosine of the crank angle, which is finite."""
-    return (
-        is_number(part, 0.0)
-        and isinstance(other, Node)
-        and other.operation in ("sin", "cos")
-        and other.arguments[0].operation == "angle"
-    )
+    return is_number(part, 0.0) and is_of_angle(other)
 
 
 def _secant(square):
@@ -144,14 +129,11 @@ def _turned(square):
         (x, same), (y, alike) = _parts(one, "*"), _parts(other, "*")
         if x is same and y is alike:
             for (size, sine), (beside, cosine) in product(_either_way(x, "*"), _either_way(y, "*")):
-                if size is not None and size is beside and _are_of_one_angle(sine, cosine):
+                operations = [getattr(part, "operation", None) for part in (sine, cosine)]
+                is_turn = operations == ["sin", "cos"] and sine.arguments == cosine.arguments
+                if is_turn and size is not None and size is beside:
                     return size
     return None
-
-
-def _are_of_one_angle(sine, cosine):
-    operations = [part.operation if isinstance(part, Node) else None for part in (sine, cosine)]
-    return operations == ["sin", "cos"] and sine.arguments == cosine.arguments
 
 
 def _parts(part, operation):
@@ -229,7 +211,5 @@ def drop_unused(nodes, outputs, sums):
 
 def _product(part):
     """Sign, and product node or None, of a part."""
-    sign = 1
-    if varies(part) and part.operation == "-" and len(part.arguments) == 1:
-        sign, part = -1, part.arguments[0]
+    sign, part = (-1, part.arguments[0]) if varies(part) and is_negative(part) else (1, part)
     return sign, part if varies(part) and part.operation == "*" else None

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..engines import numba_backend
 from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
-from ..engines.scanning import COLUMNS, edition
+from ..engines.simd_reductions import COLUMNS, edition
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from . import peaks
 from .peaks import REACH
@@ -31,19 +31,19 @@ SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 from math import inf, nan, pi, sqrt
 
 import numpy as np
-from kinetostatics.engines import scanning
+from kinetostatics.engines import simd_reductions
 from kinetostatics.results.peaks import between
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
 inner = dict(options, _nrt=False)  # nothing in here gets memory, so nobody need count who holds it
-steps = scanning.bits_of_steps(scanning.rising, scanning.falling)
-signs = scanning.bits_of_steps(scanning.negative)
-lowest = scanning.lowest_bit()
-heights = scanning.over_columns(between, {AROUND})
-plain = scanning.summing(lambda value: value)
-sizes = scanning.summing(abs)
-squares = scanning.summing(lambda value: value * value)
+steps = simd_reductions.bits_of_steps(simd_reductions.rising, simd_reductions.falling)
+signs = simd_reductions.bits_of_steps(simd_reductions.negative)
+lowest = simd_reductions.lowest_bit()
+heights = simd_reductions.over_columns(between, {AROUND})
+plain = simd_reductions.summing(lambda value: value)
+sizes = simd_reductions.summing(abs)
+squares = simd_reductions.summing(lambda value: value * value)
 ONE, SIXTY_THREE = np.uint64(1), np.uint64(63)
 
 

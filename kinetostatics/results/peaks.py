@@ -94,7 +94,7 @@ def between(near, chosen, sqrt):
     Parameters
     ----------
     near : sequence of operand
-        Arrays, or vectors that write down what is done to them (`engines.scanning`).
+        Arrays, or vectors that write down what is done to them (`engines.simd_reductions`).
     chosen : function
         ``chosen(sign, one, other, here, there)``: `here` where two operands compare so, else `there`.
     sqrt : function

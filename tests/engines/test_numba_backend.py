@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import numba_backend, scanning
+from kinetostatics.engines import numba_backend, simd_reductions
 from kinetostatics.engines.codegen import BY_DESIGN
 from kinetostatics.engines.graph import Graph
 from kinetostatics.engines.program import Program, program_of
@@ -260,8 +260,8 @@ def jitted(intrinsic, arguments):
 
 @pytest.mark.slow_start
 def test_bits_are_set_exactly_where_conditions_hold(numba):
-    conditions = [getattr(scanning, name) for name in SCANS]
-    own, expected = jitted(scanning.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
+    conditions = [getattr(simd_reductions, name) for name in SCANS]
+    own, expected = jitted(simd_reductions.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
     for size in ROWS:
         results = np.zeros((2, 3, size))
         results[1, 2] = values_of(size)
@@ -276,7 +276,8 @@ def test_bits_are_set_exactly_where_conditions_hold(numba):
 def test_what_holds_is_what_reductions_mean():
     values = np.array([0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0])
     after = np.roll(values, -1)
-    places = {name: np.flatnonzero(getattr(scanning, name)(by_arrays.WRITER, values, after)).tolist() for name in SCANS}
+    found = {name: getattr(simd_reductions, name)(by_arrays.WRITER, values, after) for name in SCANS}
+    places = {name: np.flatnonzero(mask).tolist() for name, mask in found.items()}
     assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
@@ -288,14 +289,14 @@ def test_columns_of_a_table_become_a_function_of_them(numba):
         one, other, *_ = parts
         return chosen("<", one, other, 2.0 * one, 3.0), sqrt(abs(one - other))
 
-    own, expected = jitted(scanning.over_columns(function, 3), 2), by_arrays.over_columns(function, 3)
-    for count in (1, scanning.COLUMNS, scanning.COLUMNS + 1):
-        table = np.random.default_rng(count).normal(size=(3, 4 * scanning.COLUMNS))
+    own, expected = jitted(simd_reductions.over_columns(function, 3), 2), by_arrays.over_columns(function, 3)
+    for count in (1, simd_reductions.COLUMNS, simd_reductions.COLUMNS + 1):
+        table = np.random.default_rng(count).normal(size=(3, 4 * simd_reductions.COLUMNS))
         found, wanted = table.copy(), table.copy()
         own(found, count)
         expected(wanted, count)
         assert np.array_equal(found[:, :count], wanted[:, :count])
-        beyond = -(-count // scanning.COLUMNS) * scanning.COLUMNS
+        beyond = -(-count // simd_reductions.COLUMNS) * simd_reductions.COLUMNS
         assert np.array_equal(found[:, beyond:], table[:, beyond:])
         assert np.array_equal(found[2], table[2])
 
@@ -304,7 +305,7 @@ def test_columns_of_a_table_become_a_function_of_them(numba):
 def test_sums_of_every_other_value_lose_little(numba):
     terms = {"plain": lambda value: value, "sizes": abs, "squares": lambda value: value * value}
     for name, term in terms.items():
-        own = jitted(scanning.summing(term), 3)
+        own = jitted(simd_reductions.summing(term), 3)
         for size in ROWS:
             values = np.random.default_rng(size).normal(size=size)
             wanted = [math.fsum(term(values[first::2]).tolist()) for first in (0, 1)]
@@ -317,6 +318,6 @@ def test_sums_of_every_other_value_lose_little(numba):
 
 @pytest.mark.slow_start
 def test_the_lowest_bit_is_found_at_either_end(numba):
-    own = jitted(scanning.lowest_bit(), 1)
+    own = jitted(simd_reductions.lowest_bit(), 1)
     for bit in (0, 1, 31, 32, 63):
         assert own(np.uint64(2**63 | 2**bit)) == bit == by_arrays.lowest_bit()(2**63 | 2**bit)

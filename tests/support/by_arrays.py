@@ -1,4 +1,4 @@
-"""What numba is given by `engines.scanning`, done by NumPy: for programs run without numba."""
+"""What numba is given by `engines.simd_reductions`, done by NumPy: for programs run without numba."""
 
 import operator
 from types import SimpleNamespace
@@ -49,7 +49,7 @@ def lowest_bit():
 
 def stand_in(patch):
     """Put these in place of what is written for numba."""
-    from kinetostatics.engines import scanning
+    from kinetostatics.engines import simd_reductions
 
     for own in (bits_of_steps, over_columns, summing, lowest_bit):
-        patch.setattr(scanning, own.__name__, own)
+        patch.setattr(simd_reductions, own.__name__, own)

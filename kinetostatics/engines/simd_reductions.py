@@ -1,23 +1,24 @@
-"""Rows of numbers looked through in vectors, for numba: where something holds, a bit for each place, and sums."""
+"""Vector (SIMD) instructions for numba: bit masks of comparisons, functions of table columns, and sums of rows."""
 
 import inspect
 import sys
 from functools import cache
 from hashlib import sha256
+from typing import Any
 
 from ..version import __version__
 
 AT_ONCE = 64
-"""Numbers that are compared, or added to as many sums, at once."""
+"""Numbers that are compared or added by one instruction."""
 COLUMNS = 8
-"""Columns of a table that are computed at once."""
+"""Columns of a table that are computed by one instruction."""
 
 
 @cache
 def edition(*others) -> str:
-    """What tells machine code written by this version of the module, and of others that it is made by, from another's.
+    """Hash of the source of this module and others, for programs compiled with it.
 
-    Numba knows the text that it compiles, not the modules that it is written by.
+    Numba looks for changes in the program that it compiles only, not in the modules that emit its instructions.
     """
     modules = sys.modules[__name__], *others
     try:
@@ -28,12 +29,12 @@ def edition(*others) -> str:
 
 
 def rising(writer, here, after):
-    """Whether the second of two numbers is higher, or one of them is none."""
+    """Whether the second of two numbers is higher, or one of them is NaN."""
     return writer.builder.not_(writer.holds("<=", after, here))
 
 
 def falling(writer, here, after):
-    """Whether the second of two numbers is lower, or one of them is none."""
+    """Whether the second of two numbers is lower, or one of them is NaN."""
     return writer.builder.not_(writer.holds(">=", after, here))
 
 
@@ -43,10 +44,10 @@ def negative(writer, here, after):
 
 
 def bits_of_steps(*conditions):
-    """For numba: ``bits(results, design, row, words)``: sets bit k of words where a condition holds of step k.
+    """For numba: ``bits(results, design, row, words)`` sets bit k of `words` where a condition holds for step k.
 
-    That is the step from value k in a row of results (designs, rows, N) to the next, or from the last to the first.
-    There is a row of uint64 for each condition, with N bits; those of the last word beyond them are 0.
+    Step k goes from value k in a row of results (designs, rows, N) to the next, from the last to the first. `words` has
+    a row of uint64 for each condition; bits beyond N are 0.
     """
     from numba import types
     from numba.core import cgutils
@@ -102,7 +103,7 @@ def bits_of_steps(*conditions):
 
 
 def _row(context, builder, kinds, given):
-    """Where a row of results (designs, rows, N) begins in memory, and N."""
+    """Address of a row of results (designs, rows, N), and N."""
     from numba import types
     from numba.core import cgutils
 
@@ -115,10 +116,10 @@ def _row(context, builder, kinds, given):
 
 
 def over_columns(function, rows):
-    """For numba: ``over(table, count)``: the first rows of a table become a function of all, in so many columns.
+    """For numba: ``over(table, count)`` replaces the first rows of a table by a function of all, in `count` columns.
 
-    ``function(parts, chosen, sqrt)`` gives fewer parts than there are rows. It is computed in a multiple of `COLUMNS`,
-    which the table must have.
+    ``function(parts, chosen, sqrt)`` returns fewer rows than the table has. The number of columns is rounded up to a
+    multiple of `COLUMNS`, which the table must have.
     """
     from numba import types
     from numba.core import cgutils
@@ -149,10 +150,9 @@ def over_columns(function, rows):
 
 
 def summing(term):
-    """For numba: ``sums(results, design, row)``: the sum of a term of every other value, and of those between.
+    """For numba: ``sums(results, design, row)``: sums of a term over the values at even and at odd places of a row.
 
-    These are a row of results (designs, rows, N). Many sums go side by side, in an order of its own, whatever the
-    processor.
+    Results have the shape (designs, rows, N). The order of additions is the same on every processor.
     """
     from llvmlite import ir
     from numba import types
@@ -196,7 +196,7 @@ def summing(term):
 
 
 def lowest_bit():
-    """For numba: ``place(word)`` of the lowest bit that is set in a uint64, as int64."""
+    """For numba: ``place(word)``, the number of the lowest bit set in a uint64, as int64."""
     from numba import types
     from numba.extending import intrinsic
 
@@ -211,7 +211,7 @@ def lowest_bit():
 
 
 class Writer:
-    """LLVM instructions on doubles, as many at once as told."""
+    """Emits LLVM instructions on vectors of `count` doubles."""
 
     def __init__(self, builder, count):
         from llvmlite import ir
@@ -236,7 +236,7 @@ class Writer:
         return _Lanes(self, getattr(self.builder, operation)(*map(self.held, parts)))
 
     def called(self, name, part):
-        """Function of LLVM's own of all lanes together."""
+        """Intrinsic function of LLVM, of all lanes."""
         from llvmlite import ir
         from numba.core import cgutils
 
@@ -249,11 +249,11 @@ class Writer:
         return self.called("sqrt", part)
 
     def holds(self, sign, one, other):
-        """Whether operands compare so, a bit for each lane; not if one is no number."""
+        """A bit for each lane: whether the comparison holds; it does not if an operand is NaN."""
         return self.builder.fcmp_ordered(sign, self.held(one), self.held(other))
 
     def chosen(self, sign, one, other, here, there):
-        """The one operand where two others compare so, else the other."""
+        """`here` where the comparison of two operands holds, else `there`."""
         holds = self.holds(sign, one, other)
         return _Lanes(self, self.builder.select(holds, self.held(here), self.held(there)))
 
@@ -261,40 +261,29 @@ class Writer:
         return place if self._count == 1 else self.builder.bitcast(place, self._kind.as_pointer())
 
 
+def _operators(instruction) -> tuple[Any, Any]:
+    """Methods of an operator with the operand on its left, and on its right."""
+    return (
+        lambda self, other: self._writer.written(instruction, self, other),
+        lambda self, other: self._writer.written(instruction, other, self),
+    )
+
+
 class _Lanes:
-    """An operand: what is done to it is written down."""
+    """An operand: a vector of doubles or one double; its operators emit instructions."""
 
     __slots__ = ("_writer", "value")
 
     def __init__(self, writer, value):
         self._writer, self.value = writer, value
 
-    def __add__(self, other):
-        return self._writer.written("fadd", self, other)
-
-    def __radd__(self, other):
-        return self._writer.written("fadd", other, self)
-
-    def __sub__(self, other):
-        return self._writer.written("fsub", self, other)
-
-    def __rsub__(self, other):
-        return self._writer.written("fsub", other, self)
-
-    def __mul__(self, other):
-        return self._writer.written("fmul", self, other)
-
-    def __rmul__(self, other):
-        return self._writer.written("fmul", other, self)
-
-    def __truediv__(self, other):
-        return self._writer.written("fdiv", self, other)
-
-    def __rtruediv__(self, other):
-        return self._writer.written("fdiv", other, self)
-
     def __neg__(self):
         return self._writer.written("fneg", self)
 
     def __abs__(self):
         return self._writer.called("fabs", self)
+
+    __add__, __radd__ = _operators("fadd")
+    __sub__, __rsub__ = _operators("fsub")
+    __mul__, __rmul__ = _operators("fmul")
+    __truediv__, __rtruediv__ = _operators("fdiv")
