@@ -22,7 +22,7 @@ from ..machine.kinematic_state import Placement
 from ..machine.links import Joint, Link
 from ..machine.loads import KINDS
 from ..numbers import checks
-from ..numbers.parameter_tree import map_numbers
+from ..numbers.parameter_tree import come_from_one_class, map_numbers
 from ..numbers.planar import rotate
 from ..solution.solution import Solution
 
@@ -34,7 +34,7 @@ def placement_from_joints(mechanism, angle, joints) -> Placement:
     """Placement of a mechanism from its moving joints by name, with their derivatives."""
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
-        if not group.follows:
+        if not come_from_one_class(type(group), "follow", "place"):
             raise NotGivenError(f"{type(group).__name__} has no `follow`, to be placed at joints known in another way")
         group.follow(placement, joints)
     return placement

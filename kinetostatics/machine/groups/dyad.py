@@ -96,7 +96,7 @@ class Dyad(checks.Checked, Group):
     label: str = ""
 
     LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
-    TRUSTED = True
+    TRUSTED = is_rigid_triangle = True
     PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
     RULES = checks.Rules(
         "dyad",
@@ -131,10 +131,6 @@ class Dyad(checks.Checked, Group):
             inner=(Turning("dyad1", first), Turning("dyad2", second)),
             pairs=(Turning("dyad2", self.pin, "dyad1"),),
         )
-
-    def rigid_on(self, owners):
-        """Both links on two joints of one link make a rigid triangle."""
-        return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
