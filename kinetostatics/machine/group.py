@@ -68,8 +68,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .links import CamDriven, Sliding, Slot, Turning, Wrench, present
+from .links import CamDriven, Link, Sliding, Slot, Turning, Wrench, present
 
 FRAME, CRANK = "frame", "crank"
 """Link that does not move, and the link of every crank."""
@@ -364,6 +365,12 @@ class Group:
     def change_points(self, throws):
         """Crank angles in [0, 2 pi) of the change points that it passes on the pins of a crank, rad."""
         return ()
+
+
+def rules_of_parts(links, *names):
+    """Rules of a group's fields for links, names of joints, and the label."""
+    rules: dict[str, Any] = dict.fromkeys(links, checks.InstanceOf(Link, "a Link"))
+    return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True)}
 
 
 def separation(placement, first, second):

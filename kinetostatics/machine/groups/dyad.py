@@ -11,7 +11,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.planar import add_vectors, cross, dot, subtract_vectors
-from ..group import Bar, Declaration, Group, Point, Resolved, separation
+from ..group import Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..links import Joint, Link, Turning, Wrench, link_between
 from . import rocker
 from .rocker import RockerMotion
@@ -103,11 +103,8 @@ class Dyad(checks.Checked, Group):
         length1=checks.Number("m", low=0.0, strict=True),
         length2=checks.Number("m", low=0.0, strict=True),
         on=TwoJoints(),
-        pin=checks.Name(),
         assembly=checks.Sign(),
-        dyad1=checks.InstanceOf(Link, "a Link"),
-        dyad2=checks.InstanceOf(Link, "a Link"),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("dyad1", "dyad2"), "pin"),
     )
 
     @property
