@@ -241,7 +241,7 @@ class PointLoad(Load):
 
     between: Any
 
-    REFUSES, SIGN = True, "line"
+    REFUSES, SIGN, REMEDY = True, "line", ""
 
     def pull(self, motion) -> Any:
         """Force on the first point, N."""
@@ -291,11 +291,9 @@ class PointLoad(Load):
             yield checks.Problem(
                 f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
                 f"deg, so its force has no direction there; leave them out, or move a point off the line"
-                f"{self._remedy}",
+                f"{self.REMEDY}",
                 meet,
             )
-
-    _remedy = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -384,7 +382,7 @@ class PointSpring(PointLoad):
         free_length=checks.Number("m", low=0.0),
         between=PlacePairRule(),
     )
-    _remedy = ", or give free_length 0"
+    REMEDY = ", or give free_length 0"
 
     def pull(self, motion):
         """Force on the first point, N."""

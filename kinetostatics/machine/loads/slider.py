@@ -18,10 +18,6 @@ class SliderLoad(Load):
 
     on: str
 
-    @property
-    def title(self):
-        return f"{type(self).__name__} on {self.on!r}"
-
     def misplaced(self, mechanism):
         """Sentence if the mechanism has no such slider."""
         problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
