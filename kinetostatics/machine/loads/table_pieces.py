@@ -212,12 +212,8 @@ class Curve(NamedTuple):
             while row + count <= last and not self._breaks(self.x[row], self.x[row + count]):
                 count *= 2
             ends = range(row + count // 2 + 1, min(row + count, last + 1))
-            start = self.x[row]
-            row = (
-                ends.start
-                - 1
-                + bisect_left(ends, True, key=lambda end, low=start: not self._is_smooth(low, self.x[end]))
-            )
+            low = self.x[row]
+            row = ends.start - 1 + bisect_left(ends, True, key=lambda end, low=low: self._breaks(low, self.x[end]))
             found.append(row)
         return found[:-1]
 
