@@ -184,12 +184,7 @@ class Pin(checks.Checked, Group):
     LINKS: ClassVar[dict[str, str]] = {}
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_"}
-    RULES = checks.Rules(
-        "pin",
-        on=checks.Name(),
-        at=checks.Pair("m", parts=("along", "across")),
-        name=checks.Name(),
-    )
+    RULES = checks.Rules("pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name())
 
     @property
     def label(self):

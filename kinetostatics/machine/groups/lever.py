@@ -212,10 +212,7 @@ class LeverGroup(checks.Checked, Branch, Group):
             joints={self.pivot_name: Point(FRAME, *self.pivot)},
             slots=(Slot("lever", self.on, offset=self.offset),),
             inner=(Turning("block", self.on),),
-            pairs=(
-                Turning("lever", self.pivot_name),
-                Sliding("block", self.on, "lever", "slot_force", "slot_moment"),
-            ),
+            pairs=(Turning("lever", self.pivot_name), Sliding("block", self.on, "lever", "slot_force", "slot_moment")),
             lengths=(*self.pivot, self.offset),
         )
 

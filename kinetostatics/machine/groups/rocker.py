@@ -222,10 +222,7 @@ class RockerGroup(checks.Checked, Branch, Group):
                 Bar(self.pivot_name, self.pin, "rocker", self.rocker_length),
             ),
             inner=(Turning("coupler", self.on),),
-            pairs=(
-                Turning("rocker", self.pin, "coupler"),
-                Turning("rocker", self.pivot_name),
-            ),
+            pairs=(Turning("rocker", self.pin, "coupler"), Turning("rocker", self.pivot_name)),
             lengths=(self.coupler_length, self.rocker_length, *self.pivot),
         )
 

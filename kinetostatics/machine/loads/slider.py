@@ -201,11 +201,7 @@ class ProcessForce(SliderLoad):
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
-        "process force",
-        _period_problems,
-        force=value_rule("N"),
-        on=checks.Name(),
-        period=WholeTurns(),
+        "process force", _period_problems, force=value_rule("N"), on=checks.Name(), period=WholeTurns()
     )
 
     @property
