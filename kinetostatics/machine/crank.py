@@ -28,14 +28,6 @@ def pin(ray, length):
     return Joint((x, y), (minus_y, x), (-x, minus_y))
 
 
-def resolve(load):
-    """Force of the ground on the crank at O, and the torque that keeps the motion (kernel).
-
-    `load` is the wrench on the crank about O, with the demands of the groups.
-    """
-    return vector_or_zero(subtract_vectors(None, load.force)), number_or_zero(minus(None, load.moment))
-
-
 @dataclass(frozen=True, eq=False)
 class Crank(checks.Checked):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
@@ -76,11 +68,8 @@ class Crank(checks.Checked):
     def links(self):
         return {"crank": self.link}
 
-    @property
-    def references(self):
-        return {"crank": "O"}
-
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
+    references: ClassVar = {"crank": "O"}
     own_names: ClassVar = {"crank": "crank"}
     guides: ClassVar[dict] = {}
     motions: ClassVar[dict] = {}
@@ -142,7 +131,9 @@ class Crank(checks.Checked):
         return placement
 
     def resolve(self, placement, loads, along) -> Resolved:
-        support, torque = resolve(loads["crank"])
+        """Force of the ground on the crank at O, and the torque that keeps the motion."""
+        support = vector_or_zero(subtract_vectors(None, loads["crank"].force))
+        torque = number_or_zero(minus(None, loads["crank"].moment))
         return Resolved({"O": support}, {"balancing_torque": torque}, {})
 
 
@@ -193,12 +184,7 @@ class Pin(checks.Checked, Group):
     LINKS: ClassVar[dict[str, str]] = {}
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_"}
-    RULES = checks.Rules(
-        "pin",
-        on=checks.Name(),
-        at=checks.Pair("m", parts=("along", "across")),
-        name=checks.Name(),
-    )
+    RULES = checks.Rules("pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name())
 
     @property
     def label(self):

@@ -68,10 +68,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import come_from_one_class
-from .kinematic_state import Throw
-from .links import CamDriven, Sliding, Slot, Turning, Wrench, present
+from .links import CamDriven, Link, Sliding, Slot, Turning, Wrench, present
 
 FRAME, CRANK = "frame", "crank"
 """Link that does not move, and the link of every crank."""
@@ -159,6 +158,18 @@ NAMES = ("link", "against", "rod", "force", "couple")
 """Fields of declared parts that hold names of links and forces."""
 
 
+def _declared(table, doc):
+    """Property: what a group declares of a kind, with the label on names of links and forces."""
+
+    def entries(group):
+        found = getattr(group.declaration, table)
+        if isinstance(found, tuple):
+            return tuple(map(group._renamed, found))
+        return {group.called(name): group._renamed(part) for name, part in found.items()}
+
+    return property(entries, doc=doc)
+
+
 class Group:
     """Structural group: tables of its parts and results, with the label; see the module."""
 
@@ -178,12 +189,24 @@ class Group:
         super().__init_subclass__(**options)
         cls.trusted = vars(cls).get("TRUSTED", False)
 
-    # Names
+    is_rigid_triangle = False
+    """Whether its links never turn against the link that carries all joints it hangs on, if that is one."""
+    label: Any = ""
+    """Ending of its names, and of paths of its numbers, that tells them from those of another of its kind."""
+    knots: Any = ()
+    """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
+    curves: Any = EMPTY
+    """Joints that run on a curve, with what drawings call it."""
+    rollers: Any = EMPTY
+    """Radii of rollers by the joints that are their centres, m; None where it is not known."""
+    outlines: Any = EMPTY
+    """Curves fixed to links, points (2, K) in the axes of each."""
+    throws: Any = EMPTY
+    """Pins of the crank that it adds, each a `Throw`."""
+    turns: Any = 1
+    """Turns of the crank after which its branch closes."""
 
-    @property
-    def label(self):
-        """Ending of its names, and of paths of its numbers, that tells them from those of another of its kind."""
-        return ""
+    # Names
 
     @property
     def names(self):
@@ -199,12 +222,6 @@ class Group:
         names = {field: getattr(part, field, "") for field in NAMES} if self.label else {}
         own = {field: self.called(name) for field, name in names.items() if name not in ("", FRAME, CRANK)}
         return part._replace(**own) if own else part
-
-    def _named(self, table):
-        return {self.called(name): self._renamed(part) for name, part in getattr(self.declaration, table).items()}
-
-    def _row(self, table):
-        return tuple(map(self._renamed, getattr(self.declaration, table)))
 
     # Tables
 
@@ -234,45 +251,12 @@ class Group:
     def joints(self) -> dict[str, Point]:
         return {name: self._renamed(point) for name, point in self.declaration.joints.items()}
 
-    @property
-    def bars(self) -> tuple[Bar, ...]:
-        """Links that keep two joints at a distance."""
-        return self._row("bars")
-
-    @property
-    def guides(self) -> dict[str, Any]:
-        """Guide by name of each link that slides along one."""
-        return self._named("guides")
-
-    @property
-    def slots(self) -> tuple[Slot, ...]:
-        """Links in which a joint slides."""
-        return self._row("slots")
-
-    @property
-    def led(self) -> tuple[CamDriven, ...]:
-        """Joints that a cam leads."""
-        return self._row("led")
-
-    @property
-    def knots(self):
-        """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
-        return ()
-
-    @property
-    def curves(self):
-        """Joints that run on a curve, with what drawings call it."""
-        return {}
-
-    @property
-    def rollers(self):
-        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
-        return {}
-
-    @property
-    def outlines(self):
-        """Curves fixed to links, points (2, K) in the axes of each."""
-        return {}
+    bars = _declared("bars", "Links that keep two joints at a distance.")
+    guides = _declared("guides", "Guide by name of each link that slides along one.")
+    slots = _declared("slots", "Links in which a joint slides.")
+    led = _declared("led", "Joints that a cam leads.")
+    motions = _declared("motions", "Quantities of its motion besides those of joints and links, by `motion`.")
+    contacts = _declared("contacts", "Line contacts by the name of their pressure, each a `Touch`.")
 
     @property
     def lengths(self):
@@ -284,15 +268,6 @@ class Group:
     def reaches(self):
         """Lengths of bars and cam radii, the shortest of which counts for the condition; m."""
         return [bar.length for bar in self.bars]
-
-    @property
-    def throws(self) -> dict[str, Throw]:
-        """Pins of the crank that it adds."""
-        return {}
-
-    def rigid_on(self, owners):
-        """Link that each of its links never turns against, by name, of `owners`, which carry the joints it hangs on."""
-        return {}
 
     # Forces and quantities
 
@@ -319,29 +294,22 @@ class Group:
         found: dict[str, Output] = {}
         for name, pair in sorted(self.pairs.items(), key=lambda item: item[1].against == FRAME):
             if isinstance(pair, Sliding):
-                found |= _forces_of_sliding(name, pair, self.slots)
+                guided = pair.against == FRAME
+                on = f"{'ground' if guided else pair.against} on {pair.link}"
+                slots = [slot for slot in self.slots if slot.link == pair.against]
+                inclined = any(present(slot.angle) is not None for slot in slots)
+                of = "slot's left normal" if inclined else f"left normal of the {pair.against}"
+                if guided:
+                    of, found[name] = "guide's left normal", Output("N", True, on, pair.joint)
+                found[pair.force] = Output("N", False, f"{on} along the {of}")
+                found[pair.couple] = Output("N m", False, f"{on} about {pair.about or pair.joint}", pair.about)
             elif pair.joint in self.hangs_on:
                 found[name] = Output("N", True, f"on the {pair.link}, from what carries {pair.joint}", pair.joint)
             else:
                 found[name] = Output("N", True, f"{pair.against or 'ground'} on {pair.link}")
         return found
 
-    @property
-    def motions(self) -> dict[str, Output]:
-        """Quantities of its motion besides those of joints and links; ``motion(name, placement)`` gives them."""
-        return self._named("motions")
-
-    @property
-    def contacts(self) -> dict[str, Any]:
-        """Line contacts by the name of their pressure, each a `Touch`; ``relative_radius(name, placement, side)``."""
-        return self._named("contacts")
-
     # Placing and resolving
-
-    @property
-    def follows(self):
-        """Whether `follow` belongs to the class that places it, and so knows its joints."""
-        return come_from_one_class(type(self), "follow", "place")
 
     def of_links(self, table) -> Any:
         """Entries of a table for its links, in the order of `LINKS`; None without one."""
@@ -394,28 +362,15 @@ class Group:
         """Sentence on its motion at change points that it does not pass; "" without any."""
         return ""
 
-    @property
-    def turns(self):
-        """Turns of the crank after which its branch closes."""
-        return 1
-
     def change_points(self, throws):
         """Crank angles in [0, 2 pi) of the change points that it passes on the pins of a crank, rad."""
         return ()
 
 
-def _forces_of_sliding(name, pair, slots):
-    """Outputs of a straight pair by name; the reaction of a guide is a vector as well."""
-    guided = pair.against == FRAME
-    on = f"{'ground' if guided else pair.against} on {pair.link}"
-    inclined = any(slot.link == pair.against and present(slot.angle) is not None for slot in slots)
-    normal = "the slot's left normal" if inclined else f"the left normal of the {pair.against}"
-    normal = "the guide's left normal" if guided else normal
-    return {
-        **({name: Output("N", True, on, pair.joint)} if guided else {}),
-        pair.force: Output("N", False, f"{on} along {normal}"),
-        pair.couple: Output("N m", False, f"{on} about {pair.about or pair.joint}", pair.about),
-    }
+def rules_of_parts(links, *names):
+    """Rules of a group's fields for links, names of joints, and the label."""
+    rules: dict[str, Any] = dict.fromkeys(links, checks.InstanceOf(Link, "a Link"))
+    return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True)}
 
 
 def separation(placement, first, second):

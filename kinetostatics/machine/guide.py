@@ -165,17 +165,15 @@ class Guide(checks.Checked):
             return present(self.angle) is None
         return present(self.exact[0] - 1.0) is None and present(self.exact[1]) is None
 
-    @property
-    def is_along_an_axis(self):
-        """Whether it points along an axis or its opposite, by its structure."""
-        return self.is_level or type(self.exact) is Axis
-
     @cached_property
     def direction(self):
         """Unit vector along the guide."""
         if self.exact is not None:
             return self.exact
-        return (1.0, 0.0) if self.is_level else _direction(self.angle)
+        if self.is_level:
+            return (1.0, 0.0)
+        x, y = cos(self.angle), sin(self.angle)
+        return (float(x), float(y)) if isinstance(self.angle, float) else (x, y)
 
     @property
     def guide_angle(self):
@@ -201,8 +199,3 @@ def slider_motion(position, reach, travel, line):
     )
     first, second = (rotate((part, 0.0), line.direction) for part in (travel.first, travel.second))
     return LinkMotion(Joint(pin, first, second), rotate((1.0, 0.0), line.direction), None, None)
-
-
-def _direction(angle):
-    x, y = cos(angle), sin(angle)
-    return (float(x), float(y)) if isinstance(angle, float) else (x, y)

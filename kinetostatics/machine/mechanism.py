@@ -15,13 +15,14 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import replace_unchecked
 from ..numbers.paths import Batched
-from ..numbers.planar import minus, moment, plus, subtract_vectors
+from ..numbers.planar import minus, subtract_vectors
 from . import plausibility
 from .crank import Crank
 from .friction import friction_kind
 from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
 from .kinematic_state import margin, place
-from .links import Sliding, Turning, Wrench, arm, present
+from .links import Sliding, Turning, Wrench, present
+from .loads.points import wrench_at
 
 NAME = checks.Name()
 GROUP_CLASS = f"{Group.__module__}.{Group.__name__}"
@@ -114,6 +115,17 @@ def name_problems(parts):
         add(forces, "quantity", kind, [f"{link}{ending}" for link in own for ending in endings])
         add(forces, "quantity", kind, [*part.motions, *part.contacts])
     return [*problems, *repeated, *([NAME_REMEDY] if repeated else [])]
+
+
+def _collected(mechanism, table):
+    return {name: item for part in mechanism.parts for name, item in getattr(part, table).items()}
+
+
+def _table(name, doc):
+    """Cached property: a table of all parts, from the crank outwards."""
+    found = cached_property(lambda mechanism: _collected(mechanism, name))
+    found.__doc__ = doc
+    return found
 
 
 _VALID_NAMES: set = set()
@@ -218,20 +230,9 @@ class Mechanism(Batched):
         """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return tuple(sorted({angle for group in self.groups for angle in group.change_points(self.throws)}))
 
-    @cached_property
-    def links(self):
-        """Link by name, from the crank outwards."""
-        return self._collected("links")
-
-    @cached_property
-    def references(self):
-        """Reference joint by link, from the crank outwards."""
-        return self._collected("references")
-
-    @cached_property
-    def joints(self):
-        """Joints by name, each as a `Point` of a link."""
-        return self._collected("joints")
+    links = _table("links", "Link by name, from the crank outwards.")
+    references = _table("references", "Reference joint by link, from the crank outwards.")
+    joints = _table("joints", "Joints by name, each as a `Point` of a link.")
 
     @cached_property
     def outputs(self):
@@ -241,7 +242,13 @@ class Mechanism(Batched):
     @cached_property
     def pairs(self):
         """Pairs of links by reaction; a pin turns by default against the link that carries it."""
-        found, whole = self._collected("pairs"), self._wholes
+        found = _collected(self, "pairs")
+        whole: dict[str, str] = {}  # link to which each link of a rigid triangle belongs
+        for group in self.groups:
+            carriers = {self.joints[name].link for name in group.hangs_on} if group.is_rigid_triangle else ()
+            owners = {whole.get(carrier, carrier) for carrier in carriers}
+            if len(owners) == 1:
+                whole |= dict.fromkeys(group.links, *owners)
         for name, pair in found.items():
             if isinstance(pair, Turning):
                 against = pair.against or self.joints[pair.joint].link
@@ -254,20 +261,7 @@ class Mechanism(Batched):
         """Kind of friction that each joint may have, by its name in `friction`: `PinFriction`, `GuideFriction` ..."""
         return {name: friction_kind(pair) for name, pair in self.pairs.items()}
 
-    @property
-    def _wholes(self):
-        """Link to which each link of a rigid triangle belongs, by name."""
-        found: dict[str, str] = {}
-        for group in self.groups:
-            owners = [self.joints[name].link for name in group.hangs_on]
-            owners = [found.get(owner, owner) for owner in owners]
-            found |= group.rigid_on(owners)
-        return found
-
-    @cached_property
-    def guides(self):
-        """Guide by slider."""
-        return {name: guide for group in self.groups for name, guide in group.guides.items()}
+    guides = _table("guides", "Guide by slider.")
 
     @cached_property
     def slider(self):
@@ -276,15 +270,8 @@ class Mechanism(Batched):
         found = bare if len(bare) == 1 else list(self.guides)
         return found[0] if len(found) == 1 else None
 
-    @cached_property
-    def own_names(self):
-        """Name of each link without the label of its group."""
-        return self._collected("own_names")
-
-    @cached_property
-    def curves(self):
-        """Title in drawings of the curve that a joint runs on, by joint."""
-        return self._collected("curves")
+    own_names = _table("own_names", "Name of each link without the label of its group.")
+    curves = _table("curves", "Title in drawings of the curve that a joint runs on, by joint.")
 
     @property
     def slots(self):
@@ -310,7 +297,10 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        found = self.extent / _smallest(*(reach for part in self.parts for reach in part.reaches))
+        lengths = [reach for part in self.parts for reach in part.reaches]
+        are_floats = all(type(length) is float for length in lengths)
+        shortest = min(lengths, default=math.inf) if are_floats else reduce(np.minimum, lengths, math.inf)
+        found = self.extent / shortest
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
 
     @cached_property
@@ -322,9 +312,6 @@ class Mechanism(Batched):
     def couplers(self):
         """Bars from a joint of one link to a joint of another."""
         return tuple(bar for bar in self.bars if all(self.joints[end].link != bar.link for end in (bar.start, bar.end)))
-
-    def _collected(self, table):
-        return {name: item for part in self.parts for name, item in getattr(part, table).items()}
 
     def with_link(self, name, link):
         """The same mechanism with other mass properties of one link."""
@@ -358,19 +345,13 @@ class Mechanism(Batched):
             found.reactions.update(resolved.reactions)
             found.scalars.update(resolved.scalars)
             for name, demand in resolved.demands.items():
-                link, wrench = (name, demand) if name in self.links else self._at_joint(name, demand, placement)
+                link, wrench = name, demand
+                if name not in self.links:
+                    link, wrench = wrench_at(placement, self.joints[name], *demand)
                 if link != FRAME:
                     own = loads[link]
                     loads[link] = Wrench(subtract_vectors(own.force, wrench.force), minus(own.moment, wrench.moment))
         return found
-
-    def _at_joint(self, joint, demand, placement):
-        """Link that carries a joint, and a wrench through that joint about the link's reference joint."""
-        point = self.joints[joint]
-        if point.link == FRAME:
-            return FRAME, demand
-        lever = arm(placement.links[point.link].direction, present(point.along), present(point.across))
-        return point.link, Wrench(demand.force, plus(moment(lever, demand.force), demand.moment))
 
 
 def output_problems(part, resolved):
@@ -386,10 +367,3 @@ def output_problems(part, resolved):
         undeclared = found.keys() - declared - couples
         yield from (f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in undeclared)
         yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
-
-
-def _smallest(*lengths):
-    """Smallest of lengths, numbers or arrays of designs; infinite of none."""
-    if all(type(length) is float for length in lengths):
-        return min(lengths, default=math.inf)
-    return reduce(np.minimum, lengths, math.inf)

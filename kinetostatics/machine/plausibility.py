@@ -36,51 +36,36 @@ CONVERTED_TURN_LIMITS = 0.9 * TURN_CONVERTED_TWICE, 1.01 * TURN_CONVERTED_TWICE
 def mechanism_hints(mechanism):
     """Sentences on sliders that stand still, and on improbable lengths and inertias of links."""
     bars = [bar for bar in mechanism.bars if checks.has_known_values(bar.length)]
-    inertias = (text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link), mechanism.crank)))
-    return (*_still(mechanism), *_lengths(bars), *inertias)
+    hints = [*_still(mechanism)]
+    if bars:
+        lengths = [(_most(bar.length), bar.link) for bar in bars]
+        (longest, link), (shortest, other) = max(lengths), min(lengths)
+        if longest > MAX_LENGTH:
+            hints.append(f"the {link} is {longest:.6g} m long; are lengths in mm?")
+        elif longest > MAX_LENGTH_RATIO * shortest:
+            hints.append(
+                f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); "
+                "is one of them in mm?"
+            )
+    inertias = (_inertia(bar, mechanism.links.get(bar.link), mechanism.crank) for bar in bars)
+    return (*hints, *filter(None, inertias))
 
 
 def scene_hints(mechanism, crank_speed, numbers):
     """Hints of the mechanism and of its drive, and on `numbers`: path, value and usual range."""
-    longest = _longest(mechanism)
-    odd = [text for path, value, usual in numbers if (text := checks.implausibility(path, value, usual, longest))]
-    return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
-
-
-def _longest(mechanism):
-    """Length of the longest link between two joints, m; 0 where none is known."""
-    return max((_most(bar.length) for bar in mechanism.bars if checks.has_known_values(bar.length)), default=0.0)
-
-
-def _lengths(bars):
-    """Yield a hint on improbable lengths of links."""
-    lengths = [(_most(bar.length), bar.link) for bar in bars]
-    if not lengths:
-        return
-    (longest, link), (shortest, other) = max(lengths), min(lengths)
-    if longest > MAX_LENGTH:
-        yield f"the {link} is {longest:.6g} m long; are lengths in mm?"
-    elif longest > MAX_LENGTH_RATIO * shortest:
-        yield (
-            f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is "
-            "one of them in mm?"
-        )
-
-
-def _fast(length, crank_speed, longest):
-    """Yield a hint on an improbable speed of the crank's pin."""
-    if (
-        length is None
-        or not (checks.has_known_values(length) and checks.has_known_values(crank_speed))
-        or longest > MAX_LENGTH
-    ):
-        return
+    longest = max((_most(bar.length) for bar in mechanism.bars if checks.has_known_values(bar.length)), default=0.0)
+    hints = [*mechanism.hints]
+    hints += [text for path, value, usual in numbers if (text := checks.implausibility(path, value, usual, longest))]
+    length = mechanism.crank.length
+    if length is None or longest > MAX_LENGTH or not all(map(checks.has_known_values, (length, crank_speed))):
+        return hints
     radius, speed = _most(length), _most(abs(crank_speed))
     if radius * speed > MAX_PIN_SPEED:
-        yield (
+        hints.append(
             f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
             f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
+    return hints
 
 
 def load_hints(mechanism, loads):
@@ -118,7 +103,7 @@ def compared_sizes(mechanism):
     turning = [
         (link.inertia, link.mass, bar.length)
         for bar in mechanism.bars
-        if (link := mechanism.links.get(bar.link)) is not None and _is_moved(bar, mechanism.crank)
+        if (link := mechanism.links.get(bar.link)) is not None and bar.link not in mechanism.crank.links
         if present(link.inertia) is not None and present(link.mass) is not None
     ]
     arms = []
@@ -129,18 +114,16 @@ def compared_sizes(mechanism):
     return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, turning, arms
 
 
-def _is_moved(bar, crank):
-    """Whether a bar is not the crank, whose inertia may include the drive."""
-    return bar.link not in crank.links
-
-
 def _still(mechanism):
     """Yield a hint for each slider that stands still all over the turn.
 
     That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
     for bar, slider in _on_arms(mechanism):
-        if _as_long_as_its_arm(mechanism, bar):
+        _, along, across = mechanism.joints[bar.start]
+        if not all(map(checks.has_known_values, (along, across, bar.length))):
+            continue
+        if np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length):
             angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
             rate = np.abs(mechanism.place(angle).travels[slider].first)
             if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
@@ -158,14 +141,6 @@ def _on_arms(mechanism):
             yield bar, slider
 
 
-def _as_long_as_its_arm(mechanism, bar):
-    """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about."""
-    _, along, across = mechanism.joints[bar.start]
-    if not all(map(checks.has_known_values, (along, across, bar.length))):
-        return False
-    return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
-
-
 def _inertia(bar, link, crank):
     """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass."""
     if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
@@ -173,28 +148,20 @@ def _inertia(bar, link, crank):
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
     if _any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
-    elif _is_moved(bar, crank) and _any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
+    elif bar.link not in crank.links and _any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
+        # the inertia of a crank may include the drive
         times = inertia / np.where(unit > 0, unit, np.inf)
         worst = np.argmax(times)
         odd, most = np.ravel(np.broadcast_to(inertia, np.shape(times)))[worst], np.ravel(times)[worst]
-        beside, advice = f"{12.0 * most:.4g} times", _unit_of_inertia(odd, most)
+        beside, advice = f"{12.0 * most:.4g} times", "is it in kg m2, about the mass centre?"
+        for least, (name, factor) in OTHER_UNITS.items():
+            if most > least:
+                advice = f"is it in {name}? That makes {factor * odd:.4g} kg m2"
+                break
     else:
         return None
     rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
     return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
-
-
-def _unit_of_inertia(inertia, times):
-    """Question on the unit of an inertia that is `times` m l^2."""
-    for least, (unit, factor) in OTHER_UNITS.items():
-        if times > least:
-            return f"is it in {unit}? That makes {factor * inertia:.4g} kg m2"
-    return "is it in kg m2, about the mass centre?"
-
-
-def given_angle_hints(given, angle):
-    """Hint if crank angles look like degrees or a number of them; as given, and as an array."""
-    return angle_count_hints(given) or angle_hints(angle)
 
 
 def single_angle_hints(angle):
@@ -207,58 +174,39 @@ def single_angle_hints(angle):
     )
 
 
-def angle_count_hints(given):
-    """Hint if a crank angle looks like a number of crank angles: an int above two turns."""
-    if not isinstance(given, int | np.integer) or given < TWO_TURNS:
-        return ()
-    return (
-        f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
-        f"np.linspace(0, 2 * np.pi, {given}, endpoint=False), for degrees np.radians({given})",
-    )
-
-
-def angle_hints(angle):
-    """Hint if crank angles look like degrees, or like radians converted twice."""
+def angle_hints(angle, given=None):
+    """Hint if crank angles look like degrees, like radians converted twice, or, as `given`, like a number of them."""
+    if isinstance(given, int | np.integer) and given >= TWO_TURNS:
+        return (
+            f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
+            f"np.linspace(0, 2 * np.pi, {given}, endpoint=False), for degrees np.radians({given})",
+        )
     if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
         return ()
     first, last = angle.item(0), angle.item(-1)
-    if -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS:
-        return (
-            _converted_twice(angle)
-            if CONVERTED_TURN_LIMITS[0] < abs(last - first) < CONVERTED_TURN_LIMITS[1] and angle.size > 2
-            else ()
-        )
-    if angle.size < 3:
-        return _few(np.ravel(angle))
+    is_small = -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS
+    if is_small and (angle.size < 3 or not CONVERTED_TURN_LIMITS[0] < abs(last - first) < CONVERTED_TURN_LIMITS[1]):
+        return ()
     row = np.ravel(angle)
+    if row.size < 3:
+        if not all(_whole(angle / 30.0) for angle in row.tolist()):
+            return ()
+        text = " and ".join(f"{angle:g}" for angle in row.tolist())
+        if row.size == 1:
+            return (f"the crank angle {text} looks like degrees; it is taken as radians",)
+        return (f"crank angles {text} look like degrees; they are taken as radians",)
     step, reach = row[1] - row[0], row[-1] - row[0]
-    even = abs(step) >= 0.25 and _whole(360.0 / step) and np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
-    if not even or not (_whole(reach / 90.0) or _whole((reach + step) / 90.0)):
+    if not np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step)):
         return ()
-    return (f"crank angles from {row[0]:g} to {row[-1]:g} by {step:g} look like degrees; they are taken as radians",)
-
-
-def _few(row):
-    """Hint if one or two crank angles look like degrees: multiples of 30."""
-    if not all(_whole(angle / 30.0) for angle in row.tolist()):
+    if is_small:
+        is_turn = any(abs(abs(whole) - TURN_CONVERTED_TWICE) < 1e-9 for whole in (reach, reach + step))
+        words = "are a turn in radians, converted from degrees once more"
+    else:
+        is_turn = abs(step) >= 0.25 and _whole(360.0 / step) and (_whole(reach / 90.0) or _whole((reach + step) / 90.0))
+        words = f"by {step:g} look like degrees"
+    if not is_turn:
         return ()
-    text = " and ".join(f"{angle:g}" for angle in row.tolist())
-    if row.size == 1:
-        return (f"the crank angle {text} looks like degrees; it is taken as radians",)
-    return (f"crank angles {text} look like degrees; they are taken as radians",)
-
-
-def _converted_twice(angle):
-    """Hint if crank angles are an even turn in radians, converted twice."""
-    row = np.ravel(angle)
-    step, reach = row[1] - row[0], row[-1] - row[0]
-    even = np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
-    if not even or not any(abs(abs(whole) - TURN_CONVERTED_TWICE) < 1e-9 for whole in (reach, reach + step)):
-        return ()
-    return (
-        f"crank angles from {row[0]:g} to {row[-1]:g} are a turn in radians, converted from degrees once more; they "
-        "are taken as radians",
-    )
+    return (f"crank angles from {row[0]:g} to {row[-1]:g} {words}; they are taken as radians",)
 
 
 def _whole(number):

@@ -55,11 +55,7 @@ def hint_at_angles(owner, given):
     """Warn the caller's caller if valid crank angles look like degrees, or like a count of angles."""
     if type(given) is float and abs(given) < plausibility.TWO_TURNS:
         return
-    if type(given) is np.ndarray:
-        texts = plausibility.angle_hints(given)
-    else:
-        texts = plausibility.given_angle_hints(given, np.asarray(given) if isinstance(given, PLAIN_TYPES) else given)
-    for text in texts:
+    for text in plausibility.angle_hints(np.asarray(given) if isinstance(given, PLAIN_TYPES) else given, given):
         warnings.warn(HintWarning(owner, text), stacklevel=3)
 
 

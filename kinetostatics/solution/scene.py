@@ -288,7 +288,7 @@ def _start(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked_solution(scene, crank_angle, engine)
-    for text in (*scene_hints(solution), *plausibility.given_angle_hints(crank_angle, solution.crank_angle)):
+    for text in (*scene_hints(solution), *plausibility.angle_hints(solution.crank_angle, crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         program_of(solution.dynamics)  # refuses what cannot be recorded

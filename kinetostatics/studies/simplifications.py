@@ -23,7 +23,7 @@ from ..machine.kinematic_state import Placement
 from ..machine.links import Joint, Link
 from ..machine.loads import KINDS
 from ..numbers import checks
-from ..numbers.parameter_tree import map_numbers
+from ..numbers.parameter_tree import come_from_one_class, map_numbers
 from ..numbers.planar import rotate
 from ..solution.solution import Solution
 
@@ -37,7 +37,7 @@ def placement_from_joints(mechanism, angle, *orders) -> Placement:
     joints = {name: Joint(*map(tuple, parts)) for name, *parts in found}
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
-        if not group.follows:
+        if not come_from_one_class(type(group), "follow", "place"):
             raise NotGivenError(f"{type(group).__name__} has no `follow`, to be placed at joints known in another way")
         group.follow(placement, joints)
     return placement

@@ -58,7 +58,7 @@ def test_four_bar_equals_its_joint_motion(seed):
     placement = placed(a, None if seed % 2 else (a, aside))
     name = "A" if seed % 2 else "C"
     for side, is_close in product(SIDES, (False, True)):
-        found = rocker.turned_by_crank(placement, name, b, h, pivot, side, is_close, "")
+        found = rocker.turned_by_crank(placement, name, b, h, pivot, near_dead_centre.place, side, is_close)
         wanted = rocker.place(placement.joints[name], b, h, pivot, side)
         for part in ("coupler", "rocker"):
             same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)

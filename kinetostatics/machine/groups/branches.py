@@ -1,41 +1,60 @@
 """The branch of a group on a crank: through change points, close to a limit position, or by the plain kernel.
 
-A mixin for each kind of group that may have change points. It keeps two facts of the structure: `passage`, the kind of
-change points that the branch passes, and `is_close`, whether the group comes so close to a limit position that
-`near_dead_centre` saves digits.
+`Branch` keeps two facts of the structure: `passage`, the kind of change points that the branch passes, and `is_close`,
+whether the group comes so close to a limit position that `near_dead_centre` saves digits.
 """
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
-from ...numbers.parameter_tree import replace_unchecked
-from . import change_points, near_dead_centre
+import numpy as np
 
-TERMS = {"_from.short": ("f", "by how much the coupler's reach along the guide falls short of its length")}
-"""Symbols and meanings of kernel lines in hand calculations."""
+from ...errors import ParameterError
+from ...numbers import checks
+from ...numbers.parameter_tree import replace_unchecked
+from ...numbers.planar import rotate_back
+from . import near_dead_centre
+from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS, parse_passage
+
+MAX_ULPS = 8
+"""Largest difference of lengths that count as equal, in units of the last place of the longest length."""
+QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
+"""Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
+
+
+def equality(*lengths):
+    """Largest difference at which lengths count as equal, m."""
+    return MAX_ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
 
 
 @dataclass(frozen=True, eq=False)
 class Branch:
     """Branch of a group with the fields `assembly` and `on`.
 
-    Its kinds give the direction `start` from which the crank angle is halved, ``classify(group, throws)``, the passage,
-    and ``comes_close(throw)``.
+    Its kinds give the direction `start` from which the crank angle is halved, by default that of the pivot.
     """
 
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
 
-    classify: ClassVar[Any]
+    KINDS: ClassVar[dict[str, str]] = {}
+    """Kinds of change points, in messages."""
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
-    start: ClassVar[Any]
-    comes_close: ClassVar[Any]
+    clearance: ClassVar[Any]
+    """Offset, and length or pivot, for `has_small_clearance`."""
+    passage_on: ClassVar[Any]
+    """``passage_on(throw)``: kind of the change points on a pin of a crank and quadrant of `start`; "" without any."""
+
+    @property
+    def start(self: Any):
+        return self.pivot
 
     @property
     def side(self: Any):
         """+1 or -1: its side where no change point is passed."""
-        return change_points.SIDES.get(self.assembly, self.assembly)
+        return SIDES.get(self.assembly, self.assembly)
 
     @property
     def branch(self):
@@ -45,97 +64,97 @@ class Branch:
             return passing, self.passage, self.side
         return (close, self.side) if self.is_close else ()
 
+    def closure(self: Any, placement):
+        return self.placed(placement).closure
+
     def on_crank(self: Any, throws):
-        passage = type(self).classify(self, throws) if self.through else ""
         throw = throws.get(self.on)
-        is_close = not passage and throw is not None and self.comes_close(throw)
+        passage = self.passage_on(throw) if self.through else ""
+        is_close = not passage and throw is not None and near_dead_centre.has_small_clearance(throw, *self.clearance)
         if passage == self.passage and is_close is self.is_close:
             return self
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
-    def kink(self, throws):
-        return change_points.kink_sentence(self, throws)
+    def known(self: Any, throw, *lengths):
+        """Radius of the pin, the direction `start` from the pin's at crank angle 0, and lengths, in extended precision.
+
+        Raises
+        ------
+        ParameterError
+            It hangs on no crank pin, or a length is not known.
+        """
+        problem, start = None, self.start
+        if throw is None:
+            where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
+            problem = (
+                f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
+            )
+        elif not all(map(checks.has_known_values, (*throw.at, *start, *lengths))):
+            problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made"
+        checks.require(self.RULES.owner, f"{problem}; give +1 or -1" if problem else None)
+        parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
+        *at, x, y = np.broadcast_arrays(*parts)[:4]
+        radius, direction = throw._replace(at=at).polar
+        x, y = rotate_back((x, y), direction)
+        if direction is not None:
+            y = np.where(abs(y) <= equality(x), 0.0, y)
+        return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
+
+    def one_passage(self: Any, kind, x, y):
+        """Kind and quadrant of a direction in one text, if all designs have the same."""
+        facing = np.where(x >= 0, 0, np.where(y >= 0, 1, -1))
+        problems = []
+        for found, what, called in ((kind, "change points", self.KINDS), (facing, "directions", QUADRANTS)):
+            kinds, counts = np.unique(found, return_counts=True)
+            if kinds.size > 1:
+                texts = "; ".join(called[each] for each in kinds.tolist())
+                text = (
+                    f"designs that pass change points must be of one kind, but these have {what} {texts} "
+                    f"(equal within {MAX_ULPS} ulp of the longest length); make a batch of each"
+                )
+                problems.append(checks.Problem(text, found != kinds[counts.argmax()]))
+            if not kind.flat[0]:
+                break
+        checks.require(self.RULES.owner, *problems)
+        return f"{kind.flat[0]} {facing.flat[0]}" if kind.flat[0] else ""
+
+    def kink(self: Any, throws):
+        """Sentence on kinks or jumps of the motion at change points that a chosen side does not pass, or ""."""
+        if not self.KINDS or type(self.assembly) is not int or self.on not in throws:
+            return ""
+        try:
+            passing = replace(self, assembly="open").on_crank(throws)
+            angles = passing.change_points(throws)
+        except ParameterError:  # a batch of several kinds, or of several change points
+            return ""
+        if not angles:
+            return ""
+        named = dict.fromkeys(angles, "a kink")
+        if parse_passage(passing.passage)[0] in (MEETING, RHOMBUS):
+            at = angles[0] if len(angles) == 1 else self._first(throws) % (2 * math.pi)
+            named[at] = f"a jump, as {self.on} meets the pivot"
+        texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
+        return (
+            f'assembly {self.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
+        )
+
+    def _first(self: Any, throws):
+        """Crank angle at which its pin stands in the direction `start`, rad."""
+        x, y = rotate_back(self.start, throws[self.on].polar[1])
+        return math.atan2(y, x)
 
     @property
     def turns(self):
-        kind = change_points.parse_passage(self.passage)[0] if self.passage else ""
-        return 2 if kind in change_points.TWO_TURN_KINDS else 1
+        kind = parse_passage(self.passage)[0] if self.passage else ""
+        return 2 if kind in TWO_TURN_KINDS else 1
 
-    def change_points(self, throws):
-        return change_points.crank_angles(self, throws, self.start)
-
-
-@dataclass(frozen=True, eq=False)
-class RockerBranch(Branch):
-    """Branch of a rocker group, and the toggle that it may be with a slider."""
-
-    toggle: str = field(default="", init=False, repr=False)
-
-    classify = staticmethod(change_points.rocker_passage)
-
-    @property
-    def start(self: Any):
-        return self.pivot
-
-    def comes_close(self: Any, throw):
-        """Whether the pin comes close to the pivot."""
-        return near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
-
-    def beside(self, groups, throws):
-        """The group with the axis of the toggle that it is with a slider beside it."""
-        toggle = near_dead_centre.toggle_axis(self, groups, throws)
-        return self if toggle == self.toggle else replace_unchecked(self, toggle=toggle)
-
-
-class LeverBranch(Branch):
-    """Branch of a slotted lever."""
-
-    classify = staticmethod(change_points.lever_passage)
-    kernels = change_points.slotted, near_dead_centre.slotted
-
-    @property
-    def start(self: Any):
-        return self.pivot
-
-    def comes_close(self: Any, throw):
-        """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
-        return near_dead_centre.passes_near_pivot(throw, self.offset, self.pivot)
-
-
-class SliderBranch(Branch):
-    """Branch of a slider group, and the coordinate of its slider without the rounding of the whole."""
-
-    classify = staticmethod(change_points.slider_passage)
-    kernels = change_points.slid, near_dead_centre.slid
-
-    @property
-    def start(self: Any):
-        x, y = self.guide.direction
-        return y, -x
-
-    def comes_close(self: Any, throw):
-        """Whether the coupler, nearly as long as it must be, comes to stand nearly across the guide."""
-        return near_dead_centre.has_small_clearance(throw, self.guide.guide_offset, self.coupler_length)
-
-    def elongation(self: Any, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
-        if self.passage:
-            return placement.travels[self.called("slider")].position - free_position
-        return near_dead_centre.elongation(placement, *self._from(free_position, placement))
-
-    def departure(self: Any, placement, position):
-        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
-        drawn_in = self.placed(placement).drawn_in
-        if self.passage or drawn_in is None:
-            return None
-        return near_dead_centre.departure(placement, drawn_in, *self._from(position, placement))
-
-    def outward(self, placement, position):
-        """That elongation, or its opposite, as a length of the design and some more, m; None if it is not known so."""
-        return near_dead_centre.outward(placement, *self._from(position, placement))
-
-    def _from(self: Any, position, placement):
-        """Arguments of `near_dead_centre.elongation` from a position."""
-        motion, length, side = self.placed(placement), self.coupler_length, self.side
-        short = side * near_dead_centre.shortfall(length, motion.sine, side * motion.cosine)
-        return self.on, self.guide.line.direction, side * length - position, short
+    def change_points(self: Any, throws):
+        if not self.passage:
+            return ()
+        several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+        checks.require("change points", several if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None)
+        kind, first, turn = parse_passage(self.passage)[0], self._first(throws), 2 * math.pi
+        at = (0.0, math.pi)
+        if kind in TWO_TURN_KINDS:
+            at = (math.pi,) if kind == FAR else (0.0,)
+        return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn

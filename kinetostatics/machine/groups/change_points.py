@@ -19,14 +19,8 @@ A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a
 normal of that frame.
 """
 
-import math
-from dataclasses import replace
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from ...errors import ParameterError
-from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, compensated_sum, cos, guarded_divisor, offset_from_zero, sin, sqrt
 from ...numbers.planar import (
     add_vectors,
@@ -40,7 +34,7 @@ from ...numbers.planar import (
     scale_vector,
     subtract_vectors,
 )
-from ..links import Joint, LinkMotion, present, tip
+from ..links import present
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
 """Words for an assembly that passes change points, and the side that it has where there is none."""
@@ -51,157 +45,12 @@ OPPOSITE = "opposite"
 """Mirror image of a slotted lever of the kind "near"."""
 TWO_TURN_KINDS = (FAR, NEAR, MEETING, OPPOSITE)
 """Kinds whose branch closes after two turns."""
-MAX_ULPS = 8
-"""Largest difference of lengths that count as equal, in units of the last place of the longest length."""
-FOUR_BAR_KINDS = {
-    "": "none",
-    FAR: "a + d = b + h",
-    NEAR: "|d - a| = |b - h|",
-    MEETING: "a = d and b = h",
-    PARALLEL: "a = h and b = d",
-    KITE: "a = b and d = h",
-    RHOMBUS: "a = b = h = d",
-}
-"""Kinds of four-bars in messages: crank a, coupler b, rocker h, ground d."""
-SLIDER_KINDS = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
-"""Kinds of slider groups: crank a, coupler l, offset e of the guide."""
-LEVER_KINDS = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
-"""Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
-QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
-"""Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
-
-
-def rocker_passage(group, throws):
-    """Passage of a rocker group on a pin of a crank: kind of its change points and quadrant of O2; "" without any.
-
-    Raises
-    ------
-    ParameterError
-        It hangs on no crank pin, or the designs of a batch are not all of one kind.
-    """
-    a, x, y, b, h = _known("rocker group", group, throws, group.pivot, group.coupler_length, group.rocker_length)
-    d = np.sqrt(x * x + y * y)
-    unit = _unit(a, b, h, d)
-    far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
-    far, near = far & (d > unit), near & (d > unit)
-    meeting = near & (abs(d - a) <= unit)
-    kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
-    cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
-    kind = np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], "")
-    return _joined("rocker group", kind, FOUR_BAR_KINDS, _facing(x, y))
-
-
-def slider_passage(group, throws):
-    """Passage of a slider group on a crank, as `rocker_passage` gives it."""
-    x, y = group.guide.direction
-    a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
-    unit = _unit(a, b, abs(e))
-    far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
-    kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
-    return _joined("slider group", kind, SLIDER_KINDS, _facing(x, y))
-
-
-def lever_passage(group, throws):
-    """Passage of a lever group on a crank, as `rocker_passage` gives it."""
-    a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
-    d = np.sqrt(x * x + y * y)
-    unit = _unit(a, abs(o), d)
-    near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
-    near, opposite = near & (d > unit), opposite & (d > unit)
-    kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
-    return _joined("lever group", kind, LEVER_KINDS, _facing(x, y))
-
-
-def _known(owner, group, throws, start, *lengths):
-    """Radius of the pin, a direction from the pin's at crank angle 0, and lengths, in extended precision."""
-    problem, throw = None, throws.get(group.on)
-    if throw is None:
-        where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
-        problem = f"assembly {group.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
-    elif not all(map(checks.has_known_values, (*throw.at, *start, *lengths))):
-        problem = f"assembly {group.assembly!r} needs lengths that are known when the mechanism is made"
-    checks.require(owner, f"{problem}; give +1 or -1" if problem else None)
-    parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
-    *at, x, y = np.broadcast_arrays(*parts)[:4]
-    radius, direction = throw._replace(at=at).polar
-    x, y = rotate_back((x, y), direction)
-    if direction is not None:
-        y = np.where(abs(y) <= _unit(x), 0.0, y)
-    return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
-
-
-def _unit(*lengths):
-    return MAX_ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
-
-
-def _facing(x, y):
-    return np.where(x >= 0, 0, np.where(y >= 0, 1, -1))
-
-
-def _joined(owner, kind, called, facing):
-    """Kind and quadrant in one text, if all designs have the same."""
-    problems = [_several(kind, "change points", called)]
-    if kind.flat[0]:
-        problems.append(_several(facing, "directions", QUADRANTS))
-    checks.require(owner, *problems)
-    return f"{kind.flat[0]} {facing.flat[0]}" if kind.flat[0] else ""
-
-
-def _several(found, what, called):
-    """Problem of designs that are of several kinds, or None."""
-    kinds, counts = np.unique(found, return_counts=True)
-    if kinds.size == 1:
-        return None
-    texts = "; ".join(called[kind] for kind in kinds.tolist())
-    return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} {texts} "
-        f"(equal within {MAX_ULPS} ulp of the longest length); make a batch of each",
-        found != kinds[counts.argmax()],
-    )
-
-
-def kink_sentence(group, throws):
-    """Sentence on kinks or jumps of the motion at change points that a chosen side does not pass; "" without any."""
-    if type(group.assembly) is not int or group.on not in throws:
-        return ""
-    try:
-        passing = replace(group, assembly="open").on_crank(throws)
-        angles = passing.change_points(throws)
-    except ParameterError:  # a batch of several kinds, or of several change points
-        return ""
-    if not angles:
-        return ""
-    named = dict.fromkeys(angles, "a kink")
-    if parse_passage(passing.passage)[0] in (MEETING, RHOMBUS):
-        at = angles[0] if len(angles) == 1 else _first(throws[group.on], group.pivot) % (2 * math.pi)
-        named[at] = f"a jump, as {group.on} meets the pivot"
-    texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
-    return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
-
-
-def _first(throw, start):
-    """Crank angle at which a pin of the crank stands in a direction, rad."""
-    x, y = rotate_back(start, throw.polar[1])
-    return math.atan2(y, x)
 
 
 def parse_passage(passage):
     """Kind, and quadrant of the direction from which the crank angle is halved."""
     kind, facing = passage.split()
     return kind, int(facing)
-
-
-def crank_angles(group, throws, start):
-    """Crank angles in [0, 2 pi) of the change points that a group passes, rad; `start` is its direction of psi = 0."""
-    if not group.passage:
-        return ()
-    throw = throws[group.on]
-    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
-    checks.require("change points", several if any(map(np.ndim, (*start, *throw.at))) else None)
-    kind, first = parse_passage(group.passage)[0], _first(throw, start)
-    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
-    turn = 2 * math.pi
-    return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn
 
 
 MIN_ROOT = 2.0**-27
@@ -217,20 +66,6 @@ TERMS = {
     "rate": ("z", "rate of the links besides"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""
-
-
-class PassedMotion(NamedTuple):
-    """Motion of a rocker group on a branch through its change points, which `closure` leaves out.
-
-    The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
-    """
-
-    coupler: LinkMotion
-    rocker: LinkMotion
-    pin: Joint
-    closure: Any
-    factor: Any
-    distance: Any
 
 
 class _Half(NamedTuple):
@@ -266,10 +101,14 @@ def _quarter(angle, pivot, ground, facing):
 
 
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
-    """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
+    """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel).
+
+    The branch is open (+1) or crossed (-1). `closure` leaves out the change points. The sine of the transmission angle
+    is a factor times a distance, which vanishes there alone; `divisor` holds both.
+    """
     throw, (d, rest) = placement.course(on).throw, length_with_error(pivot)
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
-    b, h, fixed, pivot = coupler_length, rocker_length, pivot, rotate_back(pivot, direction)
+    b, h, pivot = coupler_length, rocker_length, rotate_back(pivot, direction)
     less, short = minus(None, rest), minus(None, slack)
     m = compensated_sum(d, -a, rest, short)
     kind, facing = parse_passage(passage)
@@ -289,19 +128,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
     coupler, rocker = ((rotate(link[0], direction), *link[1:]) for link in (coupler, rocker))
-    return _placed(placement.joints[on], fixed, h, coupler, rocker, *rest)
-
-
-def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, distance):
-    """Joint B and both links, from direction, ratio and its slope of each."""
-    return PassedMotion(
-        LinkMotion(joint, *coupler),
-        LinkMotion(Joint(pivot, None, None), *rocker),
-        tip(pivot, rocker_length, *rocker),
-        closure,
-        factor,
-        offset_from_zero(distance, MIN_DISTANCE),
-    )
+    return coupler, rocker, None, None, (rest[1], offset_from_zero(rest[2], MIN_DISTANCE)), rest[0]
 
 
 def slid(placement, on, coupler_length, guide, passage, side):
@@ -408,7 +235,7 @@ def _swung(kind, half, a, d, size, constant, side):
     """Root of the factor that is no whole square, and what follows from it.
 
     That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
-    `PassedMotion`.
+    its divisor.
     """
     cosine, sine, _ = half
     passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
@@ -472,4 +299,4 @@ def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     whole = add_vectors(*parts)
     if whole is None:
         return (0.0, 0.0)
-    return divide_by_factors(whole, (motion.factor, motion.distance))
+    return divide_by_factors(whole, motion.divisor)

@@ -4,19 +4,19 @@ The slotted lever turned inside out: rod and cylinder point at each other, so th
 offset; only the couple of the pair is taken about the pivot.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ...numbers import checks
-from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import number_or_zero, scale_vector
-from ..group import FRAME, Declaration, Group, Output, Point, Resolved, separation
+from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
 from ..links import Link, Slide, Sliding, Slot, Turning, Wrench
 from . import lever, near_dead_centre
+from .branches import Branch
 
 
 @dataclass(frozen=True, eq=False)
-class CylinderGroup(checks.Checked, Group):
+class CylinderGroup(checks.Checked, Branch, Group):
     """Rod on joint `on`, sliding in a cylinder about the fixed joint `pivot_name`: swinging cylinder.
 
     The pin must not meet the pivot. A fluid's pressure is a `PointForce` between places on rod and cylinder, as
@@ -60,19 +60,16 @@ class CylinderGroup(checks.Checked, Group):
     cylinder: Link = Link()
     pivot_name: str = "O2"
     label: str = ""
-    is_close: bool = field(default=False, init=False, repr=False)
 
     LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "cylinder_pivot"}
+    assembly: ClassVar = 1
+    kernels = None, near_dead_centre.slotted
     RULES = checks.Rules(
         "cylinder group",
         pivot=checks.Pair("m", "cylinder pivot"),
-        on=checks.Name(),
-        rod=checks.InstanceOf(Link, "a Link"),
-        cylinder=checks.InstanceOf(Link, "a Link"),
-        pivot_name=checks.Name(),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("rod", "cylinder"), "on", "pivot_name"),
     )
 
     @property
@@ -93,29 +90,19 @@ class CylinderGroup(checks.Checked, Group):
         motion = self.placed(placement)
         return Slide(motion.lever.direction, lever.slid(motion))
 
-    def motion(self, name, placement):
-        return self.placed(placement).reach
+    motion, follow = lever.LeverGroup.motion, lever.LeverGroup.follow
 
-    def on_crank(self, throws):
-        """The group with `is_close` for the pins of a crank: whether its pin comes close to the pivot."""
-        throw = throws.get(self.on)
-        is_close = throw is not None and near_dead_centre.passes_near_pivot(throw, 0.0, self.pivot)
-        return self if is_close is self.is_close else replace_unchecked(self, is_close=is_close)
+    @property
+    def clearance(self):
+        return 0.0, self.pivot
 
     def place(self, placement):
-        if self.is_close:
-            motion = lever.passed(placement, self.on, self.pivot, None, near_dead_centre.slotted, 1)
+        if self.branch:
+            motion = lever.passed(placement, self.on, self.pivot, None, *self.branch)
         else:
             motion = lever.place(placement.joints[self.on], self.pivot, None, 1)
         rod = motion.block._replace(direction=scale_vector(-1.0, motion.block.direction))
         self.enter(placement, motion, {self.pivot_name: motion.lever.joint}, {"rod": rod, "cylinder": motion.lever})
-
-    def follow(self, placement, joints):
-        """Place rod and cylinder, which add no moving joint."""
-        self.place(placement)
-
-    def closure(self, placement):
-        return self.placed(placement).closure
 
     def requirement(self, placement):
         return f"{separation(placement, self.on, self.pivot_name)} be greater than zero"

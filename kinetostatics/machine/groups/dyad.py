@@ -11,7 +11,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.planar import add_vectors, cross, dot, subtract_vectors
-from ..group import Bar, Declaration, Group, Point, Resolved, separation
+from ..group import Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..links import Joint, Link, Turning, Wrench, link_between
 from . import rocker
 from .rocker import RockerMotion
@@ -96,18 +96,15 @@ class Dyad(checks.Checked, Group):
     label: str = ""
 
     LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
-    TRUSTED = True
+    TRUSTED = is_rigid_triangle = True
     PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
     RULES = checks.Rules(
         "dyad",
         length1=checks.Number("m", low=0.0, strict=True),
         length2=checks.Number("m", low=0.0, strict=True),
         on=TwoJoints(),
-        pin=checks.Name(),
         assembly=checks.Sign(),
-        dyad1=checks.InstanceOf(Link, "a Link"),
-        dyad2=checks.InstanceOf(Link, "a Link"),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("dyad1", "dyad2"), "pin"),
     )
 
     @property
@@ -131,10 +128,6 @@ class Dyad(checks.Checked, Group):
             inner=(Turning("dyad1", first), Turning("dyad2", second)),
             pairs=(Turning("dyad2", self.pin, "dyad1"),),
         )
-
-    def rigid_on(self, owners):
-        """Both links on two joints of one link make a rigid triangle."""
-        return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)

@@ -28,9 +28,11 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Declaration, Group, Output, Point, Resolved, separation
+from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench, present
-from . import branches, change_points
+from . import change_points, near_dead_centre
+from .branches import Branch, equality
+from .change_points import MEETING, NEAR, OPPOSITE
 
 MIN_REACH_SHARE = 2.0**-53
 """Least reach along the slot over the distance from pivot to pin, by which rates and forces are divided."""
@@ -126,7 +128,7 @@ def resolve(motion, lever_load, block_load):
 
 
 @dataclass(frozen=True, eq=False)
-class LeverGroup(checks.Checked, branches.LeverBranch, Group):
+class LeverGroup(checks.Checked, Branch, Group):
     """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
 
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
@@ -193,16 +195,15 @@ class LeverGroup(checks.Checked, branches.LeverBranch, Group):
     LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
+    KINDS: ClassVar = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+    """Crank a, distance d from O to the pivot, offset o of the slot."""
+    kernels = change_points.slotted, near_dead_centre.slotted
     RULES = checks.Rules(
         "lever group",
         pivot=checks.Pair("m", "lever pivot"),
-        on=checks.Name(),
         offset=checks.Number("m", "slot offset"),
-        lever=checks.InstanceOf(Link, "a Link"),
-        block=checks.InstanceOf(Link, "a Link"),
-        pivot_name=checks.Name(),
-        label=checks.Name(may_be_empty=True),
         assembly=checks.Sign(tuple(change_points.SIDES)),
+        **rules_of_parts(("lever", "block"), "on", "pivot_name"),
     )
 
     @property
@@ -211,10 +212,7 @@ class LeverGroup(checks.Checked, branches.LeverBranch, Group):
             joints={self.pivot_name: Point(FRAME, *self.pivot)},
             slots=(Slot("lever", self.on, offset=self.offset),),
             inner=(Turning("block", self.on),),
-            pairs=(
-                Turning("lever", self.pivot_name),
-                Sliding("block", self.on, "lever", "slot_force", "slot_moment"),
-            ),
+            pairs=(Turning("lever", self.pivot_name), Sliding("block", self.on, "lever", "slot_force", "slot_moment")),
             lengths=(*self.pivot, self.offset),
         )
 
@@ -231,6 +229,19 @@ class LeverGroup(checks.Checked, branches.LeverBranch, Group):
     def motion(self, name, placement):
         return self.placed(placement).reach
 
+    @property
+    def clearance(self):
+        return self.offset, self.pivot
+
+    def passage_on(self, throw):
+        a, x, y, o = self.known(throw, self.offset)
+        d = np.sqrt(x * x + y * y)
+        unit = equality(a, abs(o), d)
+        near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
+        near, opposite = near & (d > unit), opposite & (d > unit)
+        kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
+        return self.one_passage(kind, x, y)
+
     def place(self, placement):
         given = self.pivot, present(self.offset)
         if self.branch:
@@ -243,9 +254,6 @@ class LeverGroup(checks.Checked, branches.LeverBranch, Group):
     def follow(self, placement, joints):
         """Place lever and block, which add no moving joint."""
         self.place(placement)
-
-    def closure(self, placement):
-        return self.placed(placement).closure
 
     def requirement(self, placement):
         offset = np.max(np.abs(self.offset))

@@ -43,7 +43,7 @@ from ...numbers.arithmetic import (
     offset_from_zero,
     sign,
 )
-from ...numbers.parameter_tree import FLOATS
+from ...numbers.parameter_tree import FLOATS, Axis
 from ...numbers.planar import (
     cross,
     length,
@@ -258,16 +258,19 @@ def slotted(placement, on, pivot, offset, assembly):
     return direction, ratio, slope, reach, divided, near / (square + a * a)
 
 
-def passes_near_pivot(throw, offset, pivot):
-    """Whether a pin comes close to a pivot, or to a slot at an offset from it, in any design of a batch."""
-    x, y = pivot
-    if type(x) is type(y) is float:
-        return has_small_clearance(throw, offset, math.hypot(x, y))
-    return all(map(checks.has_known_values, pivot)) and has_small_clearance(throw, offset, np.hypot(x, y))
-
-
 def has_small_clearance(throw, offset, length):
-    """Whether a length, more or less an offset, is nearly the radius of a pin, in any design of a batch."""
+    """Whether a length, or the distance of a pivot, more or less an offset, is nearly the radius of a pin of the crank.
+
+    In any design of a batch.
+    """
+    if isinstance(length, tuple):
+        x, y = length
+        if type(x) is type(y) is float:
+            length = math.hypot(x, y)
+        elif not all(map(checks.has_known_values, length)):
+            return False
+        else:
+            length = np.hypot(x, y)
     radius = throw.at[0] if throw.ahead else None
     if type(radius) is type(offset) is type(length) is float:
         unit = CLOSE_SHARE * (length + radius)
@@ -339,21 +342,15 @@ MIN_COUPLER_REACH, MAX_COUPLER_RATIO = 0.25, 2.0
 AXES = ("x", "y")
 
 
-def toggle_axis(rocker, groups, throws):
-    """Axis, "x" or "y", across the guide of a toggle that a rocker makes with a slider on its pin; "" without one."""
-    throw = throws.get(rocker.on)
-    if throw is None:
-        return ""
-    guides = (guide for other in groups if rocker.pin in other.hangs_on for guide in other.guides.values())
-    return next(filter(None, (_axis_reached(rocker, guide, throw) for guide in guides)), "")
+def toggle_axis(group, guide, throw):
+    """Axis, "x" or "y", across a guide that runs through the rocker's pivot along the other axis; "" for others.
 
-
-def _axis_reached(group, guide, throw):
-    """Axis across a guide that runs through the rocker's pivot along the other axis; "" for other guides."""
+    There the rocker makes a toggle with a slider on its pin.
+    """
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
     are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.has_known_values, given))
-    if not (are_known and guide.is_along_an_axis):
+    if not are_known or not (guide.is_level or type(guide.exact) is Axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])

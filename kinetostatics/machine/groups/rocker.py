@@ -8,13 +8,14 @@ area / (2 c h): a product of lengths, so no digit is lost near a toggle, where i
 On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
+from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import (
     add_vectors,
     cross,
@@ -25,10 +26,12 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, separation
+from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between, tip
-from . import branches, change_points, near_dead_centre
+from . import change_points, near_dead_centre
+from .branches import Branch, equality
+from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS
 from .near_dead_centre import straighten_rocker
 
 MIN_SINE = 2.0**-53
@@ -55,7 +58,8 @@ TERMS = {
 class RockerMotion(NamedTuple):
     """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared.
 
-    `divisor` is the sine to divide by, which never vanishes.
+    `divisor` is the sine to divide by, which never vanishes; on a branch through change points a factor and a distance,
+    see `change_points.place`, without `sine` and `cosine`.
     """
 
     coupler: LinkMotion
@@ -107,10 +111,10 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close, toggle):
-    """Coupler and rocker for a pin of the crank, which may come close to the pivot (kernel)."""
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, turned, *branch, toggle=""):
+    """Coupler and rocker for the pin `on` of the crank, by the kernel `turned` of a branch (kernel)."""
     joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
-    coupler, (p, *rates), *rest = near_dead_centre.place(placement, on, *given, assembly, is_close)
+    coupler, (p, *rates), *rest = turned(placement, on, *given, *branch)
     if toggle:
         p = straighten_rocker(p, coupler[0], joint, *given, toggle)
     pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
@@ -123,22 +127,19 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of the coupler
     about A and of the rocker about O2 give the pin force by its parts along both links.
     """
-    q, p = motion.coupler.direction, motion.rocker.direction
-    along_coupler = number_or_zero(quotient(rocker_load.moment, rocker_length)) / motion.divisor
-    along_rocker = number_or_zero(quotient(coupler_load.moment, coupler_length)) / motion.divisor
-    return balanced(
-        add_vectors(scale_vector(along_coupler, q), scale_vector(along_rocker, p)), coupler_load, rocker_load
-    )
-
-
-def balanced(pin, coupler_load, rocker_load):
-    """Forces from the pin force."""
+    if isinstance(motion.divisor, tuple):
+        pin = change_points.pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load)
+    else:
+        q, p = motion.coupler.direction, motion.rocker.direction
+        along_coupler = number_or_zero(quotient(rocker_load.moment, rocker_length)) / motion.divisor
+        along_rocker = number_or_zero(quotient(coupler_load.moment, coupler_length)) / motion.divisor
+        pin = add_vectors(scale_vector(along_coupler, q), scale_vector(along_rocker, p))
     pivot = subtract_vectors(subtract_vectors(None, pin), rocker_load.force)
     return RockerForces(subtract_vectors(pin, coupler_load.force), pin, pivot)
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup(checks.Checked, branches.RockerBranch, Group):
+class RockerGroup(checks.Checked, Branch, Group):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -187,21 +188,29 @@ class RockerGroup(checks.Checked, branches.RockerBranch, Group):
     pin: str = "B"
     pivot_name: str = "O2"
     label: str = ""
+    toggle: str = field(default="", init=False, repr=False)
+    """Axis of the toggle that it makes with a slider."""
+
     LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
+    KINDS: ClassVar = {
+        "": "none",
+        FAR: "a + d = b + h",
+        NEAR: "|d - a| = |b - h|",
+        MEETING: "a = d and b = h",
+        PARALLEL: "a = h and b = d",
+        KITE: "a = b and d = h",
+        RHOMBUS: "a = b = h = d",
+    }
+    """Crank a, coupler b, rocker h, ground d."""
     RULES = checks.Rules(
         "rocker group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
         pivot=checks.Pair("m", "rocker pivot"),
         assembly=checks.Sign(tuple(change_points.SIDES)),
-        coupler=checks.InstanceOf(Link, "a Link"),
-        rocker=checks.InstanceOf(Link, "a Link"),
-        on=checks.Name(),
-        pin=checks.Name(),
-        pivot_name=checks.Name(),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("coupler", "rocker"), "on", "pin", "pivot_name"),
     )
 
     @property
@@ -213,21 +222,43 @@ class RockerGroup(checks.Checked, branches.RockerBranch, Group):
                 Bar(self.pivot_name, self.pin, "rocker", self.rocker_length),
             ),
             inner=(Turning("coupler", self.on),),
-            pairs=(
-                Turning("rocker", self.pin, "coupler"),
-                Turning("rocker", self.pivot_name),
-            ),
+            pairs=(Turning("rocker", self.pin, "coupler"), Turning("rocker", self.pivot_name)),
             lengths=(self.coupler_length, self.rocker_length, *self.pivot),
         )
 
+    @property
+    def clearance(self):
+        return 0.0, self.pivot
+
+    def passage_on(self, throw):
+        a, x, y, b, h = self.known(throw, self.coupler_length, self.rocker_length)
+        d = np.sqrt(x * x + y * y)
+        unit = equality(a, b, h, d)
+        far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
+        far, near = far & (d > unit), near & (d > unit)
+        meeting = near & (abs(d - a) <= unit)
+        kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
+        cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
+        return self.one_passage(np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], ""), x, y)
+
+    def beside(self, groups, throws):
+        """The group with the axis of the toggle that it is with a slider beside it."""
+        throw, toggle = throws.get(self.on), ""
+        if throw is not None:
+            guides = [guide for other in groups if self.pin in other.hangs_on for guide in other.guides.values()]
+            axes = (near_dead_centre.toggle_axis(self, guide, throw) for guide in guides)
+            toggle = next(filter(None, axes), "")
+        return self if toggle == self.toggle else replace_unchecked(self, toggle=toggle)
+
     def place(self, placement):
-        given = self.coupler_length, self.rocker_length, self.pivot
+        given = self.on, self.coupler_length, self.rocker_length, self.pivot
         if self.passage:
-            motion = change_points.place(placement, self.on, *given, self.passage, self.side)
+            motion = turned_by_crank(placement, *given, change_points.place, self.passage, self.side)
         elif placement.course(self.on).throw is not None:
-            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.toggle)
+            branch = near_dead_centre.place, self.side, self.is_close
+            motion = turned_by_crank(placement, *given, *branch, toggle=self.toggle)
         else:
-            motion = place(placement.joints[self.on], *given, self.side)
+            motion = place(placement.joints[self.on], *given[1:], self.side)
         self._enter(placement, motion)
 
     def follow(self, placement, joints):
@@ -244,9 +275,6 @@ class RockerGroup(checks.Checked, branches.RockerBranch, Group):
         swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.courses[self.pin] = Course(swing=swing)
 
-    def closure(self, placement):
-        return self.placed(placement).closure
-
     def requirement(self, placement):
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
         return (
@@ -255,10 +283,5 @@ class RockerGroup(checks.Checked, branches.RockerBranch, Group):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        motion, lengths = self.placed(placement), (self.coupler_length, self.rocker_length)
-        acting = self.of_links(loads)
-        if isinstance(motion, change_points.PassedMotion):
-            found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
-        else:
-            found = resolve(motion, *lengths, *acting)
+        found = resolve(self.placed(placement), self.coupler_length, self.rocker_length, *self.of_links(loads))
         return self.resolved((found.inner, found.pin, found.pivot), (), {self.on: Wrench(found.inner, None)})

@@ -29,10 +29,12 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Bar, Declaration, Group, Point, Resolved
+from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, link_between
-from . import branches, change_points, near_dead_centre
+from . import change_points, near_dead_centre
+from .branches import Branch, equality
+from .change_points import BOTH, FAR, NEAR
 
 MIN_COSINE = 2.0**-27
 """Least cosine of the coupler: its square is a difference with a rounding error of 2^-53."""
@@ -43,6 +45,7 @@ TERMS = {
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
     "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
+    "_from.short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
@@ -144,7 +147,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup(checks.Checked, branches.SliderBranch, Group):
+class SliderGroup(checks.Checked, Branch, Group):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -192,16 +195,15 @@ class SliderGroup(checks.Checked, branches.SliderBranch, Group):
     LINKS: ClassVar = {"coupler": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": ""}
+    KINDS: ClassVar = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
+    """Crank a, coupler l, offset e of the guide."""
+    kernels = change_points.slid, near_dead_centre.slid
     RULES = checks.Rules(
         "slider group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         assembly=checks.Sign(tuple(change_points.SIDES)),
-        coupler=checks.InstanceOf(Link, "a Link"),
-        slider=checks.InstanceOf(Link, "a Link"),
-        on=checks.Name(),
-        pin=checks.Name(),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("coupler", "slider"), "on", "pin"),
     )
 
     @property
@@ -220,6 +222,21 @@ class SliderGroup(checks.Checked, branches.SliderBranch, Group):
 
     def sliding(self, name, placement):
         return Slide(self.guide.line.direction, placement.travels[self.called("slider")].first)
+
+    @property
+    def start(self):
+        x, y = self.guide.direction
+        return y, -x
+
+    @property
+    def clearance(self):
+        return self.guide.guide_offset, self.coupler_length
+
+    def passage_on(self, throw):
+        a, x, y, b, e = self.known(throw, self.coupler_length, self.guide.guide_offset)
+        unit = equality(a, b, abs(e))
+        far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
+        return self.one_passage(np.select([far & near, far, near], [BOTH, FAR, NEAR], ""), x, y)
 
     def place(self, placement):
         given = self.coupler_length, self.guide.line
@@ -242,15 +259,37 @@ class SliderGroup(checks.Checked, branches.SliderBranch, Group):
         links = {"coupler": motion.coupler, "slider": motion.slider}
         self.enter(placement, motion, {self.pin: motion.slider.joint}, links, {"slider": motion.travel})
 
-    def closure(self, placement):
-        return self.placed(placement).closure
-
     def requirement(self, placement):
         distance = abs(self.placed(placement).sine * self.coupler_length)
+        low, high = np.min(self.coupler_length), np.max(self.coupler_length)
+        span = f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
         return (
             f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
-            f"{self.called('coupler')} length, {_span(self.coupler_length)} m"
+            f"{self.called('coupler')} length, {span} m"
         )
+
+    def elongation(self, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
+        if self.passage:
+            return placement.travels[self.called("slider")].position - free_position
+        return near_dead_centre.elongation(placement, *self._from(free_position, placement))
+
+    def departure(self, placement, position):
+        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
+        drawn_in = self.placed(placement).drawn_in
+        if self.passage or drawn_in is None:
+            return None
+        return near_dead_centre.departure(placement, drawn_in, *self._from(position, placement))
+
+    def outward(self, placement, position):
+        """That elongation, or its opposite, as a length of the design and some more, m; None if it is not known so."""
+        return near_dead_centre.outward(placement, *self._from(position, placement))
+
+    def _from(self, position, placement):
+        """Arguments of `near_dead_centre.elongation` from a position."""
+        motion, length, side = self.placed(placement), self.coupler_length, self.side
+        short = side * near_dead_centre.shortfall(length, motion.sine, side * motion.cosine)
+        return self.on, self.guide.line.direction, side * length - position, short
 
     def resolve(self, placement, loads, along) -> Resolved:
         (coupler_load, slider_load), (_, push) = self.of_links(loads), self.of_links(along)
@@ -258,8 +297,3 @@ class SliderGroup(checks.Checked, branches.SliderBranch, Group):
         found = resolve(self.placed(placement), *given, coupler_load, slider_load, push)
         reactions, scalars = (found.inner, found.pin, found.guide), (found.guide_force, found.guide_moment)
         return self.resolved(reactions, scalars, {self.on: Wrench(found.inner, None)})
-
-
-def _span(length):
-    low, high = np.min(length), np.max(length)
-    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

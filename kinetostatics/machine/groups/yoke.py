@@ -21,7 +21,7 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from ..group import FRAME, Declaration, Group, Point, Resolved
+from ..group import FRAME, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench
 
@@ -66,11 +66,7 @@ def place(joint, guide, slot_angle):
     back = -lean * rise
     travel = Joint(x + back, first[0] - lean * first[1], second[0] - lean * second[1])
     slider = slider_motion(joint.position, (back, -rise), travel, guide)
-    return YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot)
-
-
-def _block(joint, slot, guide):
-    return LinkMotion(joint, rotate(slot, guide.direction), None, None)
+    return YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot)
 
 
 def resolve(motion, guide, block_load, slider_load, push):
@@ -163,11 +159,7 @@ class YokeGroup(checks.Checked, Group):
         _slot_across,
         guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         slot_angle=checks.Number("rad"),
-        on=checks.Name(),
-        pin=checks.Name(),
-        slider=checks.InstanceOf(Link, "a Link"),
-        block=checks.InstanceOf(Link, "a Link"),
-        label=checks.Name(may_be_empty=True),
+        **rules_of_parts(("slider", "block"), "on", "pin"),
     )
 
     @property
@@ -204,7 +196,10 @@ class YokeGroup(checks.Checked, Group):
         rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
         slider = LinkMotion(pin, self.guide.direction, None, None)
-        self._enter(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
+        self._enter(
+            placement,
+            YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot),
+        )
 
     def _enter(self, placement, motion):
         links = {"block": motion.block, "slider": motion.slider}

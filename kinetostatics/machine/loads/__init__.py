@@ -3,6 +3,8 @@
 May import errors, numbers and the modules of `machine` that describe links and mechanisms.
 """
 
+# ruff: noqa: F401 - other rooms import from here
+
 from .gravity import Gravity
 from .load import (
     Load,
@@ -24,47 +26,7 @@ from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows,
 from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (
-    Gravity,
-    Spring,
-    ProcessForce,
-    Force,
-    PointForce,
-    PointSpring,
-    PointDamper,
-    Torque,
-    TorsionSpring,
-    TorsionDamper,
+    *(Gravity, Spring, ProcessForce, Force, PointForce, PointSpring, PointDamper),
+    *(Torque, TorsionSpring, TorsionDamper),
 )
 """Every load of the library."""
-
-__all__ = [
-    "KINDS",
-    "KINK_TOLERANCE",
-    "MAX_TURNS",
-    "TURN",
-    "Force",
-    "Gravity",
-    "Load",
-    "PointDamper",
-    "PointForce",
-    "PointSpring",
-    "ProcessForce",
-    "Spring",
-    "Table",
-    "Torque",
-    "TorsionDamper",
-    "TorsionSpring",
-    "WholeTurns",
-    "depends_on_sense",
-    "has_no_user_code",
-    "has_significant_kinks",
-    "kink_sources",
-    "kinks_of",
-    "may_refuse",
-    "pad_rows",
-    "period_of",
-    "period_on",
-    "refusals",
-    "significant_kinks",
-    "value_of",
-]

@@ -93,7 +93,8 @@ class Load(checks.Checked, Batched):
     @property
     def title(self):
         """Name of the load in messages."""
-        return type(self).__name__
+        on = getattr(self, "on", None)
+        return type(self).__name__ if on is None else f"{type(self).__name__} on {on!r}"
 
     def problems(self, mechanism):
         """Problems of the load and its table on a mechanism, as sentences or None."""

@@ -13,7 +13,17 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import guarded_divisor, sqrt
-from ...numbers.planar import add_vectors, dot, length, moment, rotate, scale_vector, subtract_vectors, vector_or_zero
+from ...numbers.planar import (
+    add_vectors,
+    dot,
+    length,
+    moment,
+    plus,
+    rotate,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
 from ..crank import ray
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
@@ -97,14 +107,13 @@ def point_on_link(mechanism, place) -> Point:
     return next(map(Point, turning), point)
 
 
-def wrench_at(motion, place, force):
-    """Link that a force at a point acts on, and the wrench about its reference joint."""
-    point = point_on_link(motion.mechanism, place)
+def wrench_at(placement, point, force, couple=None):
+    """Link that carries a point, and a force there with a couple as a wrench about the link's reference joint."""
     if point.link == FRAME:
-        return FRAME, Wrench(force, None)
-    direction = motion.placement.links[point.link].direction
+        return FRAME, Wrench(force, couple)
+    direction = placement.links[point.link].direction
     lever = arm(direction, present(point.along), present(point.across))
-    return point.link, Wrench(force, moment(lever, force))
+    return point.link, Wrench(force, plus(moment(lever, force), couple))
 
 
 def place_problem(owner, field, place, mechanism) -> Any:
@@ -213,7 +222,7 @@ class Force(Load):
         """Wrench on the link of its point."""
         axis = self._axis(motion)
         force = (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
-        yield wrench_at(motion, self.at, force)
+        yield wrench_at(motion.placement, point_on_link(motion.mechanism, self.at), force)
 
     def _axis(self, motion):
         """Unit vector of a positive force; None means +x."""
@@ -232,7 +241,7 @@ class PointLoad(Load):
 
     between: Any
 
-    REFUSES, SIGN = True, "line"
+    REFUSES, SIGN, REMEDY = True, "line", ""
 
     def pull(self, motion) -> Any:
         """Force on the first point, N."""
@@ -257,7 +266,7 @@ class PointLoad(Load):
         """Opposite forces on the links of both points."""
         force = self.pull(motion)
         for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
-            yield wrench_at(motion, place, part)
+            yield wrench_at(motion.placement, point_on_link(motion.mechanism, place), part)
 
     def signs(self, motion):
         """Symbol between both points."""
@@ -282,11 +291,9 @@ class PointLoad(Load):
             yield checks.Problem(
                 f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
                 f"deg, so its force has no direction there; leave them out, or move a point off the line"
-                f"{self._remedy}",
+                f"{self.REMEDY}",
                 meet,
             )
-
-    _remedy = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -375,7 +382,7 @@ class PointSpring(PointLoad):
         free_length=checks.Number("m", low=0.0),
         between=PlacePairRule(),
     )
-    _remedy = ", or give free_length 0"
+    REMEDY = ", or give free_length 0"
 
     def pull(self, motion):
         """Force on the first point, N."""

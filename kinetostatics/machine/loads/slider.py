@@ -18,10 +18,6 @@ class SliderLoad(Load):
 
     on: str
 
-    @property
-    def title(self):
-        return f"{type(self).__name__} on {self.on!r}"
-
     def misplaced(self, mechanism):
         """Sentence if the mechanism has no such slider."""
         problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
@@ -205,11 +201,7 @@ class ProcessForce(SliderLoad):
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
-        "process force",
-        _period_problems,
-        force=value_rule("N"),
-        on=checks.Name(),
-        period=WholeTurns(),
+        "process force", _period_problems, force=value_rule("N"), on=checks.Name(), period=WholeTurns()
     )
 
     @property

@@ -7,10 +7,11 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
+from ...numbers.arithmetic import namespace
 from ...numbers.parameter_tree import replace_unchecked
 from ..kinematic_state import require_sense
 from . import table_pieces
-from .table_pieces import TURN, WholeTurns, kink_rows, largest_ignored_kink, stops_and_crossings
+from .table_pieces import TRAVEL_TOLERANCE, TURN, WholeTurns, kink_rows, stops_and_crossings
 
 COLUMNS = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """Heading and unit of the first column, by `over`."""
@@ -263,7 +264,11 @@ class Table:
         """
         place = self.place(motion)
         returning = None if self.back is None else self.returns(motion)
-        xp, place, returning = table_pieces.lookup_arrays(place, returning)
+        try:
+            xp, place = np, np.asarray(place, dtype=float)
+            returning = returning if returning is None else np.asarray(returning)
+        except (TypeError, ValueError):  # while JAX traces
+            xp = next(xp for xp in map(namespace, (place, returning)) if xp is not np)
         x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
@@ -275,12 +280,21 @@ class Table:
         piece = table_pieces.piece_index(xp, self.x, place)
         strokes = [y] if self.back is None else [y, number(self.back)]
         start, value, slope = table_pieces.piece_lines(xp, x, strokes, piece, returning)
-        if xp is np:
-            table_pieces.require_inside(self.x, place, motion)
-            if self.by_sense:
-                require_sense("table over travel: it has other values for the stroke back", motion)
-            return start, value, slope
-        return start, xp.where(table_pieces.is_outside(self.x, place), xp.nan, value), slope
+        room = TRAVEL_TOLERANCE * (self.x[-1] - self.x[0])
+        out = (place < self.x[0] - room) | (place > self.x[-1] + room)
+        if xp is not np:
+            return start, xp.where(out, xp.nan, value), slope
+        if out.any():
+            angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
+            raise ParameterError(
+                f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
+                f"table from {self.x[0]:.9g} to {self.x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
+                f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
+                out.any(axis=-1) if out.ndim > 1 else None,
+            )
+        if self.by_sense:
+            require_sense("table over travel: it has other values for the stroke back", motion)
+        return start, value, slope
 
     def rate(self, motion):
         """First kinematic coefficient of the slider along its guide, m/rad."""
@@ -315,7 +329,15 @@ class Table:
 
         Also which of them are jumps, (K,), and the largest kink left out, relative to its largest value.
         """
-        inner, rest = self.x[kink_rows(self, straight)], largest_ignored_kink(self, straight)
+        x, strokes, rows = self.x, self.strokes, kink_rows(self, straight)
+        inner = x[rows]
+        if self.over == "angle":
+            x = np.concatenate([x[-1:] - self.period, x, x[:1] + self.period])
+            strokes = [np.concatenate([y[-1:], y, y[:1]]) for y in strokes]
+        share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
+        off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
+        ignored = np.delete(off if self.over == "angle" else np.pad(off, 1), rows)
+        rest = float(ignored.max(initial=0.0) / (abs(self.largest) or 1.0))
         if self.over == "angle":
             return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
         ends, passed = stops_and_crossings(motion, self._slider(motion), inner)

@@ -16,9 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.arithmetic import UNIT_ROUNDOFF, namespace
+from ...numbers.arithmetic import UNIT_ROUNDOFF
 
 TURN = 2 * math.pi
 MAX_TURNS = 100
@@ -112,12 +111,7 @@ def angle_problem(angle, value, period):
         if turns > 8:
             remedy = "are they degrees under a heading of rad?"
         return f"the angles span {_degrees(span)}, more than the period of {_degrees(period)}; {remedy}"
-    return _distance_problem(angle, value, period, step)
-
-
-def _distance_problem(angle, value, period, step):
-    """Problem of the distances between rows, as a sentence, or None."""
-    rest = period - (angle[-1] - angle[0])
+    rest = period - span
     if rest > 1.5 * step.max():
         return (
             f"rows are missing: they end at {_degrees(angle[-1])}, {_degrees(rest)} before the next begins at "
@@ -151,14 +145,6 @@ def unit_of(values):
 # Look-up
 
 
-def lookup_arrays(place, returning):
-    """Array library for the look-up, and `place` and `returning` as its arrays: NumPy, except while JAX traces."""
-    try:
-        return np, np.asarray(place, dtype=float), returning if returning is None else np.asarray(returning)
-    except (TypeError, ValueError):
-        return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
-
-
 def piece_index(xp, x, place):
     """Number of the piece that each place lies in; the first or last piece beyond the rows."""
     return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
@@ -176,19 +162,6 @@ def is_outside(x, place):
     """Whether places lie beyond the rows, by more than rounding."""
     room = TRAVEL_TOLERANCE * (x[-1] - x[0])
     return (place < x[0] - room) | (place > x[-1] + room)
-
-
-def require_inside(x, place, motion):
-    """Raise `ParameterError` where a slider goes beyond the rows."""
-    out = is_outside(x, place)
-    if out.any():
-        angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
-        raise ParameterError(
-            f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
-            f"table from {x[0]:.9g} to {x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
-            f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
-            out.any(axis=-1) if out.ndim > 1 else None,
-        )
 
 
 # Kinks
@@ -213,33 +186,15 @@ def kink_rows(table, tolerance=KINK_TOLERANCE):
     """
     room = tolerance * abs(table.largest)
     if table.over == "angle":
-        return _kink_rows_of_period(table.x, table.y, table.period, room)
+        # around the largest value, with a period before and behind
+        x, y, period, count = table.x, table.y, table.period, table.x.size
+        order = (np.arange(count) + int(np.argmax(np.abs(y)))) % count
+        around = x[order] + period * (order < order[0])
+        curve = Curve(np.concatenate([around - period, around, around + period]), [np.tile(y[order], 3)], room)
+        ends = [count, *curve.stretch_ends(count, 2 * count)]
+        return order[curve.kinks(ends, 0.5 * TURN / SMOOTH_STRETCHES) - count]
     curve = Curve(table.x, table.strokes, room)
     return curve.kinks(curve.stretch_ends(0, table.x.size - 1), (table.x[-1] - table.x[0]) / SMOOTH_STRETCHES)
-
-
-def largest_ignored_kink(table, tolerance=KINK_TOLERANCE):
-    """Largest kink at a single row that `kink_rows` leaves out, relative to the largest value."""
-    x, strokes = table.x, table.strokes
-    if table.over == "angle":
-        x, strokes = (
-            np.concatenate([x[-1:] - table.period, x, x[:1] + table.period]),
-            [np.concatenate([y[-1:], y, y[:1]]) for y in strokes],
-        )
-    share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
-    off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
-    inner = off if table.over == "angle" else np.pad(off, 1)
-    return float(np.delete(inner, kink_rows(table, tolerance)).max(initial=0.0) / (abs(table.largest) or 1.0))
-
-
-def _kink_rows_of_period(angle, value, period, room):
-    """Numbers of the rows of a periodic table at which it kinks."""
-    count = angle.size
-    order = (np.arange(count) + int(np.argmax(np.abs(value)))) % count
-    around = angle[order] + period * (order < order[0])
-    curve = Curve(np.concatenate([around - period, around, around + period]), [np.tile(value[order], 3)], room)
-    ends = [count, *curve.stretch_ends(count, 2 * count)]
-    return order[curve.kinks(ends, 0.5 * TURN / SMOOTH_STRETCHES) - count]
 
 
 class Curve(NamedTuple):
@@ -252,30 +207,24 @@ class Curve(NamedTuple):
     def stretch_ends(self, first, last):
         """Rows between two others that part the curve into smooth stretches, each as long as possible."""
         found, row = [], first
-        while (row := self._stretch_end(row, last)) < last:
+        while row < last:
+            count = 2
+            while row + count <= last and not self._breaks(self.x[row], self.x[row + count]):
+                count *= 2
+            ends = range(row + count // 2 + 1, min(row + count, last + 1))
+            low = self.x[row]
+            row = ends.start - 1 + bisect_left(ends, True, key=lambda end, low=low: self._breaks(low, self.x[end]))
             found.append(row)
-        return found
-
-    def _stretch_end(self, row, last):
-        """Last row up to which the curve is smooth from `row` on."""
-
-        def breaks(end):
-            return not self._is_smooth(self.x[row], self.x[end])
-
-        count = 2
-        while row + count <= last and not breaks(row + count):
-            count *= 2
-        ends = range(row + count // 2 + 1, min(row + count, last + 1))
-        return ends.start - 1 + bisect_left(ends, True, key=breaks)
+        return found[:-1]
 
     def kinks(self, rows, reach):
         """Rows at which the curve kinks: it is not smooth from `reach` before the row to `reach` behind it."""
         x = self.x
-        found = [row for row in rows if not self._is_smooth(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
+        found = [row for row in rows if self._breaks(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
         return np.array(found, dtype=int)
 
-    def _is_smooth(self, low, high):
-        """Whether a polynomial approximates every stroke between two places, at the rows and between them."""
+    def _breaks(self, low, high):
+        """Whether no polynomial approximates every stroke between two places, at the rows and between them."""
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         some = slice(np.searchsorted(self.x, low), np.searchsorted(self.x, high, side="right"))
         places = np.concatenate([CHEBYSHEV_POINTS, (self.x[some] - middle) / half])
@@ -283,8 +232,8 @@ class Curve(NamedTuple):
             values = np.interp(middle + half * CHEBYSHEV_POINTS, self.x, y)
             found = chebyshev.chebval(places, CHEBYSHEV_FIT @ values)
             if np.abs(found - np.concatenate([values, y[some]])).max() > self.room:
-                return False
-        return True
+                return True
+        return False
 
 
 # Stops and crossings of a slider
@@ -325,35 +274,23 @@ def stops_and_crossings(motion, slider, levels):
         turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & closes[:, :-1] & closes[:, 1:]
         design, place = np.nonzero(turning)
         low, high = pad_rows(design, len(rate), grid[0, place], grid[0, place + 1])
-
-        def rates(angle):
-            at = travel(angle)
-            return at.first, at.second
-
-        stops = _roots(rates, low, high, np.zeros_like(low))
+        stops = _roots(lambda angle: travel(angle)[1:], low, high, np.zeros_like(low))
         knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), stops]), axis=1)
-        passed = _roots(*_crossing_brackets(travel, levels, knots))
+
+        # each crossing by the levels between the coordinates at both knots
+        there = np.broadcast_to(travel(knots).position, knots.shape)
+        above = np.searchsorted(levels, there)
+        before, after = above[:, :-1], above[:, 1:]
+        closes = ~np.isnan(there)
+        many = np.abs(after - before) * (closes[:, :-1] & closes[:, 1:])
+        design, place = np.nonzero(many)
+        number = many[design, place]
+        first = np.repeat(np.minimum(before, after)[design, place] + number - np.cumsum(number), number)
+        level = levels[first + np.arange(number.sum())]
+        design, place = np.repeat(design, number), np.repeat(place, number)
+        brackets = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
+        passed = _roots(lambda angle: travel(angle)[:2], *brackets)
     return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
-
-
-def _crossing_brackets(travel, levels, knots):
-    """Coordinate and rate as a function, angles on both sides of each crossing, and the level crossed there."""
-
-    def places(angle):
-        at = travel(angle)
-        return at.position, at.first
-
-    there = np.broadcast_to(places(knots)[0], knots.shape)
-    above = np.searchsorted(levels, there)
-    before, after = above[:, :-1], above[:, 1:]
-    closes = ~np.isnan(there)
-    many = np.abs(after - before) * (closes[:, :-1] & closes[:, 1:])
-    design, place = np.nonzero(many)
-    number = many[design, place]
-    first = np.repeat(np.minimum(before, after)[design, place] + number - np.cumsum(number), number)
-    level = levels[first + np.arange(number.sum())]
-    design, place = np.repeat(design, number), np.repeat(place, number)
-    return places, *pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
 
 
 def pad_rows(design, count, *values):
@@ -454,17 +391,14 @@ def kink_bounds(table, motion):
     place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
     steepest = max(float(np.max(np.abs(np.diff(y) / np.diff(table.x)))) for y in table.strokes)
     change, distance = 2.0 * steepest, _row_distance(table.x, place)
-    jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)
+    jump = 0.0
+    if table.back is not None:
+        x, y = table.x, table.y - table.back
+        jump = np.max(np.abs(y))
+        if np.min(np.diff(x)) >= 2.0 * near:  # no more than one row is so near
+            row = np.clip(np.searchsorted(x, place - near), 0, x.size - 1)
+            beside = np.where(np.abs(x[row] - place) <= 2.0 * near, np.abs(y[row]), 0.0)
+            ends = [np.abs(np.interp(end, x, y)) for end in (place - near, place + near)]
+            jump = np.maximum(beside, np.maximum(*ends)) + 8 * UNIT_ROUNDOFF * jump
     standing = np.abs(rate) <= near
     return np.where(distance <= near, change, 0.0), np.where(standing, jump, 0.0), near, distance
-
-
-def _largest_within(x, y, place, near):
-    """Bound on the magnitude of a polygon within `near` of each place."""
-    largest = np.max(np.abs(y))
-    if np.min(np.diff(x)) < 2.0 * near:  # more than one row may be so near
-        return largest
-    row = np.clip(np.searchsorted(x, place - near), 0, x.size - 1)
-    beside = np.where(np.abs(x[row] - place) <= 2.0 * near, np.abs(y[row]), 0.0)
-    ends = [np.abs(np.interp(end, x, y)) for end in (place - near, place + near)]
-    return np.maximum(beside, np.maximum(*ends)) + 8 * UNIT_ROUNDOFF * largest

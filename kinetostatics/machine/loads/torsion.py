@@ -39,10 +39,6 @@ class Couple(Load):
         """Couple on the link, N m."""
         raise NotImplementedError
 
-    @property
-    def title(self):
-        return f"{type(self).__name__} on {self.on!r}"
-
     def misplaced(self, mechanism):
         """Sentences if there are no such links, or if both are the same."""
         owner = type(self).__name__
@@ -205,32 +201,28 @@ class TorsionSpring(Couple):
         passing[..., -1] |= turning & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        full = "it makes full turns" if turning.any() else self._free_angle_advice(angle, passing)
+        if turning.any():
+            advice = "it makes full turns"
+        else:  # a free angle from which the first refused design stays within half a turn
+            design = np.argmax(passing.any(axis=-1).ravel())
+            here = angle.reshape(-1, angle.shape[-1])[design]
+            given = np.broadcast_to(self.free_angle, (*angle.shape[:-1], 1)).ravel()[design]
+            shifts = np.radians(np.arange(-180.0, 180.0, 5.0))
+            moved = here - shifts[:, None]
+            moved -= TURN * np.round(moved / TURN)
+            clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
+            reach = np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf)
+            free = given + shifts[np.argmin(reach)]
+            advice = f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
+            if not clear.any():
+                advice = "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
         yield checks.Problem(
             f"{self.title}: the link passes half a turn from the free angle at crank angle "
-            f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
+            f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {advice}",
             passing,
         )
-
-    def _free_angle_advice(self, angle, passing):
-        """Sentence that proposes a free angle from which the first refused design stays within half a turn.
-
-        `angle` is the angle of the link from the present free angle, rad.
-        """
-        design = np.argmax(passing.any(axis=-1).ravel())
-        here = angle.reshape(-1, angle.shape[-1])[design]
-        present = np.broadcast_to(self.free_angle, (*angle.shape[:-1], 1)).ravel()[design]
-        shifts = np.radians(np.arange(-180.0, 180.0, 5.0))
-        moved = here - shifts[:, None]
-        moved -= TURN * np.round(moved / TURN)
-        clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
-        if not clear.any():
-            return "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
-        reach = np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf)
-        free = present + shifts[np.argmin(reach)]
-        return f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
 
 
 _REFUSALS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine.links import Joint
 from kinetostatics.machine.loads import table_pieces
 from kinetostatics.machine.loads.table_pieces import (
     KINK_TOLERANCE,
@@ -149,7 +150,7 @@ def test_stop_exactly_at_a_sample_is_found(way):
 
     def place(angle):
         cosine, sine = (way * part(angle - stop) for part in (np.cos, np.sin))
-        return SimpleNamespace(travels={"slider": SimpleNamespace(position=cosine, first=-sine, second=-cosine)})
+        return SimpleNamespace(travels={"slider": Joint(cosine, -sine, -cosine)})
 
     stops, _ = stops_and_crossings(
         SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1)
