@@ -32,7 +32,17 @@ from .quantities import of_mechanism
 
 def required_groups(mechanism):
     """Groups that a quantity needs assembled, by its name; all groups unless it belongs to one."""
-    groups, inner = mechanism.groups, _inner_groups(mechanism.groups)
+    groups = mechanism.groups
+    inner: list[set[int]] = []  # places of each group and of the groups that carry it
+    joints: dict[str, set[int]] = {}
+    links: dict[str, set[int]] = {}
+    for place, group in enumerate(groups):
+        under = [joints.get(name, set()) for name in group.hangs_on]
+        under += [links.get(point.link, set()) for point in group.joints.values()]
+        own = {place}.union(*under)
+        joints |= dict.fromkeys(group.joints, own)
+        links |= dict.fromkeys(group.links, own)
+        inner.append(own)
     found: defaultdict[str, tuple] = defaultdict(lambda: groups)
     for place, group in enumerate(groups):
         outer = set().union(*(own for own in inner if place in own))
@@ -44,21 +54,6 @@ def required_groups(mechanism):
             (inner[place], (*group.motions, *rates, *travels)),
         ):
             found.update(dict.fromkeys(names, tuple(groups[one] for one in needed)))
-    return found
-
-
-def _inner_groups(groups):
-    """Places of each group and of the inner groups that carry it, a list of sets."""
-    found: list[set[int]] = []
-    joints: dict[str, set[int]] = {}
-    links: dict[str, set[int]] = {}
-    for place, group in enumerate(groups):
-        under = [joints.get(name, set()) for name in group.hangs_on]
-        under += [links.get(point.link, set()) for point in group.joints.values()]
-        own = {place}.union(*under)
-        joints |= dict.fromkeys(group.joints, own)
-        links |= dict.fromkeys(group.links, own)
-        found.append(own)
     return found
 
 
@@ -232,23 +227,21 @@ class Motion:
 
     def elongation(self, free_position, slider=None):
         """Coordinate of a slider's pin along its guide less `free_position` (m), without cancellation, (..., N), m."""
-        checks.require("elongation", self._number_problem("free_position", free_position))
+        words = checks.not_a_number(free_position)
+        if words is None and isinstance(free_position, list | tuple):
+            words = "several; give an array"
+        if words is None and isinstance(free_position, np.ndarray):
+            words = f"of {free_position.dtype}" if free_position.dtype.kind not in "iufO" else None
+            words = words or checks.broadcast_problem(free_position=free_position.shape, **{"crank angles": self.shape})
+        if words:
+            text = f"free_position must be a number, m, got {checks.shown(free_position)}, {words}"
+            checks.require("elongation", text)
         slider = self._slider(slider)
         travel = self._travel(slider)
         group = next(group for group in self.mechanism.groups if slider in group.links)
         if not hasattr(group, "elongation"):
             return self._scalar(travel.position - free_position)
         return self._scalar(group.elongation(self.placement, free_position))
-
-    def _number_problem(self, name, value):
-        """Problem of a value that must be a number, m, or one for each crank angle; or None."""
-        words = checks.not_a_number(value)
-        if words is None and isinstance(value, list | tuple):
-            words = "several; give an array"
-        if words is None and isinstance(value, np.ndarray):
-            words = f"of {value.dtype}" if value.dtype.kind not in "iufO" else None
-            words = words or checks.broadcast_problem(**{name: value.shape, "crank angles": self.shape})
-        return words and f"{name} must be a number, m, got {checks.shown(value)}, {words}"
 
     @property
     def slider_position(self):

@@ -158,16 +158,23 @@ RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_emp
 
 
 class Follower(checks.Checked, Group):
-    """Follower of one link, `moved`, by a law of the crank angle; `pressed` is its `Roller` or `Face`, or None."""
+    """Follower of one link, `moved`, by a law of the crank angle."""
 
     cam: Any
     pin: str
     label: str
-    pressed: Any
+    roller: Any
+
+    hangs_on = ("O",)
 
     @property
-    def hangs_on(self):
-        return ("O",)
+    def pressed(self):
+        """Body that the cam presses on: its `Roller` or `Face`, or None."""
+        return self.roller
+
+    @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
 
     @property
     def disk(self):

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
 from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, Roller
-from ..group import FRAME, Declaration, Output, Point, Resolved
+from ..group import EMPTY, FRAME, Declaration, Output, Point, Resolved
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
 from .follower import RULES, Follower
@@ -185,15 +185,6 @@ class RollerFollower(GuidedFollower):
     }
     forces = staticmethod(roller_forces)
 
-    @property
-    def rollers(self):
-        return {self.pin: None if self.roller is None else self.roller.radius}
-
-    @property
-    def pressed(self):
-        """Body that the cam presses on: its `Roller`, or None."""
-        return self.roller
-
     def motion(self, name, placement):
         if name == self.called("cam_radius"):
             position, offset = placement.travels[self.moved].position, number_or_zero(self.guide.line.offset)
@@ -290,10 +281,10 @@ class FlatFollower(GuidedFollower):
         "curvature_radius": Output("m", False, "of the cam at the contact, positive where convex"),
     }
     forces = staticmethod(flat_forces)
+    rollers = EMPTY
 
     @property
     def pressed(self):
-        """Body that the cam presses on: its `Face`, or None."""
         return self.face
 
     def with_cam(self, declaration):

@@ -75,7 +75,7 @@ class Segment:
 
 
 def _segment(owner, rise, angle, **positions):
-    given = {name: (position, "m", {}) for name, position in positions.items()}
+    given: dict[str, Any] = {name: (position, "m", {}) for name, position in positions.items()}
     given["angle"] = (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9})
     found = list(checks.single_numbers(owner, **given).values())
     return Segment(found[0], found[-2], found[-1], rise)

@@ -7,6 +7,7 @@ the points and the coarseness of the table.
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ class TurnTable:
 
     angle: np.ndarray
     values: np.ndarray
-    smoothing: float | None = None
+    smoothing: Any = None
 
     @classmethod
     def of(cls, owner, angle, values, name, smoothing=None, positive=False):
