@@ -88,20 +88,17 @@ def pressure(dynamics, name):
     group = next((group for group in dynamics.mechanism.groups if name in group.contacts), None)
     if group is None:
         known = [own for group in dynamics.mechanism.groups for own in group.contacts]
-        raise QuantityError(_unknown_contact(dynamics.mechanism, name, known))
+        title = dynamics.mechanism.name
+        raise QuantityError(
+            checks.choice(f"{title}: contact", name, tuple(known))
+            if known
+            else f"{title} has no contact pressure {name!r}: give its cam a roller, as CamRoller(cam, "
+            "roller=ks.Roller(radius, width, youngs_modulus, poissons_ratio))"
+        )
     touch = group.contacts[name]
     force = number_or_zero(dynamics.resolved.scalars[touch.force])
     with np.errstate(divide="ignore", invalid="ignore"):
         return touch.body.pressure(force, group.relative_radius(name, dynamics.placement, sign(force)))
-
-
-def _unknown_contact(mechanism, name, known):
-    if known:
-        return checks.choice(f"{mechanism.name}: contact", name, tuple(known))
-    return (
-        f"{mechanism.name} has no contact pressure {name!r}: give its cam a roller, as CamRoller(cam, "
-        "roller=ks.Roller(radius, width, youngs_modulus, poissons_ratio))"
-    )
 
 
 def refusals(solution):
