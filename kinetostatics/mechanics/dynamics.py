@@ -46,6 +46,11 @@ MIN_RATE = 2.0**-120
 """Rate, N/m, that guards a divisor where there is neither spring nor inertia."""
 
 
+def _reading(function):
+    """Property of a scene, (..., N), from a function of it that gives a number, or None for 0."""
+    return property(lambda self: self._scalar(function(self)), doc=function.__doc__)
+
+
 @dataclass(frozen=True, eq=False)
 class Dynamics(Motion):
     """Motion and forces of a scene at its crank angles, computed when first asked for.
@@ -236,35 +241,16 @@ class Dynamics(Motion):
     def shaking_moment(self):
         """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
         moments = (
-            plus(moment(self._link(name).joint.position, wrench.force), wrench.moment)
+            plus(moment(self.placement.links[name].joint.position, wrench.force), wrench.moment)
             for name, wrench in self.inertia.items()
         )
         return self._scalar(reduce(plus, moments))
 
-    @property
-    def reduced_inertia(self):
-        """Equivalent inertia of all links at the crank, (..., N), kg m2."""
-        return self._scalar(energy_contact.reduced_inertia(self))
-
-    @property
-    def reduced_inertia_slope(self):
-        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-        return self._scalar(energy_contact.reduced_inertia_slope(self))
-
-    @property
-    def kinetic_energy(self):
-        """Kinetic energy of all links, (..., N), J."""
-        return self._scalar(energy_contact.kinetic_energy(self))
-
-    @property
-    def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J."""
-        return self._scalar(energy_contact.potential_energy(self))
-
-    @property
-    def load_torque(self):
-        """Torque on the crank that holds weight and loads, without inertia, (..., N), N m."""
-        return self._scalar(energy_contact.load_torque(self))
+    reduced_inertia = _reading(energy_contact.reduced_inertia)
+    reduced_inertia_slope = _reading(energy_contact.reduced_inertia_slope)
+    kinetic_energy = _reading(energy_contact.kinetic_energy)
+    potential_energy = _reading(energy_contact.potential_energy)
+    load_torque = _reading(energy_contact.load_torque)
 
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""

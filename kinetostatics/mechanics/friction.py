@@ -234,9 +234,9 @@ class FrictionSolver:
             slope = lever / sqrt(1.0 - lever * lever) * self.senses.get(name, self.direction)
             tangent = (first[0] / speed, first[1] / speed)
             force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
-            moment = slope * friction.roller_radius, "itself", ((_moment(pair.link), -1),)
-            for factor, kind, effects in ((slope, "size", ((force, -1),)), moment):
-                yield FrictionLaw(name, factor, lambda found: (found.scalars[pair.force],), kind, effects)
+            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "size", ((force, -1),))
+            slope, moment = slope * friction.roller_radius, ((_moment(pair.link), -1),)
+            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "itself", moment)
             return
         rate = pair_rate(part, name, pair, placement)
         if rate is None:

@@ -193,12 +193,12 @@ class Motion:
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
-        found = self._link(link)
+        found = self._look_up("link", link, self.placement.links)
         return self._scalar(self._with_gaps(product(self.crank_speed, found.ratio), link))
 
     def angular_acceleration(self, link):
         """Angular acceleration of a link, (..., N), rad/s2."""
-        found = self._link(link)
+        found = self._look_up("link", link, self.placement.links)
         rate = angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating)
         return self._scalar(self._with_gaps(rate, link))
 
@@ -284,9 +284,6 @@ class Motion:
         """Crank speed squared and crank acceleration (or None), the factors of the kinematic coefficients."""
         return self.crank_speed * self.crank_speed, present(self.crank_acceleration)
 
-    def _link(self, name):
-        return self._look_up("link", name, self.placement.links)
-
     def _travel(self, slider):
         return self._look_up("slider", self._slider(slider), self.placement.travels)
 
@@ -335,16 +332,14 @@ class Motion:
             x = x + 0.0 * y  # a constant component is NaN where the other one is
         if not hasattr(y, "shape"):
             y = y + 0.0 * x
-        return read_only(stack(self._full(x, y)))
+        return read_only(stack([self._full(x), self._full(y)]))
 
     def _scalar(self, part):
-        return read_only(self._full(number_or_zero(part))[0])
+        return read_only(self._full(number_or_zero(part)))
 
-    def _full(self, *parts):
-        """Parts broadcast to `shape`."""
-        shape = self.shape
-        return [part if getattr(part, "shape", None) == shape else self._spread(part) for part in parts]
-
-    def _spread(self, part):
+    def _full(self, part):
+        """A part broadcast to `shape`."""
+        if getattr(part, "shape", None) == self.shape:
+            return part
         xp = namespace(self.crank_angle)
         return xp.broadcast_to(part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part), self.shape)

@@ -35,10 +35,8 @@ class Cam:
     (0.286231, 0.013975)
     """
 
-    @property
-    def knots(self) -> tuple:
-        """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
-        return ()
+    knots: Any = ()
+    """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")

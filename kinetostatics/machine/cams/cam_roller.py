@@ -19,7 +19,7 @@ from ..crank import ray
 from ..group import FRAME, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
-from .roller import LineContact, Roller
+from .roller import LineContact, Roller, relative_radius
 
 CURVATURE_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 """Crank angles at which the sharpest curvature of a cam is sought, rad."""
@@ -178,7 +178,7 @@ class CamRoller(checks.Checked, Group):
         return {} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
-        return self.contacts[name].body.relative_radius(polar_curvature(*placement.details["cam"]), side)
+        return relative_radius(polar_curvature(*placement.details["cam"]), self.contacts[name].body.radius, side)
 
     def sliding(self, name, placement):
         return Slide(placement.ray, placement.details["cam"][1])

@@ -282,14 +282,11 @@ class FlatFollower(GuidedFollower):
     }
     forces = staticmethod(flat_forces)
     rollers = EMPTY
+    FLAT = True
 
     @property
     def pressed(self):
         return self.face
-
-    def with_cam(self, declaration):
-        whole = super().with_cam(declaration)
-        return whole._replace(led=tuple(led._replace(flat=True) for led in whole.led))
 
     def relative_radius(self, name, placement, side):
         """Radius of curvature of the cam; NaN without contact."""

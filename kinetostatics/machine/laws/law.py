@@ -52,10 +52,8 @@ class Law:
     2.021864
     """
 
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Crank angles at which the jerk may jump, rad."""
-        return ()
+    knots: Any = ()
+    """Crank angles at which the jerk may jump, rad."""
 
     def __call__(self, phi) -> Motion:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
