@@ -243,20 +243,9 @@ class Motion:
             return self._scalar(travel.position - free_position)
         return self._scalar(group.elongation(self.placement, free_position))
 
-    @property
-    def slider_position(self):
-        """Coordinate along its guide of the pin of the only slider, or of the one without a label, (..., N), m."""
-        return self.travel()
-
-    @property
-    def slider_velocity(self):
-        """Velocity of the slider along the guide, m/s, as for `slider_position`."""
-        return self.travel_velocity()
-
-    @property
-    def slider_acceleration(self):
-        """Acceleration of the slider along the guide, m/s2, as for `slider_position`."""
-        return self.travel_acceleration()
+    slider_position = property(travel)
+    slider_velocity = property(travel_velocity)
+    slider_acceleration = property(travel_acceleration)
 
     def measure(self, name):
         """A motion quantity that a group declares, such as "pressure_angle", (..., N)."""

@@ -161,13 +161,13 @@ class Follower(checks.Checked, Group):
     roller: Any
 
     hangs_on = ("O",)
-    FLAT = False
-    """Whether a flat face rests on the cam, not a roller."""
+    BODY = "roller"
+    """Field of the body that the cam presses on, "face" if it is flat."""
 
     @property
     def pressed(self):
         """Body that the cam presses on: its `Roller` or `Face`, or None."""
-        return self.roller
+        return getattr(self, self.BODY)
 
     @property
     def rollers(self):
@@ -195,7 +195,7 @@ class Follower(checks.Checked, Group):
         """A declaration with the contact on the cam."""
         (link,) = self.LINKS
         pressure = {} if self.pressed is None else {"contact_pressure": LineContact(self.pressed, "contact_force")}
-        led = CamDriven(link, self.pin, "crank", "contact_force", flat=self.FLAT)
+        led = CamDriven(link, self.pin, "crank", "contact_force", flat=self.BODY == "face")
         return declaration._replace(led=(led,), contacts=pressure)
 
     @cached_property

@@ -97,10 +97,6 @@ class GuidedFollower(Follower):
     def _enter(self, placement, follower, travel):
         self.enter(placement, travel, {self.pin: follower.joint}, {"follower": follower}, {"follower": travel})
 
-    def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m."""
-        return placement.travels[self.moved].position - free_position
-
     def resolve(self, placement, loads, along) -> Resolved:
         guide, (load,), (push,) = self.guide.line, self.of_links(loads), self.of_links(along)
         found = type(self).forces(placement.travels[self.moved], guide, load, push)
@@ -282,11 +278,7 @@ class FlatFollower(GuidedFollower):
     }
     forces = staticmethod(flat_forces)
     rollers = EMPTY
-    FLAT = True
-
-    @property
-    def pressed(self):
-        return self.face
+    BODY = "face"
 
     def relative_radius(self, name, placement, side):
         """Radius of curvature of the cam; NaN without contact."""
