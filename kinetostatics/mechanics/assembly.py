@@ -30,6 +30,7 @@ def check(solution):
         Margins of the groups, without those that have no values yet; empty if numbers are not in double precision.
     """
     placement, margins = solution.placement, []
+    in_double_precision = getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
     found = solution.mechanism.margins(placement, solution.shape)
     for group, margin in zip(solution.mechanism.groups, found, strict=True):
         try:
@@ -37,7 +38,7 @@ def check(solution):
         except (TypeError, ValueError):  # it has no value yet, as under ``jax.jit``
             continue
         margins.append(margin)
-        if not group.trusted and _in_double_precision(solution):
+        if not group.trusted and in_double_precision:
             require_positions(group, placement, margin)
         smallest = margin.min()
         if smallest >= 0.0:
@@ -53,12 +54,7 @@ def check(solution):
             gaps = group_gaps(solution.mechanism, group, where, np.ravel(placement.angle))
             place = f"at {int(gap.sum())} of {margin.size} crank angles{design}"
             raise _assembly_error(solution.mechanism, group, placement, place, gaps)
-    return margins if _in_double_precision(solution) else []
-
-
-def _in_double_precision(solution):
-    """Whether crank angles are in double precision, not objects of another one."""
-    return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
+    return margins if in_double_precision else []
 
 
 def unbounded_force_problem(solution, name, values):

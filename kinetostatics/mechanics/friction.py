@@ -259,7 +259,12 @@ class FrictionSolver:
                 return (force,) if half is None else (force, quotient(found.scalars[pair.couple], half))
 
             kind = "size" if half is None else "larger"
-            yield FrictionLaw(name, friction.mu * way, reaction, kind, ((_force(name, pair, slide), -1),))
+            if pair.against == FRAME:  # the force stays in the guide's axes
+                force = Channel(name, (), ((pair.link, 1.0),))
+            else:
+                back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
+                force = Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
+            yield FrictionLaw(name, friction.mu * way, reaction, kind, ((force, -1),))
 
     def _with_friction_forces(self, resolved, part, placement, acting, own):
         """The forces of a part, with friction added to reactions of guides and to demands on other links."""
@@ -281,14 +286,6 @@ class FrictionSolver:
 
 def _moment(link):
     return Channel(f"moment on {link}", ((link, Wrench(None, 1.0)),))
-
-
-def _force(name, pair, slide):
-    """Channel of a force along a sliding pair; along a guide it stays in the guide's axes."""
-    if pair.against == FRAME:
-        return Channel(name, (), ((pair.link, 1.0),))
-    back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
-    return Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
 
 
 def _with_friction(loads, along, acting, own):
@@ -335,8 +332,16 @@ class FrictionEquations:
             [(places[channel.name], way) for channel, way in law.effects if channel.name in places] for law in laws
         ]
         self._count = len(used)
-        self.residual = None
-        self.margin = self._margin() if used else None
+        self.margin = self.residual = None
+        if used:
+            matrix: list[list] = [[None] * self._count for _ in used]
+            for law, ways, effects in zip(laws, self._slopes, self._effects, strict=True):
+                kind = "size" if law.kind == "itself" else law.kind
+                sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in ways]
+                for place, _ in effects:
+                    matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
+            above, _, _ = _triangle(matrix, [None] * self._count)
+            self.margin = reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
 
     def solve(self, passes, angle):
         """Friction of each law after a number of passes, N or N m; NaN where the margin is not positive."""
@@ -401,16 +406,6 @@ class FrictionEquations:
             rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, self._count)), None)
             found[i] = product(minus(right[i], rest), inverse[i])
         return [number_or_zero(one) for one in found]
-
-    def _margin(self):
-        matrix: list[list] = [[None] * self._count for _ in range(self._count)]
-        for law, slopes, effects in zip(self._laws, self._slopes, self._effects, strict=True):
-            kind = "size" if law.kind == "itself" else law.kind
-            sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in slopes]
-            for place, _ in effects:
-                matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
-        above, _, _ = _triangle(matrix, [None] * len(matrix))
-        return reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
 
 
 def _weighted(weights, parts):

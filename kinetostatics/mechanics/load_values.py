@@ -92,17 +92,14 @@ def without_forces(motion, kind=ForceFreeMotion):
 
 def evaluate_load(item, motion):
     """The load with values at the crank angles of a motion in place of its table or function."""
-    return item if item.is_given else replace_unchecked(item, **{item.VALUE: load_value(item, motion)})
-
-
-def load_value(item, motion):
-    """Checked values of a load's table or function, (..., N) or a number."""
-    return _checked(item, item.value_now(without_forces(motion)), motion)
+    return item if item.is_given else replace_unchecked(item, **{item.VALUE: user_value(item, motion)})
 
 
 def user_value(item, motion):
-    """Values that code of the user's returns for a load: its force or moment, or its push."""
-    return load_value(item, motion) if getattr(item, "VALUE", "") else slider_push(item, motion)
+    """Checked values of a load's table or function, a force or moment, or of its push, (..., N) or a number."""
+    if not getattr(item, "VALUE", ""):
+        return slider_push(item, motion)
+    return _checked(item, item.value_now(without_forces(motion)), motion)
 
 
 def slider_push(item, motion):

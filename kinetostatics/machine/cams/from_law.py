@@ -315,9 +315,20 @@ def _cam_problems(cam):
         place = int(np.argmax(~np.isfinite(radius)))
         yield f"the law has no cam at {np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide"
     elif radius[worst] <= 0:
+        # the slider must be farthest where the crank is along the guide
+        farthest = SEARCH_ANGLES[int(np.argmax(position))]
+        if np.ptp(position) == 0.0:
+            remedy = "the law must have a stroke"
+        elif np.cos(farthest) > 0.0:
+            remedy = "move the law farther from O"
+        else:
+            remedy = (
+                f"the slider must be farthest near 0 deg from the guide, but is so at "
+                f"{np.degrees(farthest) % 360:.4g}: take law.shifted({-float(farthest)!r})"
+            )
         yield (
             f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
-            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
+            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {remedy}"
         )
     elif np.min(ahead) <= 0:
         place = int(np.argmin(ahead))
@@ -326,14 +337,3 @@ def _cam_problems(cam):
             f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn "
             "the guide"
         )
-
-
-def _remedy(position):
-    """Advice that leads the pitch curve around O; the slider must be farthest where the crank is along the guide."""
-    farthest = SEARCH_ANGLES[int(np.argmax(position))]
-    if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
-        return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"
-    return (
-        f"the slider must be farthest near 0 deg from the guide, but is so at {np.degrees(farthest) % 360:.4g}: take "
-        f"law.shifted({-float(farthest)!r})"
-    )
