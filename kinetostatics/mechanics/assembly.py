@@ -30,12 +30,15 @@ def check(solution):
         Margins of the groups, without those that have no values yet; empty if numbers are not in double precision.
     """
     placement, margins = solution.placement, []
+    in_double_precision = getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
     found = solution.mechanism.margins(placement, solution.shape)
-    for group, margin in zip(solution.mechanism.groups, map(_margin_values, found), strict=True):
-        if margin is None:
+    for group, margin in zip(solution.mechanism.groups, found, strict=True):
+        try:
+            margin = np.asarray(margin, dtype=float)
+        except (TypeError, ValueError):  # it has no value yet, as under ``jax.jit``
             continue
         margins.append(margin)
-        if not group.trusted and _in_double_precision(solution):
+        if not group.trusted and in_double_precision:
             require_positions(group, placement, margin)
         smallest = margin.min()
         if smallest >= 0.0:
@@ -43,23 +46,15 @@ def check(solution):
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
         if smallest < -SQUARE_TOLERANCE:
-            raise _error_at_samples(solution.mechanism, group, placement, margin)
-    return margins if _in_double_precision(solution) else []
-
-
-def _in_double_precision(solution):
-    """Whether crank angles are in double precision, not objects of another one."""
-    return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
-
-
-def _margin_values(margin):
-    """Margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
-    if isinstance(margin, np.ndarray) and margin.dtype == float:
-        return margin
-    try:
-        return np.asarray(margin, dtype=float)
-    except (TypeError, ValueError):
-        return None
+            gap, design = margin < 0, ""
+            where: tuple[int, ...] = ()
+            if margin.ndim > 1:
+                where = tuple(int(i) for i in np.argwhere(gap.any(axis=-1))[0])
+                design = f" (first in design {where[0] if len(where) == 1 else where})"
+            gaps = group_gaps(solution.mechanism, group, where, np.ravel(placement.angle))
+            place = f"at {int(gap.sum())} of {margin.size} crank angles{design}"
+            raise _assembly_error(solution.mechanism, group, placement, place, gaps)
+    return margins if in_double_precision else []
 
 
 def unbounded_force_problem(solution, name, values):
@@ -82,18 +77,6 @@ def unbounded_force_problem(solution, name, values):
         "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion "
         f"and balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
     )
-
-
-def _error_at_samples(mechanism, group, placement, margin):
-    open_ = margin < 0
-    count = int(open_.sum())
-    design = ""
-    where: tuple[int, ...] = ()
-    if margin.ndim > 1:
-        where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
-        design = f" (first in design {where[0] if len(where) == 1 else where})"
-    gaps = group_gaps(mechanism, group, where, np.ravel(placement.angle))
-    return _assembly_error(mechanism, group, placement, f"at {count} of {margin.size} crank angles{design}", gaps)
 
 
 def _assembly_error(mechanism, group, placement, where, gaps, *remedy):
@@ -145,31 +128,38 @@ def gap_intervals(mechanism):
     """Crank-angle intervals where some group does not close, rad, in order and without overlap."""
     found = []
     for group in mechanism.groups:
-        if _is_open(mechanism, group, _test_angles(mechanism, group)):
+        if _open_angles(mechanism, group) is not None:
             found += group_gaps(mechanism, group)
-    return _merge_intervals(found, TURN * mechanism.turns)
+    whole = TURN * mechanism.turns
+    united: list[tuple[float, float]] = []
+    for start, stop in sorted(found):
+        if united and start <= united[-1][1]:
+            united[-1] = united[-1][0], max(stop, united[-1][1])
+        else:
+            united.append((start, stop))
+    if len(united) > 1 and united[-1][1] >= united[0][0] + whole:
+        start, stop = united.pop()
+        united[0] = start, max(united[0][1] + whole, stop)
+    return tuple(sorted(united))
 
 
 def require_turn(mechanism):
     """Raise `AssemblyError` if the mechanism does not close all round the turn, between samples too."""
     for group in mechanism.groups:
-        angle = _test_angles(mechanism, group)
-        if _is_open(mechanism, group, angle):
+        angle = _open_angles(mechanism, group)
+        if angle is not None:
             placement, where = mechanism.place(angle), group_gaps(mechanism, group)
             raise _assembly_error(
                 mechanism, group, placement, "all round the turn", where, " so that the crank turns all round"
             )
 
 
-def _test_angles(mechanism, group):
-    """Crank angles half a degree apart, and minima of the margin between them, rad."""
+def _open_angles(mechanism, group):
+    """Crank angles half a degree apart, and minima of the margin between them, if a group is open at one; or None."""
+    margin = _margin(mechanism, group)
     with np.errstate(invalid="ignore"):
-        return np.concatenate([_grid(mechanism), _margin_minima(_margin(mechanism, group), mechanism, 0.0)])
-
-
-def _is_open(mechanism, group, angle):
-    with np.errstate(invalid="ignore"):
-        return (_margin(mechanism, group)(angle) < -SQUARE_TOLERANCE).any()
+        angle = np.concatenate([_grid(mechanism), _margin_minima(margin, mechanism, 0.0)])
+        return angle if (margin(angle) < -SQUARE_TOLERANCE).any() else None
 
 
 def _margin(mechanism, group, design=()):
@@ -201,18 +191,3 @@ def _margin_minima(margin, mechanism, below):
         found = find_minima(lambda angle, _: margin(angle), (place - step, place, place + step))
     lowest = np.where(margin(found) < margin(place) - SQUARE_TOLERANCE, found, place)
     return lowest[margin(lowest) < below]
-
-
-def _merge_intervals(intervals, whole):
-    """Intervals in order, with overlapping ones merged."""
-    united: list[tuple[float, float]] = []
-    for start, stop in sorted(intervals):
-        if united and start <= united[-1][1]:
-            united[-1] = united[-1][0], max(stop, united[-1][1])
-        else:
-            united.append((start, stop))
-    if len(united) > 1 and united[-1][1] >= united[0][0] + whole:
-        start, stop = united.pop()
-        united[0] = start - whole, max(united[0][1], stop - whole)
-        united = [(united[0][0] + whole, united[0][1] + whole), *united[1:]]
-    return tuple(sorted(united))

@@ -3,6 +3,21 @@
 `Dynamics` computes them by the kernels of the groups with any kind of numbers: floats, arrays, recorded numbers,
 enclosures. It imports neither engines nor solutions. The balancing torque follows from the crank's equilibrium, and
 again from the balance of powers: T = -sum of powers of all loads and inertia per unit of crank angle.
+
+Springs along a guide and the inertia of their slider are resolved together, since the two nearly balance. With s the
+coordinate of a slider, e its elongation from where a spring of rate c is free, and m its mass, they give
+
+    - w s'' - c e = - h (s'' + e) - (w - h) s'' - (c - h) e,    w = m omega^2
+
+for any h; several springs share w equally. A group that knows the departure s'' + e to full precision leaves no
+cancellation on the right where c is near w, if h is near both. Their harmonic mean does so, or for springs that push
+away too h = 2 w c / (w + |c|):
+
+    w - h = w (w - c + |c| - c) / (w + |c|),    c - h = c (|c| - w) / (w + |c|)
+
+These keep all digits of w - c, and no term exceeds three times inertia and spring force. The force of a stiffening
+spring, c = k + q e^2, counts each rounding of e three times. Where e, or its opposite, is a constant length l and a
+small part p, it is that of a spring of constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
 """
 
 import warnings
@@ -17,8 +32,9 @@ from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
-from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product
-from . import energy_contact, springs
+from ..numbers.parameter_tree import come_from_one_class
+from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product, scale_vector
+from . import energy_contact
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
 from .motion import Motion, coordinates
@@ -26,6 +42,13 @@ from .principal_points import principal_points
 
 MAX_POWER_ERROR = 1e-6
 """Largest difference of both balancing torques with a user's own groups, relative to the largest torque term."""
+MIN_RATE = 2.0**-120
+"""Rate, N/m, that guards a divisor where there is neither spring nor inertia."""
+
+
+def _reading(function):
+    """Property of a scene, (..., N), from a function of it that gives a number, or None for 0."""
+    return property(lambda self: self._scalar(function(self)), doc=function.__doc__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +75,17 @@ class Dynamics(Motion):
             loads, along = self.acting
             found = self.mechanism.resolve(self.placement, loads, along, self.friction_solver)
         if not self.mechanism.trusted:
-            self._warn_of_lost_power(found.scalars["balancing_torque"])
+            torque = self._scalar(found.scalars["balancing_torque"])
+            if isinstance(torque, np.ndarray) and torque.dtype == float:
+                lost = self.largest(torque - self.balancing_torque_by_power)
+                scale = np.maximum(self.largest_torque_term, self.largest(torque))
+                if np.any(lost > MAX_POWER_ERROR * scale):
+                    warnings.warn(
+                        f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of "
+                        f"powers differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group "
+                        "of your own places its links or resolves its forces wrongly; ks.check(group) says where",
+                        stacklevel=1,
+                    )
         if self.mechanism.has_unbounded_reactions:  # reactions in the crank's equilibrium grow without bound
             friction = {} if self.friction_solver is None else self.friction_solver.found
             found.scalars["balancing_torque"] = self._torque_with(friction)
@@ -60,8 +93,47 @@ class Dynamics(Motion):
 
     @property
     def acting(self):
-        """Loads by link, and forces along guides by slider, that the groups resolve."""
-        return springs.loads_on_groups(self)
+        """Loads by link, and forces along guides by slider, that the groups resolve.
+
+        For a slider with springs whose departure is known the latter include its inertia along the guide.
+        """
+        loads, pushes = self.link_loads, self.pushes
+        for slider in {item.on: None for item in self.loads if _is_spring(item)}:
+            found = self._total_push(slider)
+            if found is not None:
+                weight = scale_vector(self.mechanism.links[slider].body.mass, self.gravity)
+                applied = (wrench.force for name, wrench in self.wrenches if name == slider)
+                wrench = Wrench(reduce(add_vectors, applied, weight), self.link_loads[slider].moment)
+                loads, pushes = loads | {slider: wrench}, pushes | {slider: found}
+        return loads, pushes
+
+    def _total_push(self, slider):
+        """Force along the guide of a slider with its inertia, N; None if a departure or the mass is not known."""
+        mass, travel = self.mechanism.links[slider].body.mass, self.placement.travels[slider]
+        if mass is None:
+            return None
+        square, alpha = self.accelerating
+        items = [item for item in self.loads if getattr(item, "on", None) == slider and hasattr(item, "push")]
+        springs = [item for item in items if _is_spring(item)]
+        departures = [self.departure(item) for item in springs]
+        if any(part is None for part in departures):
+            return None
+        share = mass * square
+        if len(springs) > 1:
+            share = share / len(springs)
+        force = minus(None, product(product(mass, alpha), travel.first))
+        for item, departure in zip(springs, departures, strict=True):
+            has_parts = _is_spring(item, "parted_rate")
+            rate, rest = item.parted_rate(self) if has_parts else (item.spring_rate(self), None)
+            size = share + abs(rate) + MIN_RATE
+            w, c = share / size, rate / size
+            both = 2.0 * c * share  # h, then w - h and c - h
+            inertia, rate = w * ((share - rate) + (abs(rate) - rate)), c * (abs(rate) - share)
+            elongation = self.elongation(item.free_position, slider)
+            force = minus(force, both * departure + (inertia * travel.second + rate * elongation))
+            force = minus(force, product(rest, elongation))
+        others = (slider_push(item, self) for item in items if not _is_spring(item))
+        return reduce(plus, others, force)
 
     def departure(self, item):
         """Departure s'' + e of a slider from simple harmonic motion, e the elongation of a spring on it, m; or None."""
@@ -127,21 +199,6 @@ class Dynamics(Motion):
         """Change of the forces by one more pass over friction, relative to the largest of a group, (..., N)."""
         return self._scalar(reduce(larger, self._friction_list("residuals"), 0.0))
 
-    def _warn_of_lost_power(self, torque):
-        """Warn if the forces of a user's own group violate the balance of powers."""
-        torque = self._scalar(torque)
-        if not isinstance(torque, np.ndarray) or torque.dtype != float:
-            return
-        lost = self.largest(torque - self.balancing_torque_by_power)
-        scale = np.maximum(self.largest_torque_term, self.largest(torque))
-        if np.any(lost > MAX_POWER_ERROR * scale):
-            warnings.warn(
-                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers "
-                f"differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own "
-                "places its links or resolves its forces wrongly; ks.check(group) says where",
-                stacklevel=2,
-            )
-
     def reaction(self, joint):
         """Reaction at a joint, (2, ..., N), N."""
         return self.as_vector(self._look_up("reaction", joint, self.resolved.reactions))
@@ -169,11 +226,7 @@ class Dynamics(Motion):
     @property
     def balancing_torque_by_power(self):
         """Balancing torque from the balance of powers, independent of reactions, N m."""
-        return self._scalar(self._torque_by_power)
-
-    @property
-    def _torque_by_power(self):
-        return self._torque_with(self.friction_by_joint)
+        return self._scalar(self._torque_with(self.friction_by_joint))
 
     def _torque_with(self, friction):
         total = minus(reduce(plus, self.powers), _work_of(friction))
@@ -188,35 +241,16 @@ class Dynamics(Motion):
     def shaking_moment(self):
         """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
         moments = (
-            plus(moment(self._link(name).joint.position, wrench.force), wrench.moment)
+            plus(moment(self.placement.links[name].joint.position, wrench.force), wrench.moment)
             for name, wrench in self.inertia.items()
         )
         return self._scalar(reduce(plus, moments))
 
-    @property
-    def reduced_inertia(self):
-        """Equivalent inertia of all links at the crank, (..., N), kg m2."""
-        return self._scalar(energy_contact.reduced_inertia(self))
-
-    @property
-    def reduced_inertia_slope(self):
-        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-        return self._scalar(energy_contact.reduced_inertia_slope(self))
-
-    @property
-    def kinetic_energy(self):
-        """Kinetic energy of all links, (..., N), J."""
-        return self._scalar(energy_contact.kinetic_energy(self))
-
-    @property
-    def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J."""
-        return self._scalar(energy_contact.potential_energy(self))
-
-    @property
-    def load_torque(self):
-        """Torque on the crank that holds weight and loads, without inertia, (..., N), N m."""
-        return self._scalar(energy_contact.load_torque(self))
+    reduced_inertia = _reading(energy_contact.reduced_inertia)
+    reduced_inertia_slope = _reading(energy_contact.reduced_inertia_slope)
+    kinetic_energy = _reading(energy_contact.kinetic_energy)
+    potential_energy = _reading(energy_contact.potential_energy)
+    load_torque = _reading(energy_contact.load_torque)
 
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
@@ -312,6 +346,11 @@ class Dynamics(Motion):
         if not size.ndim:
             return size if closed else size * np.nan
         return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)
+
+
+def _is_spring(item, rate="spring_rate"):
+    """Whether a load's rate gives its whole push; a subclass that overrides `push` alone makes the rate wrong."""
+    return come_from_one_class(type(item), rate, "push", "spring_rate")
 
 
 def _work_of(friction):

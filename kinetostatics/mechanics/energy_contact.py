@@ -15,6 +15,7 @@ from functools import reduce
 import numpy as np
 
 from ..errors import QuantityError
+from ..machine.cams import roller
 from ..machine.group import FRAME
 from ..machine.links import arm, first_at, second_at, virtual_work
 from ..numbers import checks
@@ -88,55 +89,47 @@ def pressure(dynamics, name):
     group = next((group for group in dynamics.mechanism.groups if name in group.contacts), None)
     if group is None:
         known = [own for group in dynamics.mechanism.groups for own in group.contacts]
-        raise QuantityError(_unknown_contact(dynamics.mechanism, name, known))
+        title = dynamics.mechanism.name
+        raise QuantityError(
+            checks.choice(f"{title}: contact", name, tuple(known))
+            if known
+            else f"{title} has no contact pressure {name!r}: give its cam a roller, as CamRoller(cam, "
+            "roller=ks.Roller(radius, width, youngs_modulus, poissons_ratio))"
+        )
     touch = group.contacts[name]
     force = number_or_zero(dynamics.resolved.scalars[touch.force])
     with np.errstate(divide="ignore", invalid="ignore"):
-        return touch.body.pressure(force, group.relative_radius(name, dynamics.placement, sign(force)))
-
-
-def _unknown_contact(mechanism, name, known):
-    if known:
-        return checks.choice(f"{mechanism.name}: contact", name, tuple(known))
-    return (
-        f"{mechanism.name} has no contact pressure {name!r}: give its cam a roller, as CamRoller(cam, "
-        "roller=ks.Roller(radius, width, youngs_modulus, poissons_ratio))"
-    )
+        radius = group.relative_radius(name, dynamics.placement, sign(force))
+        return roller.pressure(force, touch.body.width, touch.body.modulus, radius)
 
 
 def refusals(solution):
     """Sentences on rollers that undercut the side of a cam that carries them."""
     if not solution.kind.answer(_has_contacts):
         return []
-    state = solution.dynamics
-    parts = [(group, name) for group in state.mechanism.groups for name in group.contacts]
-    return [
-        problem for group, name in parts for problem in _undercut_problems(state, group, name, group.contacts[name])
-    ]
+    dynamics, found = solution.dynamics, []
+    contacts = [(group, *each) for group in dynamics.mechanism.groups for each in group.contacts.items()]
+    for group, name, touch in contacts:
+        with np.errstate(all="ignore"):
+            both = [np.asarray(group.relative_radius(name, dynamics.placement, side)) for side in (-1.0, 1.0)]
+            if any(part.dtype != float for part in both) or not any(np.any(part <= 0.0) for part in both):
+                continue
+            room = np.where(dynamics.scalar(touch.force) > 0.0, both[1], both[0])
+            cut = room <= 0.0
+        if not cut.any():
+            continue
+        worst = np.unravel_index(np.argmin(np.where(cut, room, np.inf)), cut.shape)
+        radius = float(np.broadcast_to(touch.body.radius, cut.shape)[worst])
+        bend = radius / (1.0 - float(room[worst]) / radius)
+        angle = np.degrees(np.broadcast_to(dynamics.crank_angle, cut.shape))
+        text = (
+            f"the roller, radius {radius:.6g} m, undercuts the side of its cam that carries it at {cut.sum()} crank "
+            f"angles from {angle[cut].min():.6g} to {angle[cut].max():.6g} deg: at {angle[worst]:.6g} deg the pitch "
+            f"curve bends with a radius of {bend:.6g} m; the roller's must be less, or the cam larger"
+        )
+        found.append(checks.Problem(text, cut))
+    return found
 
 
 def _has_contacts(kind):
-    mechanism = kind.numbered.mechanism
-    return any(group.contacts for group in mechanism.groups)
-
-
-def _undercut_problems(dynamics, group, name, touch):
-    with np.errstate(all="ignore"):
-        both = [np.asarray(group.relative_radius(name, dynamics.placement, side)) for side in (-1.0, 1.0)]
-        if any(part.dtype != float for part in both) or not any(np.any(part <= 0.0) for part in both):
-            return
-        force = dynamics.scalar(touch.force)
-        room = np.where(force > 0.0, both[1], both[0])
-        cut = room <= 0.0
-    if not cut.any():
-        return
-    worst = np.unravel_index(np.argmin(np.where(cut, room, np.inf)), cut.shape)
-    radius = float(np.broadcast_to(touch.body.radius, cut.shape)[worst])
-    bend = radius / (1.0 - float(room[worst]) / radius)
-    angle = np.degrees(np.broadcast_to(dynamics.crank_angle, cut.shape))
-    yield checks.Problem(
-        f"the roller, radius {radius:.6g} m, undercuts the side of its cam that carries it at {cut.sum()} crank angles "
-        f"from {angle[cut].min():.6g} to {angle[cut].max():.6g} deg: at {angle[worst]:.6g} deg the pitch curve bends "
-        f"with a radius of {bend:.6g} m; the roller's must be less, or the cam larger",
-        cut,
-    )
+    return any(group.contacts for group in kind.numbered.mechanism.groups)

@@ -197,7 +197,14 @@ class FrictionSolver:
         columns = [part.resolve(placement, *_with_friction(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
         equations = FrictionEquations(laws, [channel.name for channel in inner], free, columns)
         amounts = self._amounts(equations, laws, placement)
-        self._store(equations, laws, amounts, rates)
+        for law, amount in zip(laws, amounts, strict=True):
+            if law.kind == "itself":  # the roller turns in the opposite sense on the other side of the cam
+                self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
+            else:
+                self.found[law.name] = PairFriction(amount, rates[law.name])
+        if equations.margin is not None:
+            self.margins.append(equations.margin)
+            self.residuals.append(equations.residual)
         acting = [
             (channel, amount if way > 0 else -amount)
             for law, amount in zip(laws, amounts, strict=True)
@@ -214,16 +221,28 @@ class FrictionSolver:
         return equations.solve(self.friction.passes, placement.angle)
 
     def _laws(self, part, name, placement, rates):
-        """Friction laws of a pair; its rate goes into `rates`."""
+        """Friction laws of a pair; its rate goes into `rates`.
+
+        The load of a roller's pin is the cam force and the tangential force that turns the roller; the couple acts on
+        the link that carries the pin.
+        """
         pair, friction = self.mechanism.pairs[name], self.acting[name]
         if isinstance(pair, Rolling):
-            yield from self._roller_laws(name, pair, friction, placement, rates)
+            first = vector_or_zero(placement.joints[pair.joint].first)
+            rates[name] = speed = length(first)
+            lever = friction.mu * friction.pin_radius / friction.roller_radius
+            slope = lever / sqrt(1.0 - lever * lever) * self.senses.get(name, self.direction)
+            tangent = (first[0] / speed, first[1] / speed)
+            force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
+            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "size", ((force, -1),))
+            slope, moment = slope * friction.roller_radius, ((_moment(pair.link), -1),)
+            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "itself", moment)
             return
         rate = pair_rate(part, name, pair, placement)
         if rate is None:
             return
         rates[name] = rate
-        way = self._sense(name, rate)
+        way = self.senses[name] if name in self.senses else self.direction * sign(rate)
         if isinstance(pair, Turning):
             effects = [(_moment(pair.link), -1)]
             if pair.against != FRAME:
@@ -240,42 +259,12 @@ class FrictionSolver:
                 return (force,) if half is None else (force, quotient(found.scalars[pair.couple], half))
 
             kind = "size" if half is None else "larger"
-            yield FrictionLaw(name, friction.mu * way, reaction, kind, ((_force(name, pair, slide), -1),))
-
-    def _sense(self, name, rate=None):
-        """Sign of the motion of a pair; of a roller that of the crank."""
-        if name in self.senses:
-            return self.senses[name]
-        return self.direction if rate is None else self.direction * sign(rate)
-
-    def _roller_laws(self, name, pair, friction, placement, rates):
-        """Friction laws of a roller's pin, whose load is the cam force and the tangential force that turns the roller.
-
-        The couple acts on the link that carries the pin.
-        """
-        first = vector_or_zero(placement.joints[pair.joint].first)
-        speed = length(first)
-        lever = friction.mu * friction.pin_radius / friction.roller_radius
-        slope = lever / sqrt(1.0 - lever * lever) * self._sense(name)
-        rates[name] = speed
-        tangent = (first[0] / speed, first[1] / speed)
-        force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
-
-        def reaction(found):
-            return (found.scalars[pair.force],)
-
-        yield FrictionLaw(name, slope, reaction, "size", ((force, -1),))
-        yield FrictionLaw(name, slope * friction.roller_radius, reaction, "itself", ((_moment(pair.link), -1),))
-
-    def _store(self, equations, laws, amounts, rates):
-        for law, amount in zip(laws, amounts, strict=True):
-            if law.kind == "itself":  # the roller turns in the opposite sense on the other side of the cam
-                self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
+            if pair.against == FRAME:  # the force stays in the guide's axes
+                force = Channel(name, (), ((pair.link, 1.0),))
             else:
-                self.found[law.name] = PairFriction(amount, rates[law.name])
-        if equations.margin is not None:
-            self.margins.append(equations.margin)
-            self.residuals.append(equations.residual)
+                back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
+                force = Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
+            yield FrictionLaw(name, friction.mu * way, reaction, kind, ((force, -1),))
 
     def _with_friction_forces(self, resolved, part, placement, acting, own):
         """The forces of a part, with friction added to reactions of guides and to demands on other links."""
@@ -297,14 +286,6 @@ class FrictionSolver:
 
 def _moment(link):
     return Channel(f"moment on {link}", ((link, Wrench(None, 1.0)),))
-
-
-def _force(name, pair, slide):
-    """Channel of a force along a sliding pair; along a guide it stays in the guide's axes."""
-    if pair.against == FRAME:
-        return Channel(name, (), ((pair.link, 1.0),))
-    back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
-    return Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
 
 
 def _with_friction(loads, along, acting, own):
@@ -351,8 +332,16 @@ class FrictionEquations:
             [(places[channel.name], way) for channel, way in law.effects if channel.name in places] for law in laws
         ]
         self._count = len(used)
-        self.residual = None
-        self.margin = self._margin() if used else None
+        self.margin = self.residual = None
+        if used:
+            matrix: list[list] = [[None] * self._count for _ in used]
+            for law, ways, effects in zip(laws, self._slopes, self._effects, strict=True):
+                kind = "size" if law.kind == "itself" else law.kind
+                sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in ways]
+                for place, _ in effects:
+                    matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
+            above, _, _ = _triangle(matrix, [None] * self._count)
+            self.margin = reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
 
     def solve(self, passes, angle):
         """Friction of each law after a number of passes, N or N m; NaN where the margin is not positive."""
@@ -363,9 +352,23 @@ class FrictionEquations:
         all_signs = all(law.kind != "length" for law in self._laws)  # signs need one pass less
         for step in range(passes - all_signs):
             unknowns = self._by_directions(reactions) if step else self._totals(amounts)
-            reactions = [self._reaction(place, unknowns) for place in range(len(self._laws))]
+            reactions = []
+            for free, slopes in zip(self._free, self._slopes, strict=True):
+                parts = list(free)
+                for slope, unknown in zip(slopes, unknowns, strict=True):
+                    parts = [plus(part, product(unknown, one)) for part, one in zip(parts, slope, strict=True)]
+                reactions.append(tuple(parts))
         amounts = self._amounts(reactions)
-        self.residual = self._change(unknowns, amounts, reactions)
+        changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
+        moved, sizes = [], []
+        for law, slopes, parts in zip(self._laws, self._slopes, reactions, strict=True):
+            shifts = [_weighted(changes, column) for column in zip(*slopes, strict=True)]
+            kind = "size" if law.kind == "itself" else law.kind
+            moved.append(size_of(kind, shifts))
+            sizes.append(size_of(kind, parts))
+        given = [[part for part in found if part is not None] for found in (moved, sizes)]
+        change, largest = (reduce(larger, found, 0.0) for found in given)
+        self.residual = change / (largest + MIN_FORCE)
         closed = stop_gradient(0.0 * clamped_sqrt(self.margin + 0.0 * angle, 1.0))
         return [amount + closed for amount in amounts]
 
@@ -382,15 +385,11 @@ class FrictionEquations:
                 found[place] = (plus if way > 0 else minus)(found[place], amount)
         return found
 
-    def _reaction(self, law, unknowns):
-        """Components of the reaction of a law from friction by channel."""
-        found = list(self._free[law])
-        for slope, unknown in zip(self._slopes[law], unknowns, strict=True):
-            found = [plus(part, product(unknown, one)) for part, one in zip(found, slope, strict=True)]
-        return tuple(found)
-
     def _by_directions(self, reactions):
-        """Friction by channel, from the linear equations with the directions of these reactions."""
+        """Friction by channel, from the linear equations with the directions of these reactions.
+
+        They are solved by elimination without pivoting, as the pivots are near 1.
+        """
         directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
         matrix: list[list] = [[None] * self._count for _ in range(self._count)]
         right: list[Any] = [None] * self._count
@@ -401,44 +400,16 @@ class FrictionEquations:
                 add = plus if way > 0 else minus
                 right[place] = add(right[place], constant)
                 matrix[place] = [add(one, other) for one, other in zip(matrix[place], row, strict=True)]
-        return _solution_of(matrix, right)
-
-    def _margin(self):
-        matrix: list[list] = [[None] * self._count for _ in range(self._count)]
-        for law, slopes, effects in zip(self._laws, self._slopes, self._effects, strict=True):
-            kind = "size" if law.kind == "itself" else law.kind
-            sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in slopes]
-            for place, _ in effects:
-                matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
-        above, _, _ = _triangle(matrix, [None] * len(matrix))
-        return reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
-
-    def _change(self, unknowns, amounts, reactions):
-        """Change of the reactions by one more pass over the largest of them."""
-        changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
-        moved, sizes = [], []
-        for law, slopes, parts in zip(self._laws, self._slopes, reactions, strict=True):
-            shifts = [_weighted(changes, column) for column in zip(*slopes, strict=True)]
-            kind = "size" if law.kind == "itself" else law.kind
-            moved.append(size_of(kind, shifts))
-            sizes.append(size_of(kind, parts))
-        given = [[part for part in found if part is not None] for found in (moved, sizes)]
-        change, largest = (reduce(larger, found, 0.0) for found in given)
-        return change / (largest + MIN_FORCE)
+        above, right, inverse = _triangle(matrix, right)
+        found: list[Any] = [None] * self._count
+        for i in reversed(range(self._count)):
+            rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, self._count)), None)
+            found[i] = product(minus(right[i], rest), inverse[i])
+        return [number_or_zero(one) for one in found]
 
 
 def _weighted(weights, parts):
     return reduce(plus, (product(weight, part) for weight, part in zip(weights, parts, strict=True)))
-
-
-def _solution_of(matrix, right):
-    """Solution x of (I - matrix) x = right by elimination; without pivoting, as the pivots are near 1."""
-    above, right, inverse = _triangle(matrix, right)
-    count, found = len(right), [None] * len(right)
-    for i in reversed(range(count)):
-        rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, count)), None)
-        found[i] = product(minus(right[i], rest), inverse[i])
-    return [number_or_zero(one) for one in found]
 
 
 def _triangle(matrix, right):

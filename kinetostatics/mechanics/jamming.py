@@ -31,21 +31,17 @@ def solve_friction(item, evaluate=None):
         more passes than most scenes need.
     """
     if evaluate is None:
-        return _with_passes(item, max(item.friction.passes, PASSES_BY_SOLVER[1]))
+        return with_passes(item, max(item.friction.passes, PASSES_BY_SOLVER[1]))
     for passes in (item.friction.passes, *(more for more in PASSES_BY_SOLVER if more > item.friction.passes)):
-        item = _with_passes(item, passes)
+        item = with_passes(item, passes)
         margin, residual = evaluate(item)
         if not _is_plain(margin) or np.all(converged(margin, residual) | np.logical_not(margin > 0)):
             break
     return item
 
 
-def with_one_more_pass(item):
-    """The item with one more pass over its friction, which doubles the digits."""
-    return _with_passes(item, item.friction.passes + 1) if item.friction else item
-
-
-def _with_passes(item, passes):
+def with_passes(item, passes):
+    """The item with a number of passes over its friction; one more doubles the digits."""
     if passes == item.friction.passes:
         return item
     return replace_unchecked(item, friction=replace_unchecked(item.friction, passes=passes))

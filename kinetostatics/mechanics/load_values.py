@@ -92,17 +92,14 @@ def without_forces(motion, kind=ForceFreeMotion):
 
 def evaluate_load(item, motion):
     """The load with values at the crank angles of a motion in place of its table or function."""
-    return item if item.is_given else replace_unchecked(item, **{item.VALUE: load_value(item, motion)})
-
-
-def load_value(item, motion):
-    """Checked values of a load's table or function, (..., N) or a number."""
-    return _checked(item, item.value_now(without_forces(motion)), motion)
+    return item if item.is_given else replace_unchecked(item, **{item.VALUE: user_value(item, motion)})
 
 
 def user_value(item, motion):
-    """Values that code of the user's returns for a load: its force or moment, or its push."""
-    return load_value(item, motion) if getattr(item, "VALUE", "") else slider_push(item, motion)
+    """Checked values of a load's table or function, a force or moment, or of its push, (..., N) or a number."""
+    if not getattr(item, "VALUE", ""):
+        return slider_push(item, motion)
+    return _checked(item, item.value_now(without_forces(motion)), motion)
 
 
 def slider_push(item, motion):
@@ -140,31 +137,23 @@ def _checked(item, found, motion):
         return found
     if array.dtype.kind not in "fiu":
         raise ParameterError(f"{owner} {wanted}, got {str(found)[:60]}")
-    if not _fits(array.shape, motion.shape):
+    try:
+        fits = np.broadcast_shapes(array.shape, motion.shape) == motion.shape
+    except ValueError:
+        fits = False
+    if not fits:
         raise ParameterError(f"{owner} {wanted}, got shape {array.shape}")
     if not np.isfinite(array).all():
-        _require_finite(f"{owner} must return finite {what}s", array, motion)
+        wrong = np.broadcast_to(~np.isfinite(array) & motion.closed, motion.shape)
+        if wrong.any():
+            angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
+            places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3]))
+            raise ParameterError(
+                f"{owner} must return finite {what}s, got {np.broadcast_to(array, motion.shape)[wrong][0]} at "
+                f"{angle.size} crank angles, the first {places} deg",
+                wrong.any(axis=-1) if wrong.ndim > 1 else None,
+            )
     return array if array.dtype.kind == "f" else array.astype(float)
-
-
-def _fits(shape, wanted):
-    try:
-        return np.broadcast_shapes(shape, wanted) == wanted
-    except ValueError:
-        return False
-
-
-def _require_finite(owner, push, motion):
-    """Raise `ParameterError` if a force is not finite where the mechanism closes."""
-    wrong = np.broadcast_to(~np.isfinite(push) & motion.closed, motion.shape)
-    if wrong.any():
-        angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
-        places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3]))
-        raise ParameterError(
-            f"{owner}, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
-            f"crank angles, the first {places} deg",
-            wrong.any(axis=-1) if wrong.ndim > 1 else None,
-        )
 
 
 PURITY_ANGLES = 2
@@ -179,29 +168,17 @@ def require_pure(motion):
     that needs its values.
     """
     for item in motion.loads:
-        function = _function_of(item)
-        if function is None or _is_known_pure(function):
+        if has_no_user_code(item):
             continue
-        _require_same_twice(item, function, motion)
+        function: Any = item.value_now if isinstance(item, Load) else item.push
+        tested = getattr(function, "__func__", function)
         with suppress(TypeError):  # from an object that takes no weak references, or has no hash
-            _pure_functions.add(getattr(function, "__func__", function))
-
-
-def _is_known_pure(function):
-    """Whether a function, or the function of a method, was tested before."""
-    try:
-        return getattr(function, "__func__", function) in _pure_functions
-    except TypeError:
-        return False
-
-
-def _function_of(item):
-    """User's code that returns the force of a load, or None."""
-    if has_no_user_code(item):
-        return None
-    if not isinstance(item, Load):
-        return item.push
-    return None if type(item.value_now) is Table else item.value_now
+            if tested in _pure_functions:
+                continue
+        if type(function) is not Table:
+            _require_same_twice(item, function, motion)
+            with suppress(TypeError):
+                _pure_functions.add(tested)
 
 
 def _require_same_twice(item, function, motion):

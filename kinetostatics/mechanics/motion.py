@@ -32,7 +32,17 @@ from .quantities import of_mechanism
 
 def required_groups(mechanism):
     """Groups that a quantity needs assembled, by its name; all groups unless it belongs to one."""
-    groups, inner = mechanism.groups, _inner_groups(mechanism.groups)
+    groups = mechanism.groups
+    inner: list[set[int]] = []  # places of each group and of the groups that carry it
+    joints: dict[str, set[int]] = {}
+    links: dict[str, set[int]] = {}
+    for place, group in enumerate(groups):
+        under = [joints.get(name, set()) for name in group.hangs_on]
+        under += [links.get(point.link, set()) for point in group.joints.values()]
+        own = {place}.union(*under)
+        joints |= dict.fromkeys(group.joints, own)
+        links |= dict.fromkeys(group.links, own)
+        inner.append(own)
     found: defaultdict[str, tuple] = defaultdict(lambda: groups)
     for place, group in enumerate(groups):
         outer = set().union(*(own for own in inner if place in own))
@@ -44,21 +54,6 @@ def required_groups(mechanism):
             (inner[place], (*group.motions, *rates, *travels)),
         ):
             found.update(dict.fromkeys(names, tuple(groups[one] for one in needed)))
-    return found
-
-
-def _inner_groups(groups):
-    """Places of each group and of the inner groups that carry it, a list of sets."""
-    found: list[set[int]] = []
-    joints: dict[str, set[int]] = {}
-    links: dict[str, set[int]] = {}
-    for place, group in enumerate(groups):
-        under = [joints.get(name, set()) for name in group.hangs_on]
-        under += [links.get(point.link, set()) for point in group.joints.values()]
-        own = {place}.union(*under)
-        joints |= dict.fromkeys(group.joints, own)
-        links |= dict.fromkeys(group.links, own)
-        found.append(own)
     return found
 
 
@@ -198,12 +193,12 @@ class Motion:
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
-        found = self._link(link)
+        found = self._look_up("link", link, self.placement.links)
         return self._scalar(self._with_gaps(product(self.crank_speed, found.ratio), link))
 
     def angular_acceleration(self, link):
         """Angular acceleration of a link, (..., N), rad/s2."""
-        found = self._link(link)
+        found = self._look_up("link", link, self.placement.links)
         rate = angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating)
         return self._scalar(self._with_gaps(rate, link))
 
@@ -232,7 +227,15 @@ class Motion:
 
     def elongation(self, free_position, slider=None):
         """Coordinate of a slider's pin along its guide less `free_position` (m), without cancellation, (..., N), m."""
-        checks.require("elongation", self._number_problem("free_position", free_position))
+        words = checks.not_a_number(free_position)
+        if words is None and isinstance(free_position, list | tuple):
+            words = "several; give an array"
+        if words is None and isinstance(free_position, np.ndarray):
+            words = f"of {free_position.dtype}" if free_position.dtype.kind not in "iufO" else None
+            words = words or checks.broadcast_problem(free_position=free_position.shape, **{"crank angles": self.shape})
+        if words:
+            text = f"free_position must be a number, m, got {checks.shown(free_position)}, {words}"
+            checks.require("elongation", text)
         slider = self._slider(slider)
         travel = self._travel(slider)
         group = next(group for group in self.mechanism.groups if slider in group.links)
@@ -240,30 +243,9 @@ class Motion:
             return self._scalar(travel.position - free_position)
         return self._scalar(group.elongation(self.placement, free_position))
 
-    def _number_problem(self, name, value):
-        """Problem of a value that must be a number, m, or one for each crank angle; or None."""
-        words = checks.not_a_number(value)
-        if words is None and isinstance(value, list | tuple):
-            words = "several; give an array"
-        if words is None and isinstance(value, np.ndarray):
-            words = f"of {value.dtype}" if value.dtype.kind not in "iufO" else None
-            words = words or checks.broadcast_problem(**{name: value.shape, "crank angles": self.shape})
-        return words and f"{name} must be a number, m, got {checks.shown(value)}, {words}"
-
-    @property
-    def slider_position(self):
-        """Coordinate along its guide of the pin of the only slider, or of the one without a label, (..., N), m."""
-        return self.travel()
-
-    @property
-    def slider_velocity(self):
-        """Velocity of the slider along the guide, m/s, as for `slider_position`."""
-        return self.travel_velocity()
-
-    @property
-    def slider_acceleration(self):
-        """Acceleration of the slider along the guide, m/s2, as for `slider_position`."""
-        return self.travel_acceleration()
+    slider_position = property(travel)
+    slider_velocity = property(travel_velocity)
+    slider_acceleration = property(travel_acceleration)
 
     def measure(self, name):
         """A motion quantity that a group declares, such as "pressure_angle", (..., N)."""
@@ -290,9 +272,6 @@ class Motion:
     def accelerating(self) -> tuple[Any, Any]:
         """Crank speed squared and crank acceleration (or None), the factors of the kinematic coefficients."""
         return self.crank_speed * self.crank_speed, present(self.crank_acceleration)
-
-    def _link(self, name):
-        return self._look_up("link", name, self.placement.links)
 
     def _travel(self, slider):
         return self._look_up("slider", self._slider(slider), self.placement.travels)
@@ -342,16 +321,14 @@ class Motion:
             x = x + 0.0 * y  # a constant component is NaN where the other one is
         if not hasattr(y, "shape"):
             y = y + 0.0 * x
-        return read_only(stack(self._full(x, y)))
+        return read_only(stack([self._full(x), self._full(y)]))
 
     def _scalar(self, part):
-        return read_only(self._full(number_or_zero(part))[0])
+        return read_only(self._full(number_or_zero(part)))
 
-    def _full(self, *parts):
-        """Parts broadcast to `shape`."""
-        shape = self.shape
-        return [part if getattr(part, "shape", None) == shape else self._spread(part) for part in parts]
-
-    def _spread(self, part):
+    def _full(self, part):
+        """A part broadcast to `shape`."""
+        if getattr(part, "shape", None) == self.shape:
+            return part
         xp = namespace(self.crank_angle)
         return xp.broadcast_to(part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part), self.shape)

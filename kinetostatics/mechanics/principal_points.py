@@ -125,17 +125,6 @@ class PrincipalPoints:
         return self.mass
 
 
-def _holder(mechanism, bars, joint):
-    """Link that keeps a joint at a constant distance, the joint's place on it, and its reference joint; or None."""
-    if joint in bars:
-        bar = bars[joint]
-        return bar.link, (bar.length, 0.0), bar.start
-    point = mechanism.joints[joint]
-    if point.link == FRAME or mechanism.references[point.link] == joint:
-        return None
-    return point.link, (point.along, point.across), mechanism.references[point.link]
-
-
 def principal_points(mechanism):
     """Principal points of any mechanism, from its link masses and joints.
 
@@ -171,8 +160,15 @@ def principal_points(mechanism):
     bars = {bar.end: bar for bar in reversed(mechanism.bars)}
     for name, link in links:
         joint = mechanism.references[name]
-        while (step := _holder(mechanism, bars, joint)) is not None:
-            on, place, joint = step
+        while True:
+            point = mechanism.joints.get(joint)
+            if joint in bars:
+                bar = bars[joint]
+                on, place, joint = bar.link, (bar.length, 0.0), bar.start
+            elif point.link != FRAME and mechanism.references[point.link] != joint:
+                on, place, joint = point.link, (point.along, point.across), mechanism.references[point.link]
+            else:
+                break
             static_moments[on] = tuple(
                 plus(moment, product(link.mass, present(part)))
                 for moment, part in zip(static_moments[on], place, strict=True)

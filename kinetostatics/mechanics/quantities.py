@@ -57,12 +57,8 @@ _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 
 def of_mechanism(mechanism) -> dict[str, Quantity]:
     """Every quantity of a mechanism, by name."""
-    if mechanism not in _known:
-        _known[mechanism] = _declare(mechanism)
-    return _known[mechanism]
-
-
-def _declare(mechanism):
+    if mechanism in _known:
+        return _known[mechanism]
     found: dict[str, Quantity] = {}
 
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
@@ -78,9 +74,12 @@ def _declare(mechanism):
     for name, unit in ENERGIES.items():
         add(name, unit, attrgetter(name), kind="energy")
     for slider in mechanism.guides:
-        add(f"{slider}_position", "m", methodcaller("travel", slider), kind="slider")
-        add(f"{slider}_velocity", "m/s", methodcaller("travel_velocity", slider), kind="slider")
-        add(f"{slider}_acceleration", "m/s2", methodcaller("travel_acceleration", slider), kind="slider")
+        for name, unit, read in (
+            ("position", "m", "travel"),
+            ("velocity", "m/s", "travel_velocity"),
+            ("acceleration", "m/s2", "travel_acceleration"),
+        ):
+            add(f"{slider}_{name}", unit, methodcaller(read, slider), kind="slider")
     for group in mechanism.groups:
         for name, output in group.motions.items():
             add(name, output.unit, methodcaller("measure", name), kind="motion")
@@ -90,14 +89,9 @@ def _declare(mechanism):
         if output.vector:
             add(name, output.unit, methodcaller("reaction", name), True, "reaction", f"reaction {name}")
     for link in mechanism.links:
-        add(f"{link}_rate", "rad/s", methodcaller("rate", link), kind="rate", owner=link)
-        add(
-            f"{link}_angular_acceleration",
-            "rad/s2",
-            methodcaller("angular_acceleration", link),
-            kind="rate",
-            owner=link,
-        )
+        for ending, unit in RATES.items():
+            add(link + ending, unit, methodcaller(ending[1:], link), kind="rate", owner=link)
+    _known[mechanism] = found
     return found
 
 

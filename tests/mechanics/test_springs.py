@@ -6,7 +6,6 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines.engines import NUMPY
 from kinetostatics.engines.program import program_of
-from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.parameter_tree import replace_unchecked
 from kinetostatics.studies.methods.high_precision.enclosures import on_arb
@@ -95,7 +94,7 @@ def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration
 @every("name", [name for name in MACHINES if name not in APART])
 def test_inertia_and_a_balancing_spring_are_one_force(name):
     run = loaded(MACHINES[name], "balancing").dynamics
-    loads, pushes = springs.loads_on_groups(run)
+    loads, pushes = run.acting
     assert loads["slider"].force is not run.link_loads["slider"].force
     assert pushes["slider"] is not run.pushes["slider"]
     assert {part: loads[part] for part in loads if part != "slider"} == {
@@ -106,18 +105,13 @@ def test_inertia_and_a_balancing_spring_are_one_force(name):
 @every("name", APART)
 def test_where_no_departure_is_known_they_stay_apart(name):
     run = loaded(MACHINES[name], "balancing").dynamics
-    assert all(
-        taken is given for taken, given in zip(springs.loads_on_groups(run), (run.link_loads, run.pushes), strict=True)
-    )
+    assert all(taken is given for taken, given in zip(run.acting, (run.link_loads, run.pushes), strict=True))
 
 
 def test_without_springs_or_mass_nothing_is_done():
     for load in (ks.ProcessForce(3.0), ks.Spring(1e3, 2.0)):
         run = ks.solve(ks.crank_slider(0.3, 2.0), TURN, crank_speed=SPEED, loads=load).dynamics
-        assert all(
-            taken is given
-            for taken, given in zip(springs.loads_on_groups(run), (run.link_loads, run.pushes), strict=True)
-        )
+        assert all(taken is given for taken, given in zip(run.acting, (run.link_loads, run.pushes), strict=True))
 
 
 @every("name, guide", [(name, guide) for name in CAMS for guide in (LEVEL, INCLINED)])
@@ -205,7 +199,7 @@ def test_a_slow_machine_at_a_limit_keeps_its_spring(speed):
     close = plain(length=0.3 * (1.0 + 1e-13))
     run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics
     assert np.min(np.abs(run.placement.travels["slider"].second)) > 1e5
-    assert np.allclose(springs.loads_on_groups(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
+    assert np.allclose(run.acting[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")

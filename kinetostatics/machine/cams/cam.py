@@ -35,10 +35,8 @@ class Cam:
     (0.286231, 0.013975)
     """
 
-    @property
-    def knots(self) -> tuple:
-        """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
-        return ()
+    knots: Any = ()
+    """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
@@ -117,9 +115,16 @@ class Cam:
         >>> round(ks.cams.CosineLaw(0.3, 2.0).base_radius(np.radians(30.0)), 4)
         0.02
         """
-        from .profile import base_radius
+        from .profile import POSITIVE, highest, lowest
 
-        return base_radius(self, pressure_angle)
+        rule = {**POSITIVE, "high": np.pi / 2}
+        largest = checks.single_numbers("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
+
+        def lacking(angle):
+            r, slope, _ = self.radius(angle)
+            return np.abs(slope) / np.tan(largest) - r
+
+        return lowest(lambda angle: self.radius(angle)[0]).value + highest(lacking).value
 
     def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
         """Write the cam for the workshop; the suffix of the path selects a 1:1 drawing (.svg), a table (.csv) or .dxf.

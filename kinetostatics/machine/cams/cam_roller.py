@@ -7,7 +7,7 @@ acts across the ray. Equilibrium of the block gives both forces. The crank bears
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ..crank import ray
 from ..group import FRAME, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
-from .roller import LineContact, Roller
+from .roller import LineContact, Roller, relative_radius
 
 CURVATURE_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 """Crank angles at which the sharpest curvature of a cam is sought, rad."""
@@ -29,6 +29,8 @@ OUTPUTS = {
     "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
     "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
 }
+JOINTS = {"A": Point("block")}
+CURVES = {"A": "pitch curve of the cam"}
 PAIRS = {
     "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
     "cam": Rolling("block", "A", "cam_force"),
@@ -135,13 +137,16 @@ class CamRoller(checks.Checked, Group):
         roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
     )
 
-    @property
-    def links(self):
-        return {"block": self.block}
-
-    @property
-    def references(self):
-        return {"block": "A"}
+    LINKS: ClassVar = {"block": "joint"}
+    joint = "A"
+    hangs_on = ("O",)
+    joints = JOINTS
+    slots = (Slot("crank", "A"),)
+    led = (CamDriven("block", "A", FRAME, "cam_force"),)
+    curves = CURVES
+    outputs = OUTPUTS
+    motions = MOTIONS
+    pairs = PAIRS
 
     @property
     def lengths(self):
@@ -165,47 +170,15 @@ class CamRoller(checks.Checked, Group):
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
-    def hangs_on(self):
-        return ("O",)
-
-    @property
-    def joints(self):
-        return {"A": Point("block")}
-
-    @property
-    def slots(self):
-        return (Slot("crank", "A"),)
-
-    @property
-    def led(self):
-        return (CamDriven("block", "A", FRAME, "cam_force"),)
-
-    @property
-    def curves(self):
-        return {"A": "pitch curve of the cam"}
-
-    @property
     def rollers(self):
         return {"A": None if self.roller is None else self.roller.radius}
-
-    @property
-    def outputs(self):
-        return OUTPUTS
-
-    @property
-    def motions(self):
-        return MOTIONS
-
-    @property
-    def pairs(self):
-        return PAIRS
 
     @property
     def contacts(self):
         return {} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
-        return self.contacts[name].body.relative_radius(polar_curvature(*placement.details["cam"]), side)
+        return relative_radius(polar_curvature(*placement.details["cam"]), self.contacts[name].body.radius, side)
 
     def sliding(self, name, placement):
         return Slide(placement.ray, placement.details["cam"][1])

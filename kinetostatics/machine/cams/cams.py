@@ -75,15 +75,13 @@ class Circle(Cam):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        object.__setattr__(self, "is_close", self._is_near_circle())
-
-    def _is_near_circle(self):
-        """Whether O lies close to the circle, in any design."""
         (x, y), radius = self.centre, self.pitch_radius
         if type(x) is type(y) is type(radius) is float:
-            return radius - math.hypot(x, y) < CLOSE_SHARE * radius
-        smallest = self.smallest_radius
-        return checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
+            is_close = radius - math.hypot(x, y) < CLOSE_SHARE * radius
+        else:
+            smallest = self.smallest_radius
+            is_close = checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
+        object.__setattr__(self, "is_close", is_close)  # O lies close to the circle, in any design
 
     def _outside_problems(self):
         """Problem of designs with O outside the circle, or on it."""

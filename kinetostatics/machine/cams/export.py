@@ -44,11 +44,8 @@ class SvgDrawing:
     def text(self):
         """Text of the SVG file."""
         size = self.size
-        self._curves()
-        self._axes()
-        self._roller()
-        self._sense()
-        self._dimensions()
+        self._draw_cam()
+        self._draw_dimensions()
         notes = [*self.sheet.notes, "scale 1:1, print without scaling; the bar is 100 mm"]
         top = self.low[1] - 10 * size
         for number, note in enumerate(notes):
@@ -75,10 +72,8 @@ class SvgDrawing:
             ]
         )
 
-    # Parts of the drawing
-
-    def _curves(self):
-        """The curves, with the material of a disk inside its working curve, of a ring outside."""
+    def _draw_cam(self):
+        """The curves, with the material of a disk inside its working curve, of a ring outside; axes, roller, sense."""
         if self.sheet.profile.side == "ring":
             reach = 1.05 * np.max(np.hypot(*self.curves["surface"]))
             self.items.append(f'<circle class="cam" cx="0" cy="0" r="{reach:.6g}"/>')
@@ -87,31 +82,24 @@ class SvgDrawing:
                 kind = "hole" if name == "surface" and self.sheet.profile.side == "ring" else CURVE_CLASSES[name]
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
-    def _axes(self):
         size, (left, below), (right, above) = self.size, self.low, self.high
         self._line((left - 2 * size, 0.0), (right + 2 * size, 0.0), "axis")
         self._line((0.0, below - 2 * size), (0.0, above + 2 * size), "axis")
         self._words((0.5 * size, -1.5 * size), "O")
-
-    def _roller(self):
-        """The roller at the zero mark, and the mark."""
         x, y = self.curves["pitch"][:, 0]
         self.items.append(f'<circle class="thin" cx="{x:.6g}" cy="{-y:.6g}" r="{self.roller:.6g}"/>')
         along = np.array([x, y]) / np.hypot(x, y)
         outer = np.hypot(x, y) + self.roller
-        self._line(outer * along, (outer + 5 * self.size) * along)
-        self._words(outer * along + [0.2 * self.size, -1.3 * self.size], "0° zero mark")
-
-    def _sense(self):
-        """An arc with an arrow in the sense in which the roller goes around."""
+        self._line(outer * along, (outer + 5 * size) * along)
+        self._words(outer * along + [0.2 * size, -1.3 * size], "0° zero mark")
         sign, reach = (-1.0 if self.sheet.clockwise else 1.0), 0.45 * float(self.radius.min())
         turn = np.radians(sign * np.linspace(20.0, 100.0, 41))
         arc = reach * np.stack([np.cos(turn), np.sin(turn)])
         self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
         self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
-        self._words(arc[:, 20] + [self.size, 0.0], f"roller goes {self.sheet.sense}")
+        self._words(arc[:, 20] + [size, 0.0], f"roller goes {self.sheet.sense}")
 
-    def _dimensions(self):
+    def _draw_dimensions(self):
         size, surface, sheet = self.size, self.curves["surface"], self.sheet
         (left, below), (right, above) = surface.min(axis=1), surface.max(axis=1)
         base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
@@ -122,23 +110,16 @@ class SvgDrawing:
             self._line((0.0, y), (side + size, y), "thin")
         self._measure((side, below), (side, above), sheet.length_text((above - below) / MM_PER_M))
         for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
-            self._ray(place, name)
+            end = self.curves["pitch"][:, place]
+            self._line((0.0, 0.0), end, "thin")
+            self._tip(end, end)
+            degrees = np.degrees(sheet.profile.crank_angle[place])
+            text = f"{name} R {sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
+            share, lower = (0.3, 0.6) if name == "largest" else (0.45, 2.2)
+            self._words(share * end + [0.0, lower * size], text)
         x, y = self.curves["pitch"][:, 0]
-        self._words(
-            (x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
-        )
-
-    def _ray(self, place, name):
-        """The largest or smallest radius of the pitch curve, as a line from O."""
-        end = self.curves["pitch"][:, place]
-        self._line((0.0, 0.0), end, "thin")
-        self._tip(end, end)
-        degrees = np.degrees(self.sheet.profile.crank_angle[place])
-        text = f"{name} R {self.sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
-        share = 0.3 if name == "largest" else 0.45
-        self._words(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size], text)
-
-    # Strokes
+        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
+        self._words((x + 0.75 * self.roller, y + 0.8 * self.roller), text)
 
     def _measure(self, start, stop, text):
         """A dimension line with two tips and its text."""
@@ -194,11 +175,6 @@ class Sheet:
             found["cutter"] = self.profile.cutter_path(self.cutter_radius)
         return found
 
-    @cached_property
-    def curves(self):
-        """Points of each curve by name, (2, N), in the unit of the file."""
-        return {name: self.in_unit(points) for name, points in self.paths.items()}
-
     def in_unit(self, length):
         """A length, m, in the unit of the file."""
         return length / UNITS[self.units]
@@ -240,29 +216,23 @@ class Sheet:
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
     """Write a cam to a file; ``cam.export`` documents the parameters."""
     radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
+    problem = checks.count("points", points)
     found = checks.single_numbers(
         "cam export",
-        _points_problem(points),
+        problem or (None if 8 <= points <= MAX_POINTS else f"points must be from 8 to {MAX_POINTS}, got {points}"),
         checks.choice("units", units, tuple(UNITS)),
         checks.choice("side", side, tuple(SIDE_SIGNS)),
         checks.truth("clockwise", clockwise),
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
         **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )
-    problem = write_problem(path, endings=tuple(WRITERS))
-    if problem or Path(path).suffix.lower() not in WRITERS:
+    problem, ending = write_problem(path, endings=tuple(WRITERS)), Path(path).suffix.lower()
+    if problem or ending not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
     working = profile(cam, found["roller_radius"], int(points), side)
     sheet = Sheet(working, found.get("cutter_radius"), units, clockwise)
     with write_atomically(path) as temporary:
-        WRITERS[Path(path).suffix.lower()](sheet, temporary)
-
-
-def _points_problem(points):
-    wrong = checks.count("points", points)
-    if wrong or 8 <= points <= MAX_POINTS:
-        return wrong
-    return f"points must be from 8 to {MAX_POINTS}, got {points}"
+        WRITERS[ending](sheet, temporary)
 
 
 def _to_csv(sheet, path):
@@ -270,8 +240,9 @@ def _to_csv(sheet, path):
     unit = sheet.units
     columns = {"angle [deg]": np.degrees(sheet.profile.crank_angle), f"radius [{unit}]": sheet.in_unit(sheet.radius)}
     names = {"pitch": "roller", "surface": "surface", "cutter": "cutter"}
-    for name, points in sheet.curves.items():
-        columns |= {f"{names[name]}_{axis} [{unit}]": part for axis, part in zip("xy", points, strict=True)}
+    for name, points in sheet.paths.items():
+        parts = zip("xy", sheet.in_unit(points), strict=True)
+        columns |= {f"{names[name]}_{axis} [{unit}]": part for axis, part in parts}
     columns["pressure_angle [deg]"] = np.degrees(sheet.profile.pressure_angle)
     columns[f"curvature_radius [{unit}]"] = sheet.in_unit(sheet.profile.curvature_radius)
     rows = zip(*(part.tolist() for part in columns.values()), strict=True)
@@ -294,7 +265,8 @@ def _to_dxf(sheet, path):
         ) from None
     drawing = ezdxf.new("R2010", units=DXF_UNITS[sheet.units])
     space = drawing.modelspace()
-    for name, points in sheet.curves.items():
+    curves = {name: sheet.in_unit(points) for name, points in sheet.paths.items()}
+    for name, points in curves.items():
         layer, colour = LAYERS[name]
         drawing.layers.add(layer, color=colour)
         space.add_lwpolyline(points.T.tolist(), close=True, dxfattribs={"layer": layer})
@@ -311,12 +283,9 @@ def _to_dxf(sheet, path):
     ahead = (arc[-1] - arc[-2]) / np.hypot(*(arc[-1] - arc[-2])) * size
     beside = np.array([-ahead[1], ahead[0]]) / 3
     space.add_lwpolyline(arc.tolist(), dxfattribs=notes)
-    space.add_lwpolyline(
-        [arc[-1] - ahead + beside, arc[-1], arc[-1] - ahead - beside],
-        dxfattribs=notes,
-    )
+    space.add_lwpolyline([arc[-1] - ahead + beside, arc[-1], arc[-1] - ahead - beside], dxfattribs=notes)
     space.add_text("0", height=size, dxfattribs=notes).set_placement((1.22 * x, 1.22 * y))
-    low = float(min(points.min() for points in sheet.curves.values()))
+    low = float(min(points.min() for points in curves.values()))
     for number, note in enumerate(sheet.notes):
         space.add_text(note, height=0.6 * size, dxfattribs=notes).set_placement((low, low - (3 + number) * size))
     drawing.saveas(path)

@@ -23,7 +23,7 @@ import numpy as np
 from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.lazy import cached_property
-from ..laws.law import TURN, breakpoints_of, knots_of, law_problem
+from ..laws.law import TURN, breakpoints_of, law_problem
 from .cam import Cam
 
 SEARCH_ANGLES = np.linspace(-np.pi, np.pi, 2881)
@@ -129,10 +129,7 @@ class LawCam(Cam):
         s, c = np.sin(phi), np.cos(phi)
         e = self.guide_offset
         along = x * c + e * s, (v + e) * c - x * s, (a - x) * c - (2.0 * v + e) * s
-        return tuple((one - other).reshape(shape) for one, other in zip(along, self._reach(phi), strict=True))
-
-    def _reach(self, phi):
-        """Signed reach w and two derivatives: from d, and near a singular angle from q."""
+        # the signed reach w and two derivatives: from d, and near a singular angle from q
         d, first, second, _ = ray_distance(self.law, self.guide_offset, phi)
         one, other = self.far, self.near
         square = (one.length - d) * (other.length + d)
@@ -148,14 +145,26 @@ class LawCam(Cam):
                 around = self._near_singular(turning, side, h[here], d[here], first[here], second[here])
                 for part, value in zip(found, around, strict=True):
                     part[here] = value
-        return found
+        return tuple((part - reach).reshape(shape) for part, reach in zip(along, found, strict=True))
 
     def _near_singular(self, turning, side, h, d, first, second):
         """Reach w and two derivatives at distances h from a singular angle; `side` is the sign of d there.
 
-        w = -side h sqrt(q p), p = L + side d.
+        w = -side h sqrt(q p), p = L + side d, with q, q' and h q'' from moments of d'' and d''' over the distance.
         """
-        q, slope, bend = self._quotient(turning, side, h)
+        edges, sums = self._moments[turning]
+        ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
+        start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)
+        whole, bent, sloped, curved = sums[:, start] + self._moments_between(turning, edges[start], h)
+        middle = np.abs(h) < MIN_DISTANCE
+        span = np.where(middle, 1.0, h)
+        q = -side * (span * whole - bent) / span**2
+        slope = -side * (span * sloped - curved) / span**3
+        bend = -side * (3.0 * curved - 2.0 * span * sloped) / span**3  # h q''
+        if np.any(middle):
+            at = ray_distance(self.law, self.guide_offset, np.array(turning.angle))
+            q, slope = np.where(middle, -side * at.second / 2, q), np.where(middle, -side * at.third / 6, slope)
+            bend = np.where(middle, 0.0, bend)
         p = self.coupler_length + side * d
         root = np.sqrt(q * p)
         product = slope * p + q * side * first  # (q p)'
@@ -165,29 +174,12 @@ class LawCam(Cam):
         root_bend = twice / (2.0 * root) - h * root_slope * root_slope / root
         return -side * h * root, -side * (root + h * root_slope), -side * (2.0 * root_slope + root_bend)
 
-    def _quotient(self, turning, side, h):
-        """q, q' and h q'' at distances h, from moments of d'' and d''' over the distance."""
-        edges, sums = self._moments[turning]
-        ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
-        start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)
-        whole, bent, sloped, curved = sums[:, start] + self._moments_between(turning, edges[start], h)
-        middle = np.abs(h) < MIN_DISTANCE
-        span = np.where(middle, 1.0, h)
-        q = -side * (span * whole - bent) / span**2
-        slope = -side * (span * sloped - curved) / span**3
-        bend = -side * (3.0 * curved - 2.0 * span * sloped) / span**3
-        if np.any(middle):
-            at = ray_distance(self.law, self.guide_offset, np.array(turning.angle))
-            q, slope = np.where(middle, -side * at.second / 2, q), np.where(middle, -side * at.third / 6, slope)
-            bend = np.where(middle, 0.0, bend)
-        return q, slope, bend
-
     @cached_property
     def _moments(self):
         """By singular position: edges of panels around it, among them knots of the law, and moments up to each edge."""
         found = {}
         for turning in (self.far, self.near):
-            knots = np.mod(np.array(knots_of(self.law)) - turning.angle + np.pi, TURN) - np.pi
+            knots = np.mod(np.array(getattr(self.law, "knots", ())) - turning.angle + np.pi, TURN) - np.pi
             edges = np.unique(np.concatenate([PANEL_EDGES, knots[np.abs(knots) < SINGULAR_REACH]]))
             each = self._moments_between(turning, edges[:-1], edges[1:])
             sums = np.concatenate([np.zeros((4, 1)), np.cumsum(each, axis=-1)], axis=-1)
@@ -269,48 +261,39 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
 
 def singular_positions(law, offset):
     """Singular positions with the largest and with the smallest d."""
-    grid = np.unique(np.concatenate([SEARCH_ANGLES, np.mod(np.array(knots_of(law)) + np.pi, TURN) - np.pi]))
-    values = ray_distance(law, offset, grid).value
-    return _singular_position(law, offset, grid, values, 1.0), _singular_position(law, offset, grid, values, -1.0)
-
-
-def _singular_position(law, offset, grid, values, side):
     from scipy.optimize import brentq
 
     def slope(angle):
         return float(ray_distance(law, offset, np.array(angle)).first)
 
-    place = int(np.argmax(side * values))
-    angle, low, high = grid[place], grid[place - 1], grid[(place + 1) % grid.size]
-    low, high = (low - TURN if low > angle else low), (high + TURN if high < angle else high)
-    if slope(low) * slope(high) < 0:
-        angle = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
-    return SingularPosition(float(angle), float(side * ray_distance(law, offset, np.array(angle)).value))
-
-
-def phase_of(law, offset, most=np.pi / 4):
-    """Smallest delay of the law, rad, for which one coupler length serves; None if it exceeds `most`."""
-    from scipy.optimize import brentq
-
-    def excess(phase):
-        far, near = singular_positions(lambda phi: law(phi - phase), offset)
-        return far.length - near.length
-
-    start = excess(0.0)
-    for reach in most * 2.0 ** np.arange(-8, 1):
-        for phase in (reach, -reach):
-            if start * excess(phase) <= 0:
-                return brentq(excess, *sorted((0.0, phase)), xtol=1e-16, rtol=1e-15)
-    return None
+    grid = np.unique(np.concatenate([SEARCH_ANGLES, np.mod(np.array(getattr(law, "knots", ())) + np.pi, TURN) - np.pi]))
+    values, found = ray_distance(law, offset, grid).value, []
+    for side in (1.0, -1.0):
+        place = int(np.argmax(side * values))
+        angle, low, high = grid[place], grid[place - 1], grid[(place + 1) % grid.size]
+        low, high = (low - TURN if low > angle else low), (high + TURN if high < angle else high)
+        if slope(low) * slope(high) < 0:
+            angle = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
+        length = float(side * ray_distance(law, offset, np.array(angle)).value)
+        found.append(SingularPosition(float(angle), length))
+    return found
 
 
 def _two_lengths_message(law, offset, far, near):
-    phase = phase_of(law, offset)
-    remedy = "no phase of the law repairs it"
-    if phase is not None:
-        remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: law.shifted({phase!r})"
-        if not hasattr(law, "shifted"):
-            remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: lambda phi: law(phi - {phase!r})"
+    """Sentence on the two lengths, with the smallest phase up to an eighth of a turn that makes them one."""
+    from scipy.optimize import brentq
+
+    def excess(phase):
+        one, other = singular_positions(lambda phi: law(phi - phase), offset)
+        return one.length - other.length
+
+    start, remedy = excess(0.0), "no phase of the law repairs it"
+    for phase in np.outer(np.pi / 4 * 2.0 ** np.arange(-8, 1), (1.0, -1.0)).flat:
+        if start * excess(phase) <= 0:
+            phase = brentq(excess, *sorted((0.0, phase)), xtol=1e-16, rtol=1e-15)
+            shifted = f"law.shifted({phase!r})" if hasattr(law, "shifted") else f"lambda phi: law(phi - {phase!r})"
+            remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: {shifted}"
+            break
     return (
         f"from_law: no smooth cam makes this law: the coupler would have to be {far.length:.10g} m long at "
         f"{_degrees(far)} deg from the guide, and {near.length:.10g} m at {_degrees(near)} deg, where it is across the "
@@ -332,9 +315,20 @@ def _cam_problems(cam):
         place = int(np.argmax(~np.isfinite(radius)))
         yield f"the law has no cam at {np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide"
     elif radius[worst] <= 0:
+        # the slider must be farthest where the crank is along the guide
+        farthest = SEARCH_ANGLES[int(np.argmax(position))]
+        if np.ptp(position) == 0.0:
+            remedy = "the law must have a stroke"
+        elif np.cos(farthest) > 0.0:
+            remedy = "move the law farther from O"
+        else:
+            remedy = (
+                f"the slider must be farthest near 0 deg from the guide, but is so at "
+                f"{np.degrees(farthest) % 360:.4g}: take law.shifted({-float(farthest)!r})"
+            )
         yield (
             f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
-            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
+            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {remedy}"
         )
     elif np.min(ahead) <= 0:
         place = int(np.argmin(ahead))
@@ -343,14 +337,3 @@ def _cam_problems(cam):
             f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn "
             "the guide"
         )
-
-
-def _remedy(position):
-    """Advice that leads the pitch curve around O; the slider must be farthest where the crank is along the guide."""
-    farthest = SEARCH_ANGLES[int(np.argmax(position))]
-    if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
-        return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"
-    return (
-        f"the slider must be farthest near 0 deg from the guide, but is so at {np.degrees(farthest) % 360:.4g}: take "
-        f"law.shifted({-float(farthest)!r})"
-    )

@@ -216,7 +216,14 @@ def profile(cam, roller_radius, angle, side="disk"):
     radius = checks.single_numbers(
         "cam profile", checks.choice("side", side, tuple(SIDE_SIGNS)), roller_radius=(roller_radius, "m", POSITIVE)
     )["roller_radius"]
-    angle = _angles(angle)
+    if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
+        checks.require("cam profile", checks.count("angle", angle, size=checks.BYTES_PER_ANGLE))
+        angle = np.linspace(0.0, TURN, int(angle), endpoint=False)
+    else:
+        found = checks.check_values("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
+        angle = np.atleast_1d(np.asarray(found["angle"], dtype=float))
+        for text in plausibility.angle_hints(angle):
+            warnings.warn(HintWarning("cam profile", text), stacklevel=3)
     checks.require("cam profile", *_undercut_problems(cam, radius, side))
     pitch, normal, made = _curves(cam, radius, angle, side)
     r, slope, _ = cam.radius(angle)
@@ -235,17 +242,6 @@ def _curves(cam, radius, angle, side):
     return pitch, normal, pitch + SIDE_SIGNS[side] * radius * normal
 
 
-def _angles(angle):
-    if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
-        checks.require("cam profile", checks.count("angle", angle, size=checks.BYTES_PER_ANGLE))
-        return np.linspace(0.0, TURN, int(angle), endpoint=False)
-    found = checks.check_values("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
-    angles = np.atleast_1d(np.asarray(found["angle"], dtype=float))
-    for text in plausibility.angle_hints(angles):
-        warnings.warn(HintWarning("cam profile", text), stacklevel=4)
-    return angles
-
-
 def _undercut_problems(cam, radius, side):
     """Problems of a roller on this side of the pitch curve, as sentences with the crank angles."""
     least = lowest(lambda angle: cam.radius(angle)[0])
@@ -257,10 +253,12 @@ def _undercut_problems(cam, radius, side):
         return
     sharpest = highest(lambda angle: _roller_side_curvature(cam, angle, side))
     if sharpest.value * radius >= 1.0:
-        where = (
-            " and ".join(_intervals(PROFILE_ANGLES, _roller_side_curvature(cam, PROFILE_ANGLES, side) * radius >= 1.0))
-            or "there alone"
-        )
+        where, sharp = "all over the turn", _roller_side_curvature(cam, PROFILE_ANGLES, side) * radius >= 1.0
+        if not sharp.all():
+            order = np.roll(np.arange(sharp.size), -int(np.argmin(sharp)))
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], sharp[order].astype(int), [0]])))
+            spans = np.degrees(PROFILE_ANGLES[order[[edges[::2], edges[1::2] - 1]]]).T
+            where = " and ".join(f"from {start:.4g} to {stop:.4g} deg" for start, stop in spans) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
             f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
@@ -289,27 +287,3 @@ def _nearest(centres, made):
     distance, _ = cKDTree(centres.T).query(made.T)
     worst = int(np.argmin(distance))
     return Peak(float(distance[worst]), float(PROFILE_ANGLES[worst]))
-
-
-def _intervals(grid, marked):
-    """Texts of the intervals of marked samples around the turn, in degrees."""
-    if marked.all():
-        return ["all over the turn"]
-    order = np.roll(np.arange(grid.size), -int(np.argmin(marked)))
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked[order].astype(int), [0]])))
-    return [
-        f"from {np.degrees(grid[order[start]]):.4g} to {np.degrees(grid[order[stop - 1]]):.4g} deg"
-        for start, stop in zip(edges[::2], edges[1::2], strict=True)
-    ]
-
-
-def base_radius(cam, pressure_angle):
-    """Radius of the smallest base circle, m; ``cam.base_radius`` documents it."""
-    rule = {**POSITIVE, "high": np.pi / 2}
-    largest = checks.single_numbers("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
-
-    def lacking(angle):
-        r, slope, _ = cam.radius(angle)
-        return np.abs(slope) / np.tan(largest) - r
-
-    return lowest(lambda angle: cam.radius(angle)[0]).value + highest(lacking).value

@@ -90,10 +90,6 @@ class PressedBody(checks.Checked):
         of_cam = self.cam_youngs_modulus, self.cam_poissons_ratio
         return contact_modulus(own, [mine if other is None else other for mine, other in zip(own, of_cam, strict=True)])
 
-    def pressure(self, force, radius):
-        """Largest Hertz pressure, Pa, from the force, N, and the relative radius, m."""
-        return pressure(force, self.width, self.modulus, radius)
-
 
 @dataclass(frozen=True, eq=False)
 class Roller(PressedBody):
@@ -134,10 +130,6 @@ class Roller(PressedBody):
     cam_poissons_ratio: Any = None
 
     RULES = checks.Rules("roller", PressedBody._poisson_problems, radius=SIZE_RULE, width=SIZE_RULE, **MATERIAL_RULES)
-
-    def relative_radius(self, bend, side):
-        """Relative radius, m, from the curvature of the pitch curve, 1/m; `side` as in the function of that name."""
-        return relative_radius(bend, self.radius, side)
 
 
 @dataclass(frozen=True, eq=False)

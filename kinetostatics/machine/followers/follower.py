@@ -16,7 +16,7 @@ from ...numbers import checks
 from ...numbers.lazy import cached_property
 from ...numbers.planar import curvature, left, scale_vector, subtract_vectors
 from ..cams.cam import Cam
-from ..cams.roller import LineContact
+from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
 from ..group import Group, Output
 from ..laws.law import TURN, breakpoints_of, law_problem
@@ -103,11 +103,6 @@ class DiskCam(Cam):
         """Largest distance of the pitch curve from O, m."""
         return (float(np.max(np.abs(self.curve(GRID)[0]))),)
 
-    @cached_property
-    def smallest_radius(self):
-        """Smallest distance of the roller centre from O on a grid, m."""
-        return float(np.min(np.abs(self.curve(GRID)[0])))
-
 
 @dataclass(frozen=True, eq=False)
 class FollowerLaw:
@@ -158,16 +153,25 @@ RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_emp
 
 
 class Follower(checks.Checked, Group):
-    """Follower of one link, `moved`, by a law of the crank angle; `pressed` is its `Roller` or `Face`, or None."""
+    """Follower of one link, `moved`, by a law of the crank angle."""
 
     cam: Any
     pin: str
     label: str
-    pressed: Any
+    roller: Any
+
+    hangs_on = ("O",)
+    BODY = "roller"
+    """Field of the body that the cam presses on, "face" if it is flat."""
 
     @property
-    def hangs_on(self):
-        return ("O",)
+    def pressed(self):
+        """Body that the cam presses on: its `Roller` or `Face`, or None."""
+        return getattr(self, self.BODY)
+
+    @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
 
     @property
     def disk(self):
@@ -191,7 +195,8 @@ class Follower(checks.Checked, Group):
         """A declaration with the contact on the cam."""
         (link,) = self.LINKS
         pressure = {} if self.pressed is None else {"contact_pressure": LineContact(self.pressed, "contact_force")}
-        return declaration._replace(led=(CamDriven(link, self.pin, "crank", "contact_force"),), contacts=pressure)
+        led = CamDriven(link, self.pin, "crank", "contact_force", flat=self.BODY == "face")
+        return declaration._replace(led=(led,), contacts=pressure)
 
     @cached_property
     def outputs(self):
@@ -200,7 +205,7 @@ class Follower(checks.Checked, Group):
 
     def relative_radius(self, name, placement, side):
         """Radius of relative curvature of a roller: the cam is inside the pitch curve if it presses outward."""
-        return self.pressed.relative_radius(path_curvature(placement.joints[self.pin]), -side)
+        return relative_radius(path_curvature(placement.joints[self.pin]), self.roller.radius, -side)
 
 
 def path_curvature(joint):

@@ -186,15 +186,6 @@ class SwingingFollower(follower.Follower):
             )
         )
 
-    @property
-    def pressed(self):
-        """Body that the cam presses on: its `Roller`, or None."""
-        return self.roller
-
-    @property
-    def rollers(self):
-        return {self.pin: None if self.roller is None else self.roller.radius}
-
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
         placed = place(law[:3], self.pivot, self.arm_length, self.assembly).roller

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
 from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, Roller
-from ..group import FRAME, Declaration, Output, Point, Resolved
+from ..group import EMPTY, FRAME, Declaration, Output, Point, Resolved
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
 from .follower import RULES, Follower
@@ -96,10 +96,6 @@ class GuidedFollower(Follower):
 
     def _enter(self, placement, follower, travel):
         self.enter(placement, travel, {self.pin: follower.joint}, {"follower": follower}, {"follower": travel})
-
-    def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m."""
-        return placement.travels[self.moved].position - free_position
 
     def resolve(self, placement, loads, along) -> Resolved:
         guide, (load,), (push,) = self.guide.line, self.of_links(loads), self.of_links(along)
@@ -184,15 +180,6 @@ class RollerFollower(GuidedFollower):
         "cam_radius": Output("m", False, "of the pitch curve, from O to the roller centre"),
     }
     forces = staticmethod(roller_forces)
-
-    @property
-    def rollers(self):
-        return {self.pin: None if self.roller is None else self.roller.radius}
-
-    @property
-    def pressed(self):
-        """Body that the cam presses on: its `Roller`, or None."""
-        return self.roller
 
     def motion(self, name, placement):
         if name == self.called("cam_radius"):
@@ -290,15 +277,8 @@ class FlatFollower(GuidedFollower):
         "curvature_radius": Output("m", False, "of the cam at the contact, positive where convex"),
     }
     forces = staticmethod(flat_forces)
-
-    @property
-    def pressed(self):
-        """Body that the cam presses on: its `Face`, or None."""
-        return self.face
-
-    def with_cam(self, declaration):
-        whole = super().with_cam(declaration)
-        return whole._replace(led=tuple(led._replace(flat=True) for led in whole.led))
+    rollers = EMPTY
+    BODY = "face"
 
     def relative_radius(self, name, placement, side):
         """Radius of curvature of the cam; NaN without contact."""

@@ -71,12 +71,7 @@ class SineConstantCosine:
     def __call__(self, u):
         """Motion at places u from 0 to 1; the second half is the first, rotated about the middle."""
         late = u > 0.5
-        position, velocity, acceleration, jerk = self._first_half(np.where(late, 1.0 - u, u))
-        return Motion(
-            np.where(late, 1.0 - position, position), velocity, np.where(late, -acceleration, acceleration), jerk
-        )
-
-    def _first_half(self, u):
+        u = np.where(late, 1.0 - u, u)
         b, d, pi, top = self.sines, self.cosine, math.pi, self._acceleration
         start, speed = (1.0 - d) / 2, b / pi + (1.0 - b - d) / 2
         base = b * b * (0.125 - 1.0 / pi**2)
@@ -101,7 +96,10 @@ class SineConstantCosine:
         for inside, zone in zip(within, zones, strict=True):
             if np.any(inside):
                 found = np.where(inside, zone(), found)
-        return top * found
+        position, velocity, acceleration, jerk = top * found
+        return Motion(
+            np.where(late, 1.0 - position, position), velocity, np.where(late, -acceleration, acceleration), jerk
+        )
 
 
 @dataclass(frozen=True)
@@ -125,13 +123,13 @@ class Powers:
 
     @property
     def coefficients(self):
-        return Coefficients(*(self._peak(order) for order in (1, 2, 3)))
-
-    def _peak(self, order):
-        curve = self._polynomial.deriv(order)
-        roots = curve.deriv().roots()
-        inner = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
-        return float(np.max(np.abs(curve(np.concatenate([[0.0, 1.0], inner])))))
+        peaks = []
+        for order in (1, 2, 3):
+            curve = self._polynomial.deriv(order)
+            roots = curve.deriv().roots()
+            inner = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
+            peaks.append(float(np.max(np.abs(curve(np.concatenate([[0.0, 1.0], inner]))))))
+        return Coefficients(*peaks)
 
     def __call__(self, u):
         """Motion at places u from 0 to 1; the second half is expanded at its end, so its zeros there are exact."""

@@ -52,10 +52,8 @@ class Law:
     2.021864
     """
 
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Crank angles at which the jerk may jump, rad."""
-        return ()
+    knots: Any = ()
+    """Crank angles at which the jerk may jump, rad."""
 
     def __call__(self, phi) -> Motion:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
@@ -82,7 +80,7 @@ class ShiftedLaw(Law):
 
     @property
     def knots(self):
-        return tuple(knot + self.phase for knot in knots_of(self.law))
+        return tuple(knot + self.phase for knot in getattr(self.law, "knots", ()))
 
     @property
     def force_error(self):
@@ -92,14 +90,9 @@ class ShiftedLaw(Law):
         return self.law(angle_array(phi) - self.phase)
 
 
-def knots_of(law):
-    """Angles at which the jerk of a law may jump, rad; none if it declares none."""
-    return tuple(getattr(law, "knots", ()))
-
-
 def breakpoints_of(law):
     """Knots of a law at which its acceleration or jerk jumps, each a `Breakpoint`."""
-    angle = np.unique(np.mod(np.array(knots_of(law), dtype=float), TURN))
+    angle = np.unique(np.mod(np.array(getattr(law, "knots", ()), dtype=float), TURN))
     if not angle.size:
         return ()
     largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, TEST_STEPS))[2:]]

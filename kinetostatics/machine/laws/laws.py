@@ -74,13 +74,11 @@ class Segment:
         return Motion(position, *(scale * part for scale, part in zip(scales, found[1:], strict=True)))
 
 
-def _segment(owner, start, end, angle, rise):
-    given = {
-        "start": (start, "m", {}),
-        "end": (end, "m", {}),
-        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
-    }
-    return Segment(**checks.single_numbers(owner, **given), rise=rise)
+def _segment(owner, rise, angle, **positions):
+    given: dict[str, Any] = {name: (position, "m", {}) for name, position in positions.items()}
+    given["angle"] = (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9})
+    found = list(checks.single_numbers(owner, **given).values())
+    return Segment(found[0], found[-2], found[-1], rise)
 
 
 def harmonic(start, end, angle):
@@ -108,29 +106,13 @@ def harmonic(start, end, angle):
     >>> ks.laws.harmonic(0.0, 1.0, 1.0).coefficients.velocity
     1.5707963267948966
     """
-    return _segment("harmonic", start, end, angle, curves.HARMONIC)
+    return _segment("harmonic", curves.HARMONIC, angle, start=start, end=end)
 
 
 def cycloidal(start, end, angle):
-    """Segment: cycloidal motion, whose acceleration is a sine.
+    """Segment: cycloidal motion, whose acceleration is a sine; start, end, angle as for `harmonic`.
 
     For a stroke of 1 over an angle of 1 the peak velocity is 2, acceleration 2 pi, jerk 4 pi^2.
-
-    Parameters
-    ----------
-    start, end : float
-        Positions, m.
-    angle : float
-        Crank angle that it takes, rad.
-
-    Returns
-    -------
-    Segment
-
-    Raises
-    ------
-    ParameterError
-        A value is not a number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -138,27 +120,11 @@ def cycloidal(start, end, angle):
     >>> [round(part, 4) for part in ks.laws.cycloidal(0.0, 1.0, 1.0).coefficients]
     [2.0, 6.2832, 39.4784]
     """
-    return _segment("cycloidal", start, end, angle, curves.CYCLOIDAL)
+    return _segment("cycloidal", curves.CYCLOIDAL, angle, start=start, end=end)
 
 
 def modified_sine(start, end, angle):
-    """Segment: modified sine (Neklutin), of low peak velocity.
-
-    Parameters
-    ----------
-    start, end : float
-        Positions, m.
-    angle : float
-        Crank angle that it takes, rad.
-
-    Returns
-    -------
-    Segment
-
-    Raises
-    ------
-    ParameterError
-        A value is not a number, or the angle not between 0 and a turn.
+    """Segment: modified sine (Neklutin), of low peak velocity; start, end, angle as for `harmonic`.
 
     Examples
     --------
@@ -166,27 +132,11 @@ def modified_sine(start, end, angle):
     >>> [round(part, 4) for part in ks.laws.modified_sine(0.0, 1.0, 1.0).coefficients]
     [1.7596, 5.528, 69.4664]
     """
-    return _segment("modified_sine", start, end, angle, curves.MODIFIED_SINE)
+    return _segment("modified_sine", curves.MODIFIED_SINE, angle, start=start, end=end)
 
 
 def modified_trapezoid(start, end, angle):
-    """Segment: modified trapezoid (Neklutin), of low peak acceleration.
-
-    Parameters
-    ----------
-    start, end : float
-        Positions, m.
-    angle : float
-        Crank angle that it takes, rad.
-
-    Returns
-    -------
-    Segment
-
-    Raises
-    ------
-    ParameterError
-        A value is not a number, or the angle not between 0 and a turn.
+    """Segment: modified trapezoid (Neklutin), of low peak acceleration; start, end, angle as for `harmonic`.
 
     Examples
     --------
@@ -194,7 +144,7 @@ def modified_trapezoid(start, end, angle):
     >>> [round(part, 4) for part in ks.laws.modified_trapezoid(0.0, 1.0, 1.0).coefficients]
     [2.0, 4.8881, 61.426]
     """
-    return _segment("modified_trapezoid", start, end, angle, curves.MODIFIED_TRAPEZOID)
+    return _segment("modified_trapezoid", curves.MODIFIED_TRAPEZOID, angle, start=start, end=end)
 
 
 def polynomial(start, end, angle, powers="3-4-5"):
@@ -231,27 +181,11 @@ def polynomial(start, end, angle, powers="3-4-5"):
             f"polynomial: powers must be {names}, or two or more whole numbers from 2 to 15, rising, got "
             f"{checks.shown(powers)}"
         )
-    return _segment("polynomial", start, end, angle, curves.Powers(tuple(map(int, found))))
+    return _segment("polynomial", curves.Powers(tuple(map(int, found))), angle, start=start, end=end)
 
 
 def dwell(position, angle):
-    """Segment: rest at a position.
-
-    Parameters
-    ----------
-    position : float
-        m.
-    angle : float
-        Crank angle that it takes, rad.
-
-    Returns
-    -------
-    Segment
-
-    Raises
-    ------
-    ParameterError
-        A value is not a number, or the angle not between 0 and a turn.
+    """Segment: rest at a position, m, over an angle, rad; errors as for `harmonic`.
 
     Examples
     --------
@@ -259,12 +193,7 @@ def dwell(position, angle):
     >>> print(*ks.laws.dwell(0.1, 1.0)(0.5))
     0.1 0.0 0.0 0.0
     """
-    given = {
-        "position": (position, "m", {}),
-        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
-    }
-    found = checks.single_numbers("dwell", **given)
-    return Segment(found["position"], found["position"], found["angle"], curves.Rest())
+    return _segment("dwell", curves.Rest(), angle, position=position)
 
 
 __all__ = [
@@ -284,7 +213,12 @@ __all__ = [
 
 JUMP_TOLERANCE = 1e-9
 """Largest jump between segments that is rounding, relative to the largest value of its kind."""
-DERIVATIVE_UNITS = {"velocity": "m/rad", "acceleration": "m/rad2"}
+JUMPS = {
+    "position": ("m", "; let it start where the one before ends"),
+    "velocity": ("m/rad", ""),
+    "acceleration": ("m/rad2", '; take a cycloidal or modified curve there, or allow it by smooth="velocity"'),
+}
+"""Unit of each kind of value that may jump between segments, and what removes the jump."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -334,9 +268,6 @@ def cosine(amplitude, mean, phase=0.0):
         "phase": (phase, "rad", {}),
     }
     return Cosine(**checks.single_numbers("cosine law", **rules))
-
-
-# Segments in sequence
 
 
 @dataclass(frozen=True, eq=False)
@@ -404,7 +335,10 @@ def joined(*segments, smooth="acceleration"):
         if not isinstance(part, Segment)
     ]
     checks.require(
-        "joined", *wrong, checks.choice("smooth", smooth, tuple(DERIVATIVE_UNITS)), None if segments else "no segments"
+        "joined",
+        *wrong,
+        checks.choice("smooth", smooth, ("velocity", "acceleration")),
+        None if segments else "no segments",
     )
     total = sum(part.angle for part in segments)
     if abs(total - TURN) > TURN_TOLERANCE * TURN:
@@ -413,36 +347,24 @@ def joined(*segments, smooth="acceleration"):
             f"joined: segments must fill a turn of {TURN:.9g} rad, but take {total:.9g} ({np.degrees(total):.6g} deg); "
             f"{remedy}"
         )
-    checks.require("joined", *_jumps(segments, smooth))
-    return JoinedLaw(segments)
-
-
-def _jumps(segments, smooth):
-    """Sentences on values that jump between segments, the last and the first too."""
-    angle, kinds = 0.0, {"position": "m", **DERIVATIVE_UNITS}
     largest = [
         max(float(np.max(np.abs(part))) for part in parts)
         for parts in zip(*(segment.at(np.linspace(0.0, segment.angle, 65)) for segment in segments), strict=True)
     ]
+    kinds = list(JUMPS)[: 3 if smooth == "acceleration" else 2]
+    angle, jumps = 0.0, []
     for number, (one, other) in enumerate(pairwise((*segments, segments[0])), 1):
         angle += one.angle
         before, after = one.at(np.array(one.angle)), other.at(np.array(0.0))
-        for (kind, unit), here, there, size in zip(kinds.items(), before, after, largest, strict=False):
+        for kind, here, there, size in zip(kinds, before, after, largest, strict=False):
             if abs(there - here) > JUMP_TOLERANCE * size:
-                yield (
+                unit, remedy = JUMPS[kind]
+                jumps.append(
                     f"the {kind} jumps at {np.degrees(angle):.6g} deg, from {here:.9g} to {there:.9g} {unit}, behind "
-                    f"segment {number} of {len(segments)}" + _remedy(kind)
+                    f"segment {number} of {len(segments)}{remedy}"
                 )
-            if kind == smooth:
-                break
-
-
-def _remedy(kind):
-    if kind == "position":
-        return "; let it start where the one before ends"
-    if kind == "velocity":
-        return ""
-    return '; take a cycloidal or modified curve there, or allow it by smooth="velocity"'
+    checks.require("joined", *jumps)
+    return JoinedLaw(segments)
 
 
 # Tables

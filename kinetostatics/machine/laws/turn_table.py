@@ -7,6 +7,7 @@ the points and the coarseness of the table.
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ class TurnTable:
 
     angle: np.ndarray
     values: np.ndarray
-    smoothing: float | None = None
+    smoothing: Any = None
 
     @classmethod
     def of(cls, owner, angle, values, name, smoothing=None, positive=False):
@@ -74,26 +75,22 @@ class TurnTable:
         if smoothing is not None:
             smoothing = checks.single_numbers(owner, noise=(smoothing, "m", {"low": 0.0, "strict": True}))["noise"]
         made = cls(angle, values, smoothing)
-        made._check_noise(owner, name)
-        return made
-
-    def _check_noise(self, owner, name):
-        """Raise an error if no smooth curve comes within the noise; warn if it differs from the scatter."""
-        if self.smoothing is None:
-            return
-        if self._fit(self.values) is None:
+        if smoothing is None:
+            return made
+        if made._fit(values) is None:
             raise ParameterError(
-                f"{owner}: no smooth curve comes within a noise of {self.smoothing:.3g} m of the {name} values, which "
-                f"scatter by {self.noise:.3g} m; state the noise that they have, or none to pass through every point"
+                f"{owner}: no smooth curve comes within a noise of {smoothing:.3g} m of the {name} values, which "
+                f"scatter by {made.noise:.3g} m; state the noise that they have, or none to pass through every point"
             )
-        if not self.noise / MAX_NOISE_RATIO <= self.smoothing <= self.noise * MAX_NOISE_RATIO:
-            more = self.smoothing > self.noise
+        if not made.noise / MAX_NOISE_RATIO <= smoothing <= made.noise * MAX_NOISE_RATIO:
+            more = smoothing > made.noise
             warnings.warn(
-                f"{owner}: the noise stated, {self.smoothing:.3g} m, is {'more' if more else 'less'} than the "
-                f"{self.noise:.3g} m by which the {name} values scatter; "
+                f"{owner}: the noise stated, {smoothing:.3g} m, is {'more' if more else 'less'} than the "
+                f"{made.noise:.3g} m by which the {name} values scatter; "
                 + ("what is no noise is smoothed away too" if more else "noise is left in the curve"),
-                stacklevel=5,
+                stacklevel=4,
             )
+        return made
 
     @cached_property
     def splines(self):
@@ -101,15 +98,11 @@ class TurnTable:
         spline = _interpolate(self.angle, self.values) if self.smoothing is None else self._fit(self.values)
         return spline, *(spline.derivative(order) for order in (1, 2, 3))
 
-    @property
-    def _stated(self) -> float:
-        return 0.0 if self.smoothing is None else self.smoothing
-
     def _fit(self, values):
         """Smoothest spline within the stated noise of the values; None if there is none."""
         from scipy.interpolate import BSpline, splrep
 
-        goal = values.size * self._stated**2
+        goal = values.size * self.smoothing**2
         (t, c, k), _, status, _ = splrep(
             *_periodic(self.angle, values), k=SPLINE_DEGREE, s=goal, per=True, full_output=1, quiet=1
         )
@@ -119,10 +112,21 @@ class TurnTable:
     def noise(self):
         """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
 
-        From the distance of each value from the polynomial through its neighbours, with the number of neighbours that
-        gives the smallest.
+        From the root mean square distance of the values from polynomials through `reach` neighbours on both sides, with
+        the reach that gives the smallest; scaled to the standard deviation of independent noise in every value.
         """
-        return min(_roughness(self.angle, self.values, reach) for reach in range(2, 7) if 2 * reach < self.angle.size)
+        angle, size, found = self.angle, self.angle.size, []
+        for reach in range(2, min(7, (size + 1) // 2)):
+            steps = [step for step in range(-reach, reach + 1) if step]
+            places = {step: np.arange(size) + step for step in steps}
+            ahead = {step: angle[place % size] + 2 * np.pi * (place // size) - angle for step, place in places.items()}
+            rest, gain = self.values.copy(), np.ones(size)
+            for step in steps:
+                weight = math.prod(ahead[other] / (ahead[other] - ahead[step]) for other in steps if other != step)
+                rest -= weight * self.values[places[step] % size]
+                gain += weight * weight
+            found.append(float(np.sqrt(np.mean(rest * rest / gain))))
+        return min(found)
 
     @cached_property
     def second_derivative_error(self):
@@ -136,7 +140,12 @@ class TurnTable:
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
         second = self.splines[2](places)
         if self.smoothing is not None:
-            return self._smoothing_error(places, second)
+            random, smooth = np.random.default_rng(0), self.splines[0](self.angle)
+            scatter = self.noise if self.smoothing * MAX_NOISE_RATIO < self.noise else self.smoothing
+            tables = (smooth + random.normal(0.0, scatter, smooth.size) for _ in range(NOISE_TRIALS))
+            fitted = [spline for spline in map(self._fit, tables) if spline is not None]
+            errors = (float(np.max(np.abs(spline.derivative(2)(places) - second))) for spline in fitted)
+            return 1.5 * max(errors, default=math.inf)
         coarse = _interpolate(self.angle[::2], self.values[::2]).derivative(2)
         difference = float(np.max(np.abs(second - coarse(places))))
         caused = NOISE_IN_SECOND_DERIVATIVE * self.noise / np.diff(nodes).min() ** 2
@@ -162,37 +171,10 @@ class TurnTable:
                 stacklevel=4,
             )
 
-    def _smoothing_error(self, places, second):
-        random, smooth = np.random.default_rng(0), self.splines[0](self.angle)
-        scatter = self.noise if self._stated * MAX_NOISE_RATIO < self.noise else self._stated
-        errors = []
-        for _ in range(NOISE_TRIALS):
-            fitted = self._fit(smooth + random.normal(0.0, scatter, smooth.size))
-            if fitted is not None:
-                errors.append(float(np.max(np.abs(fitted.derivative(2)(places) - second))))
-        return 1.5 * max(errors, default=math.inf)
-
 
 def _periodic(angle, values):
     """Angles and values with the first point repeated a turn later."""
     return np.append(angle, angle[0] + 2 * np.pi), np.append(values, values[0])
-
-
-def _roughness(angle, radius, reach):
-    """Root mean square distance of the values from polynomials through `reach` neighbours on both sides.
-
-    It is scaled to the standard deviation of independent noise in every value.
-    """
-    size = angle.size
-    steps = [step for step in range(-reach, reach + 1) if step]
-    places = {step: np.arange(size) + step for step in steps}
-    ahead = {step: angle[place % size] + 2 * np.pi * (place // size) - angle for step, place in places.items()}
-    rest, gain = radius.copy(), np.ones(size)
-    for step in steps:
-        weight = math.prod(ahead[other] / (ahead[other] - ahead[step]) for other in steps if other != step)
-        rest -= weight * radius[places[step] % size]
-        gain += weight * weight
-    return float(np.sqrt(np.mean(rest * rest / gain)))
 
 
 def _interpolate(angle, values):

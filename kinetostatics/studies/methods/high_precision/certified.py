@@ -13,7 +13,7 @@ import numpy as np
 
 from ....errors import KinetostaticsError, NotGivenError
 from ....mechanics import energy_contact
-from ....mechanics.jamming import with_one_more_pass
+from ....mechanics.jamming import with_passes
 from ....mechanics.quantities import largest_term
 from ....numbers.parameter_tree import replace_unchecked
 from .enclosures import Enclosure, enclosure, magnitude, on_arb, place_text, require_library
@@ -55,7 +55,8 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     >>> found.agreement < 1e-30
     True
     """
-    found = enclosure(with_one_more_pass(solution), quantity, digits)
+    more = with_passes(solution, solution.friction.passes + 1) if solution.friction else solution
+    found = enclosure(more, quantity, digits)
     mp = require_library("mpmath").mp
     count = len(found.middle[0])
     indices = np.unique(np.arange(checks) * count // checks)
