@@ -8,7 +8,7 @@ import numpy as np
 
 from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
-from ..results.changes import sign_changes
+from ..results.kinks import sign_changes
 from ..results.turn import SAMPLES
 
 SAME = 1e-12

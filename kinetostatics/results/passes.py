@@ -14,7 +14,7 @@ from ..engines.scanning import COLUMNS, edition
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from . import peaks
 from .peaks import REACH
-from .reductions import MEAN, PEAK
+from .reductions import MEAN_TOLERANCE, PEAK_TOLERANCE
 from .turn import NEAR
 
 EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
@@ -198,12 +198,12 @@ def means(results, row, power, memory, numbers, rough):
     words = memory[3]
     for design in range(results.shape[0]):
         found, error = averaged(results, design, row, power, words)
-        doubtful = error > {MEAN!r} * abs(found)
+        doubtful = error > {MEAN_TOLERANCE!r} * abs(found)
         if doubtful:
             size = 0.0
             for i in range(results.shape[2]):
                 size = max(size, abs(results[design, row, i]))
-            doubtful = error > {MEAN / 10!r} * size
+            doubtful = error > {MEAN_TOLERANCE / 10!r} * size
         numbers[design], rough[design] = found, doubtful
 
 
@@ -218,15 +218,15 @@ def extremes(results, row, kind, turns, memory, numbers, rough):
         if kind == 1 or kind == 3:
             size = above if kind == 1 else below
             found = where[kind // 2, design] * (2.0 * pi / results.shape[2]) * turns
-            doubtful = off > {PEAK!r} * abs(size)
+            doubtful = off > {PEAK_TOLERANCE!r} * abs(size)
         else:
             found = above if kind == 0 else below if kind == 2 else max(above, -below) if kind == 4 else above - below
-            doubtful = off > {PEAK!r} * abs(found)
+            doubtful = off > {PEAK_TOLERANCE!r} * abs(found)
             if doubtful:
                 least, most = inf, -inf
                 for i in range(results.shape[2]):
                     least, most = min(least, results[design, row, i]), max(most, results[design, row, i])
-                doubtful = off > {PEAK / 100!r} * (most - least)
+                doubtful = off > {PEAK_TOLERANCE / 100!r} * (most - least)
         numbers[design], rough[design] = found, doubtful
 
 

@@ -16,7 +16,7 @@ from kinetostatics.results.means import (
     mean_absolute_torque_errors,
     means,
 )
-from kinetostatics.results.rounding import Known, without_rounding
+from kinetostatics.results.rounding import BoundedExtremes, without_rounding
 
 TURN = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=3.0).sampled
 WHOLE = 2 * np.pi
@@ -108,7 +108,7 @@ SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(
 
 
 def known(solution, *names):
-    return Known(solution, {name: ks.extremes(solution, name) for name in names})
+    return BoundedExtremes(solution, {name: ks.extremes(solution, name) for name in names})
 
 
 @pytest.mark.parametrize("speed", [10.0, 1e-6])
