@@ -6,7 +6,6 @@ weights and springs store energy and return all of it within the period.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -133,8 +132,14 @@ def energy_flow(run) -> EnergyFlow:
     def swing(energy):
         return pieces.largest(energy)[0] + pieces.largest(-energy)[0]
 
-    parts = [*_motor_parts(run)]
-    for name, item in _loads_by_title(run.scene.loads).items():
+    if run.has_air_gap:
+        parts = [Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)]
+        parts.append(Part(ROTOR, LOSS, run.rotor_loss_per_turn))
+    else:
+        parts = [Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)]
+    titles = [title_of(item) for item in run.scene.loads]
+    for place, (title, item) in enumerate(zip(titles, run.scene.loads, strict=True), 1):
+        name = f"{title} {titles[:place].count(title)}" if titles.count(title) > 1 else title
         parts.append(work(name, LOAD, solved(loads=(item,), friction=NO_FRICTION).load_torque))
     for joint in run.scene.friction.acting:
         parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))
@@ -146,22 +151,3 @@ def energy_flow(run) -> EnergyFlow:
 def zero_if_rounding(energy, flowing):
     """An energy, or 0 if it is rounding of the energy that flows."""
     return 0.0 if abs(energy) <= ENERGY_TOLERANCE * flowing else energy
-
-
-def _motor_parts(run):
-    if run.has_air_gap:
-        yield Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)
-        yield Part(ROTOR, LOSS, run.rotor_loss_per_turn)
-    else:
-        yield Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)
-
-
-def _loads_by_title(loads: tuple[Any, ...]):
-    """Loads by their titles; equal titles get numbers."""
-    titles = [title_of(item) for item in loads]
-    counts: dict[str, int] = {}
-    named = {}
-    for title, item in zip(titles, loads, strict=True):
-        counts[title] = counts.get(title, 0) + 1
-        named[f"{title} {counts[title]}" if titles.count(title) > 1 else title] = item
-    return named

@@ -150,8 +150,7 @@ def running_table(runs, starts):
     starts : mapping of label to Trajectory or None
         From rest, None where a machine does not start.
     """
-    columns = {name: _running_rows(run, starts[name]) for name, run in runs.items()}
-    return _table(columns)
+    return _table({name: _running_rows(run, starts[name]) for name, run in runs.items()})
 
 
 def energy_table(runs):

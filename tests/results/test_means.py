@@ -34,7 +34,7 @@ FUNCTIONS = {
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_the_mean_is_that_of_calculus(name):
     function, expected = FUNCTIONS[name]
-    found, error = means(lambda x: function(x)[None], TURN, 1e-14)
+    found, error, _ = means(lambda x: function(x)[None], TURN, 1e-14)
     assert found[0] == pytest.approx(expected, rel=1e-11, abs=1e-14)
     assert error[0] < 1e-10
 
