@@ -20,7 +20,7 @@ class Flywheel:
     Attributes
     ----------
     inertia : float
-        Moment of inertia on the crank beside links and motor, kg m2; 0 where none is needed.
+        Moment of inertia on the crank besides links and motor, kg m2; 0 where none is needed.
     energy : float
         Fluctuation of energy over the turn, J: between the extremes of the turning-moment diagram without motor, of the
         flywheel itself with one.

@@ -99,7 +99,7 @@ class DrivenMachine:
         self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
         if self._has_load_functions:
             self._require_no_acceleration(owner)
-        self._slip = SlipDirections.of(self.scene) if self.scene.friction.acting else None
+        self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
         if self._slip is not None:
             rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
             friction = replace_unchecked(self.scene.friction, rubs=rubs)

@@ -321,9 +321,9 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
         None: a motor that gives the constant torque that the machine takes at the mean speed of the scene, as textbooks
         assume; loads must not depend on the speed then.
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     angles : int or array
-        Crank angles of the tables: so many over the period, its end excluded, or these, rad.
+        Crank angles of the tables: their number over the period, its end excluded, or the angles, rad.
     engine : "numpy" or "compiled"
         As for `solve`; "compiled" pays where the same kind of machine is run often.
 
@@ -337,7 +337,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
         There is no periodic running: the motor is too weak, with the torque missing; nothing holds the speed; the
         inertia vanishes somewhere.
     ParameterError
-        A value is out of range, or a load cannot be taken at any crank angle.
+        A value is out of range, or a load is known at some crank angles only.
     AssemblyError
         The mechanism does not make full turns.
 

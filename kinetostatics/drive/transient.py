@@ -38,7 +38,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     scene : Scene
         Mechanism and loads; its crank speed does not matter.
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     from_angle, from_speed : float
         rad, rad/s.
     until : float or "standstill"
@@ -89,7 +89,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
         Mechanism and loads; its crank speed does not matter.
     motor : Motor
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     from_angle : float
         rad.
     until : float, optional

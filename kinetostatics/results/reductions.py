@@ -46,8 +46,8 @@ def _peaks(reduction, values):
     error = np.max(errors, axis=0)
     if reduction in OVER_THE_ANGLE:
         return 2 * np.pi * where[0], np.where(error > PEAK_TOLERANCE * np.abs(heights[0]), np.inf, 0.0)
-    heights = [sign * height for sign, height in zip(signs(reduction), heights, strict=True)]
-    return combined_peaks(reduction, heights), error
+    signed = [sign * height for sign, height in zip(signs(reduction), heights, strict=True)]
+    return combined_peaks(reduction, signed), error
 
 
 def _with_error(reduction):

@@ -24,8 +24,8 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import component_sizes, components, largest_term, quantity
 from ..numbers import checks
 from ..numbers.arithmetic import SQUARE_TOLERANCE
+from ..results.compiled_reductions import CompiledReductions
 from ..results.kinks import has_kinks
-from ..results.passes import Passes
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
@@ -105,13 +105,13 @@ def _compiled_filler(solution, outputs, count, found, threads):
     given = angle, *numba_backend.compiled_sines(angle), parameters, tables
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
-    passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
+    reduce_block = CompiledReductions(outputs, rows, first[len(names)], round(solution.period / TURN))
     size = len(program.outputs), angle.shape[1]
     block = max(1, MAX_LOOP_VALUES // math.prod(size))
     step = max(block, -(-count // (PARTS_PER_THREAD * threads)))
 
     def fill(start):
-        passes(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
+        reduce_block(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
 
     return fill, step
 
