@@ -96,8 +96,8 @@ def run(options):
 
 def _run_results(solution, given):
     """Results of ``run`` for a variant, by the names of quantities in Python."""
+    from ..results.extremes import SHOWN, extremes_by_name
     from ..results.losses import lose
-    from ..results.tables import SHOWN, extremes_by_name
     from ..solution.uncertainty_table import largest_with_uncertainty
 
     found = {
@@ -118,8 +118,8 @@ def _run_results(solution, given):
 
 
 def _print_extremes(case, solutions, given, options):
+    from ..results.extremes import SHOWN, extremes_by_name
     from ..results.losses import lose
-    from ..results.tables import SHOWN, extremes_by_name
     from . import sweep_commands
 
     print_folded(case.title)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..results.means import NODES, WEIGHTS
-from ..results.pieces import APPROACHES, PLACES, SERIES
+from ..results.pieces import NEWTON_STEPS, PLACES, SERIES
 from .measures import SECTORS, SIDES, WIDER
 
 POWERS = np.arange(NODES.size)
@@ -157,7 +157,7 @@ def _peaks(series, places):
     step = PLACES[1] - PLACES[0]
     slope, bend = (np.polynomial.polynomial.polyder(series, order) for order in (1, 2))
     low, high, at = np.maximum(places - step, -1.0), np.minimum(places + step, 1.0), places
-    for _ in range(APPROACHES):
+    for _ in range(NEWTON_STEPS):
         rise, curved = _at(slope, at), _at(bend, at)
         at = np.clip(at - np.divide(rise, curved, out=np.zeros_like(at), where=curved < 0.0), low, high)
     return np.where(_at(series, at) >= _at(series, places), at, places)

@@ -19,7 +19,7 @@ from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
 from ..numbers.units import to_si
-from ..results.bends import bent
+from ..results.kinks import has_kinks
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures
@@ -166,7 +166,7 @@ class Problem:
         """Curve of an output's quantity; on pieces between kinks if it has some."""
         if self._bends is None:
             solution = unchecked_turn(scene_of(self.source), 1)
-            self._bends = {name for name in self.quantities if bent(solution, name)}
+            self._bends = {name for name in self.quantities if has_kinks(solution, name)}
         if output.quantity not in self._bends:
             return self.curves(values)[output.quantity]
         key = str(without_ratio(output)), values.tobytes()
@@ -307,7 +307,7 @@ def true_value(output, scene, angles=5760):
         Pieces of the turn do not resolve it.
     """
     plain, turns = without_ratio(output), turns_of(scene)
-    if bent(unchecked_turn(scene, 1), output.quantity):
+    if has_kinks(unchecked_turn(scene, 1), output.quantity):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
         if rough:
             raise DesignError(

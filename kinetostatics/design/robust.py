@@ -18,7 +18,7 @@ from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
-from ..results.bends import bent
+from ..results.kinks import has_kinks
 from ..results.means import NODES
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
@@ -164,7 +164,7 @@ class SampledOutput:
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.output, self.program = output, compiled(scene, output.quantity, zeros, self.problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._has_kinks = not self.spread.trim and bent(unchecked_turn(scene, 1), output.quantity)
+        self._has_kinks = not self.spread.trim and has_kinks(unchecked_turn(scene, 1), output.quantity)
 
     def __str__(self):
         return f"{self.output} within the spread"
@@ -279,7 +279,7 @@ class SampledOutput:
         if not self.output.ratio:
             return None
         reference, plain = self._reference(numbers), without_ratio(self.output)
-        if not bent(unchecked_turn(reference, 1), plain.quantity):
+        if not has_kinks(unchecked_turn(reference, 1), plain.quantity):
             return self._reduced(self._of_reference(numbers))
         found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
         return np.broadcast_to(found, len(next(iter(numbers.values()))))

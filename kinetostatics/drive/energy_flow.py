@@ -6,7 +6,6 @@ weights and springs store energy and return all of it within the period.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -88,7 +87,7 @@ class EnergyFlow:
 
     @property
     def residual(self):
-        """Energy of the source that no part takes, relative to all energies of the turn."""
+        """Imbalance: energy of the source that no part takes, relative to all energies of the turn."""
         given = sum(part.energy for part in self.parts if part.kind == SOURCE)
         taken = sum(part.energy for part in self.parts if part.kind != SOURCE)
         size = sum(abs(part.energy) for part in self.parts)
@@ -119,23 +118,24 @@ def energy_flow(run) -> EnergyFlow:
     """Energies of a turn of periodic running, each by its own integral; `residual` is their imbalance."""
     pieces, speed, acceleration, inertia = run.on_pieces
     angle, shape = pieces.angle.ravel(), pieces.angle.shape
-    moving = {"crank_speed": speed.ravel(), "crank_acceleration": acceleration.ravel()}
-
-    def solved(**changes):
-        return replace_unchecked(run.scene, **moving, **changes).solve(angle)
-
-    def work(name, kind, torque):
-        torque = np.broadcast_to(torque, angle.shape).reshape(shape)
-        energy = zero_if_rounding(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
-        held = energy == 0.0 and kind == LOAD and np.any(torque)
-        return Part(name, kind, energy / run.turns, swing(pieces.integrated(torque)) if held else np.nan)
+    moving = replace_unchecked(run.scene, crank_speed=speed.ravel(), crank_acceleration=acceleration.ravel())
 
     def swing(energy):
         return pieces.largest(energy)[0] + pieces.largest(-energy)[0]
 
-    parts = [*_motor_parts(run)]
-    for name, item in _loads_by_title(run.scene.loads).items():
-        parts.append(work(name, LOAD, solved(loads=(item,), friction=NO_FRICTION).load_torque))
+    if run.has_air_gap:
+        parts = [Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)]
+        parts.append(Part(ROTOR, LOSS, run.rotor_loss_per_turn))
+    else:
+        parts = [Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)]
+    titles = [title_of(item) for item in run.scene.loads]
+    for place, (title, item) in enumerate(zip(titles, run.scene.loads, strict=True), 1):
+        name = f"{title} {titles[:place].count(title)}" if titles.count(title) > 1 else title
+        torque = replace_unchecked(moving, loads=(item,), friction=NO_FRICTION).solve(angle).load_torque
+        torque = np.broadcast_to(torque, angle.shape).reshape(shape)
+        energy = zero_if_rounding(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
+        returned = swing(pieces.integrated(torque)) if energy == 0.0 and np.any(torque) else np.nan
+        parts.append(Part(name, LOAD, energy / run.turns, returned))
     for joint in run.scene.friction.acting:
         parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))
     kinetic = {FLYWHEEL: 0.5 * run.flywheel * speed**2, LINKS: 0.5 * inertia * speed**2}
@@ -146,22 +146,3 @@ def energy_flow(run) -> EnergyFlow:
 def zero_if_rounding(energy, flowing):
     """An energy, or 0 if it is rounding of the energy that flows."""
     return 0.0 if abs(energy) <= ENERGY_TOLERANCE * flowing else energy
-
-
-def _motor_parts(run):
-    if run.has_air_gap:
-        yield Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)
-        yield Part(ROTOR, LOSS, run.rotor_loss_per_turn)
-    else:
-        yield Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)
-
-
-def _loads_by_title(loads: tuple[Any, ...]):
-    """Loads by their titles; equal titles get numbers."""
-    titles = [title_of(item) for item in loads]
-    counts: dict[str, int] = {}
-    named = {}
-    for title, item in zip(titles, loads, strict=True):
-        counts[title] = counts.get(title, 0) + 1
-        named[f"{title} {counts[title]}" if titles.count(title) > 1 else title] = item
-    return named

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..numbers import checks
-from .one_dof import driven_machine
+from .one_dof import DrivenMachine
 from .resolution import resolved
 from .running import Running, find_flywheel, parse_fluctuation
 from .steady_running import steady
@@ -20,7 +20,7 @@ class Flywheel:
     Attributes
     ----------
     inertia : float
-        Moment of inertia on the crank beside links and motor, kg m2; 0 where none is needed.
+        Moment of inertia on the crank besides links and motor, kg m2; 0 where none is needed.
     energy : float
         Fluctuation of energy over the turn, J: between the extremes of the turning-moment diagram without motor, of the
         flywheel itself with one.
@@ -82,27 +82,20 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     0.259863 kg m2
     """
     wanted = parse_fluctuation("flywheel", fluctuation)
-    return _textbook_flywheel(scene, wanted, engine) if motor is None else _exact_flywheel(scene, wanted, motor, engine)
-
-
-def _textbook_flywheel(scene, wanted, engine):
-    speed, wrong = checks.single_number(
-        "crank_speed of the scene", getattr(scene, "crank_speed", 1.0), "rad/s", unequal=0.0
-    )
+    if motor is not None:
+        driven = DrivenMachine("flywheel", scene, motor, 0.0, engine)
+        unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
+        inertia, running = find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit)
+        low, high = running.speed_range
+        return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)
+    speed = getattr(scene, "crank_speed", 1.0)
+    speed, wrong = checks.single_number("crank_speed of the scene", speed, "rad/s", unequal=0.0)
     checks.require("flywheel", wrong)
-    driven = driven_machine("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
-    pieces = resolved(driven, speed)
-    angle = pieces.angle
-    state = driven.at_constant_speed(angle, 0.0 * angle + speed if driven.by_speed else None)
+    driven = DrivenMachine("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
+    pieces, _ = resolved(driven, speed)
+    speeds = np.full(pieces.angle.shape, speed)
+    state = driven.at_acceleration(pieces.angle, speeds if driven.by_speed else None, 0.0)
     spare = pieces.total(state.torque) / driven.period - state.torque
     gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
     energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
     return Flywheel(energy / (wanted * speed * speed), energy, wanted)
-
-
-def _exact_flywheel(scene, wanted, motor, engine):
-    driven = driven_machine("flywheel", scene, motor, 0.0, engine)
-    unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
-    inertia, running = find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit)
-    low, high = running.speed_range
-    return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)

@@ -80,7 +80,12 @@ class Motor:
             overload=(overload, "1", {"low": 1.0, "strict": True}),
             **_transmission_rules(transmission, inertia),
         )
-        checks.require("Motor.kloss", _rated_speed_problem(found["speed"], found["synchronous_speed"]))
+        rated, synchronous = found["speed"], found["synchronous_speed"]
+        if not rated < synchronous:
+            problem = (
+                f"synchronous_speed must be greater than the rated speed of {rated:.9g} rad/s, got {synchronous:.9g}"
+            )
+            checks.require("Motor.kloss", problem)
         return Kloss(**found)
 
     @staticmethod
@@ -303,13 +308,6 @@ TABLE_COLUMNS = {"speed": checks.Number("rad/s", table=True), "torque": checks.N
 
 def _transmission_rules(transmission, inertia):
     return {"transmission": (transmission, "1", {"unequal": 0.0}), "inertia": (inertia, "kg*m**2", {"low": 0.0})}
-
-
-def _rated_speed_problem(speed, synchronous_speed):
-    """Sentence if the rated speed is not below the synchronous speed, or None."""
-    if speed < synchronous_speed:
-        return None
-    return f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
 
 
 def _row_problems(speed, torque):

@@ -5,8 +5,8 @@
 J is the reduced inertia of the links in kg m2, Jf the flywheel with the motor's rotor; torques in N m are positive
 counter-clockwise. Loads may depend on the crank angle and speed, not on the acceleration. Friction depends on alpha:
 the secant rule solves for it at each crank angle, or a bracketing search where a kink of friction stops the secant
-rule. Friction torque comes from the scene's own program at the true alpha. Its senses are known beforehand (`senses`),
-so it is smooth between the angles at which a sense changes.
+rule. Friction torque comes from the scene's own program at the true alpha. The senses of motion of the joints are
+known beforehand (`slip_direction`), so friction is smooth between the angles at which one changes.
 """
 
 import math
@@ -18,7 +18,7 @@ from ..engines.numba_backend import numba_available
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
-from ..machine.loads import TURN, Table, has_no_user_code, kink_sources, kinks_of, period_on, value_of
+from ..machine.loads import Table, has_no_user_code, kink_sources, kinks_of, period_on, value_of
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..mechanics.load_values import drive_dependence, title_of
@@ -29,7 +29,7 @@ from ..numbers.parameter_tree import replace_unchecked
 from ..solution.program import compile as compiled
 from ..solution.scene import scene_problem
 from .motor import Motor
-from .senses import Senses
+from .slip_direction import SlipDirections
 
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
 FRICTION, *CHECKS = FRICTION_OUTPUTS = ("friction_torque", "friction_margin", "friction_residual")
@@ -67,7 +67,7 @@ class State(NamedTuple):
 
 
 class DrivenMachine:
-    """A scene without friction as one degree of freedom; `flywheel` is all inertia on the crank besides the links.
+    """A scene as one degree of freedom; `flywheel` is all inertia on the crank besides the links.
 
     Of the scene's crank speed only the sign counts, and only without a motor. `direction`, +1 or -1, is the sense of
     rotation; methods take another `sense` because a coasting machine may turn back.
@@ -89,32 +89,49 @@ class DrivenMachine:
         self.scene = replace_unchecked(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
         checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
+        self.period = self.scene.period
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
-        self._compiled = engine == "compiled"
+        self._engine, self._compiled = engine, engine == "compiled"
         self.constant_torque = 0.0
         self.last_forces: list[Any] = []
         self._cached_state: tuple[Any, Any, State] | None = None
-        self._require_no_acceleration(owner)
+        self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
+        if self._has_load_functions:
+            self._require_no_acceleration(owner)
+        self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
+        if self._slip is not None:
+            rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
+            friction = replace_unchecked(self.scene.friction, rubs=rubs)
+            self._friction_scene = replace_unchecked(self.scene, friction=friction)
+            self._single_by_loop = self._compiled or (engine is None and numba_available())
+            self._last_solution: tuple[Any, ...] = (None,)
+            self._last_solution_at_angle: Any = ()
 
-    @property
-    def period(self):
-        """Crank angle after which motion and loads repeat, rad."""
-        return self.scene.period
-
-    @property
-    def turns(self):
-        return round(self.period / TURN)
+    def _require_no_acceleration(self, owner):
+        angle = np.linspace(0.1, self.period, 7)
+        calm, hasty = (
+            replace_unchecked(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
+            for alpha in (0.0, 1e3)
+        )
+        if any("crank_acceleration" in inputs for _, inputs in self._function_loads) or not np.array_equal(
+            calm, hasty, equal_nan=True
+        ):
+            checks.require(
+                owner,
+                "a load is a function that depends on the crank acceleration, which follows from the loads; let it "
+                "depend on angle, position and velocity alone",
+            )
 
     @property
     def by_speed(self):
         """Whether load or friction torque depends on the speed."""
-        return self.loads_by_speed
+        return self._slip is not None or self.loads_by_speed
 
     @property
     def smooth_by_speed(self):
-        """Whether that dependence is certainly smooth."""
-        return False
+        """Whether the torque depends on the speed, smoothly: by friction alone."""
+        return self._slip is not None and not self.loads_by_speed
 
     @cached_property
     def loads_by_speed(self):
@@ -141,81 +158,141 @@ class DrivenMachine:
 
     @cached_property
     def kinks(self):
-        """Crank angles in (0, period) at which load tables have kinks, rad."""
+        """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
         for part in kink_sources(self.scene.loads):
             repeats = np.arange(0.0, self.period - ANGLE_TOLERANCE, period_on(part, self.scene.mechanism))[:, None]
             found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
-        return distinct_angles(np.concatenate(found), self.period)
-
-    def at(self, angle, speed=None) -> State:
-        """State at crank angles; `speed` counts where loads or friction depend on it."""
-        return self.without_friction(angle, speed)
-
-    def at_constant_speed(self, angle, speed) -> State:
-        """State at crank angles and speeds without acceleration."""
-        return self.at_acceleration(angle, speed, 0.0)
-
-    def at_acceleration(self, angle, speed, acceleration) -> State:
-        """State at given crank angles, speeds and accelerations."""
-        return self.at(angle, speed)
+        kinks = _distinct_angles(np.concatenate(found), self.period)
+        return kinks if self._slip is None else _distinct_angles(np.concatenate([kinks, self.jumps]), self.period)
 
     @property
     def jumps(self):
         """Crank angles in [0, period) at which friction torque jumps, rad, exact."""
-        return np.empty(0)
+        return np.empty(0) if self._slip is None else self._slip.all_edges
+
+    def at(self, angle, speed=None) -> State:
+        """State at crank angles; `speed` counts where loads or friction depend on it."""
+        state = self.without_friction(angle, speed)
+        if self._slip is None:
+            return state
+        return state._replace(torque=state.torque + self._solve_friction(angle, speed, state)[0])
+
+    def at_acceleration(self, angle, speed, acceleration) -> State:
+        """State at given crank angles, speeds and accelerations."""
+        state = self.without_friction(angle, speed)
+        if self._slip is None:
+            return state
+        parts = [part.ravel() for part in np.broadcast_arrays(angle, speed, acceleration)]
+        starts = range(0, parts[0].size, BLOCK_SIZE)
+        blocks = [self._converged_outputs(*(part[start : start + BLOCK_SIZE] for part in parts)) for start in starts]
+        friction = np.concatenate([block[FRICTION] for block in blocks])
+        return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
     def without_friction(self, angle, speed=None, sense=None) -> State:
-        """State without friction; the last one is cached where loads do not depend on the speed."""
+        """State without friction; the last one is cached where loads do not depend on the speed.
+
+        Raises the error of `solve` at these crank angles where the state is not finite.
+        """
         cached = self._cached_state
         if cached and cached[0] is angle and cached[1] is sense and not self.loads_by_speed:
             return cached[2]
-        found = self._require_finite(angle, State(*self._values(angle, speed, sense)))
-        self._cached_state = angle, sense, found
-        return found
+        state = State(*self._values(angle, speed, sense))
+        finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
+        if not (finite and state.closure.min(initial=0.0) >= 0.0):
+            try:
+                self.scene.solve(np.ravel(angle))
+            except AssemblyError as error:
+                raise AssemblyError(error.condition, error.intervals, ": a drive turns the crank all round") from None
+        if not finite:
+            raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
+        self._cached_state = angle, sense, state
+        return state
 
-    def balance(self, angle, speed, sense=None):
-        """Total inertia, its slope, and motor torque less load torque at one crank angle and speed, as floats."""
-        sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
-        values = self._drive_values(clip_at_standstill(speed, sense), sense)
+    def _balance_without_friction(self, angle, speed, sense):
+        values = self._drive_values(_clip_at_standstill(speed, sense), sense)
         found = self.program.unlooked(angle, values, self._compiled)
         inertia, slope, load = float(found[INERTIA]), float(found[SLOPE]), float(found[TORQUE])
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
-    def prepare(self, speed):
-        """Settle the passes of the friction program for speeds from 0 to `speed`."""
+    def balance(self, angle, speed, sense=None):
+        """Total inertia, its slope, and motor torque less load torque at one crank angle and speed, as floats."""
+        if self._slip is None:
+            sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
+            return self._balance_without_friction(angle, speed, sense)
+        senses = {name: float(sign) for name, sign in self._slip.at(angle, sense or self.direction).items()}
+        return self.balance_along(angle, speed, senses)[:3]
 
     def senses_ahead(self, angle, sense):
         """Senses just ahead of a crank angle in [0, period], and the next angle at which one changes."""
-        return {"sense": sense}, sense * math.inf
+        return ({"sense": sense}, sense * math.inf) if self._slip is None else self._slip.ahead(angle, sense)
 
     def balance_along(self, angle, speed, senses):
-        """`balance` and the friction torque, with the senses of `senses_ahead`; sets `last_forces`, see `forces_at`."""
-        return *DrivenMachine.balance(self, angle, speed, senses["sense"]), 0.0
+        """`balance` and the friction torque, with the senses of `senses_ahead`; sets `last_forces` (`kink_forces`)."""
+        inertia, slope, spare = self._balance_without_friction(angle, speed, senses["sense"])
+        if self._slip is None:
+            return inertia, slope, spare, 0.0
+        friction, *self._last_solution_at_angle = self._solve_at_angle(
+            lambda acceleration: self.friction_outputs(angle, speed, acceleration, senses),
+            angle,
+            speed,
+            inertia,
+            spare - 0.5 * speed * speed * slope,
+            *self._last_solution_at_angle,
+        )
+        return inertia, slope, spare - friction, friction
 
     def inertia_at(self, angle):
         """Total inertia at one crank angle, kg m2, as a float."""
-        return DrivenMachine.balance(self, angle, self.direction)[0]
+        return self._balance_without_friction(angle, self.direction, self.direction)[0]
 
-    def forces_in_running(self, angle, speed):
-        """Rows over the crank angles, zero where friction has a kink, at the acceleration that follows."""
-        return []
+    def torque_at_rest(self, angle, sense):
+        """Net torque on a crank at rest, about to start in a sense, and the friction torque in it, N m."""
+        spare = self._balance_without_friction(angle, 0.0, sense)[2]
+        if self._slip is None:
+            return spare, 0.0
+        senses, _ = self._slip.ahead(angle % self.period, sense)
+        friction = self.friction_outputs(angle, 0.0, 0.0, senses)[FRICTION]
+        return spare - friction, friction
 
-    def forces_at(self, angle, speed, acceleration):
-        """The same at given accelerations."""
-        return []
+    def prepare(self, speed):
+        """Run the friction program for speeds from 0 to `speed`, so that the number of its passes is known."""
+        if self._slip is None:
+            return
+        angle = np.linspace(0.0, self.period, PREPARED_ANGLES, endpoint=False) + 0.5 * self.period / PREPARED_ANGLES
+        for part in (0.0, 0.5, 1.0):
+            self._converged_outputs(angle, np.full(PREPARED_ANGLES, self.direction * part * speed), 0.0)
+
+    def kink_forces(self, angle, speed, acceleration=None):
+        """Rows over the crank angles, zero where friction has a kink; by default at the acceleration that follows."""
+        if self._slip is None or not self._friction_pairs:
+            return []
+        if acceleration is None:
+            acceleration = self._solve_friction(angle, speed, self.without_friction(angle, speed))[1]
+        return self._kink_values(self._converged_outputs(angle, speed, acceleration))
 
     def torque_by_speed(self, angle, speed, torque):
-        """Derivative by the crank speed of `torque`, the load and friction torque there, N m s."""
-        if not self.loads_by_speed:
-            return 0.0
-        shape = angle.shape
-        try:
-            found = self.program.derivatives(angle.reshape(-1, 1), "crank_speed", {"crank_speed": speed.reshape(-1, 1)})
-            return found[TORQUE]["crank_speed"].reshape(shape)
-        except NotGivenError:
-            step = RELATIVE_SPEED_STEP * np.abs(speed).max()
-            return (self._values(angle, speed + step)[2] - torque) / step
+        """Derivative by the crank speed of `torque`, the load and friction torque there, N m s.
+
+        With friction the acceleration follows from the speed.
+        """
+        state = None if self._slip is None else self.without_friction(angle, speed)
+        own, step = 0.0, RELATIVE_SPEED_STEP * np.abs(speed).max()
+        if self.loads_by_speed:
+            columns = {"crank_speed": speed.reshape(-1, 1)}
+            try:
+                found = self.program.derivatives(angle.reshape(-1, 1), "crank_speed", columns)
+                own = found[TORQUE]["crank_speed"].reshape(angle.shape)
+            except NotGivenError:
+                own = (self._values(angle, speed + step)[2] - (torque if state is None else state.torque)) / step
+        if state is None:
+            return own
+        _, acceleration, by_acceleration = self._last_solution
+        changed = self._converged_outputs(angle, speed + step, acceleration)[FRICTION]
+        own = own + (changed - torque + state.torque) / step
+        drive = 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
+        rising = (drive - own - speed * state.slope) / (self.flywheel + state.inertia + by_acceleration)
+        return own + by_acceleration * rising
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
@@ -232,11 +309,10 @@ class DrivenMachine:
     def acceleration_along(self, angle, speed, sense):
         """Crank acceleration at crank angles, speeds and senses of a motion that may turn back, rad/s2."""
         state = self.without_friction(angle, speed, sense)
-        return self._accelerating_torque(state, speed) / (self.flywheel + state.inertia)
-
-    def torque_at_rest(self, angle, sense):
-        """Net torque on a crank at rest, about to start in a sense, and the friction torque in it, N m."""
-        return DrivenMachine.balance(self, angle, 0.0, sense)[2], 0.0
+        rest, inertia = self._accelerating_torque(state, speed), self.flywheel + state.inertia
+        if self._slip is None:
+            return rest / inertia
+        return self._solve_acceleration(angle, speed, self._slip.at(angle, sense), inertia, rest)[1]
 
     def _drive_values(self, speed, sense):
         """Program inputs that differ from the scene's: speeds and senses that the loads depend on."""
@@ -257,97 +333,6 @@ class DrivenMachine:
         found = self.program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
         return *(part[0] for part in scalars), closure
-
-    def _require_finite(self, angle, state):
-        """The state if it is finite; otherwise raise the error of `solve` at these crank angles."""
-        finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
-        if not (finite and state.closure.min(initial=0.0) >= 0.0):
-            try:
-                self.scene.solve(np.ravel(angle))
-            except AssemblyError as error:
-                raise AssemblyError(error.condition, error.intervals, ": a drive turns the crank all round") from None
-        if not finite:
-            raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
-        return state
-
-    def _require_no_acceleration(self, owner):
-        if all(map(has_no_user_code, self.scene.loads)):
-            return
-        angle = np.linspace(0.1, self.period, 7)
-        calm, hasty = (
-            replace_unchecked(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
-            for alpha in (0.0, 1e3)
-        )
-        if any("crank_acceleration" in inputs for _, inputs in self._function_loads) or not np.array_equal(
-            calm, hasty, equal_nan=True
-        ):
-            checks.require(
-                owner,
-                "a load is a function that depends on the crank acceleration, which follows from the loads; let it "
-                "depend on angle, position and velocity alone",
-            )
-
-
-def clip_at_standstill(speed, sense):
-    """Speeds against the sense become 0: a step may end beyond a standstill, where loads continue smoothly."""
-    forward = sense * speed
-    return sense * (max(forward, 0.0) if isinstance(forward, float) else np.maximum(forward, 0.0))
-
-
-def distinct_angles(angles, period):
-    """Distinct crank angles in (0, period), rising, rad."""
-    angles = np.unique(np.mod(angles, period))
-    return angles[(np.diff(angles, prepend=0.0) > ANGLE_TOLERANCE) & (angles < period - ANGLE_TOLERANCE)]
-
-
-def _load_problems(scene):
-    """Sentences about loads that are unknown at some crank angles."""
-    for item in scene.loads:
-        value = value_of(item)
-        if np.ndim(value) and not callable(value) and np.shape(value)[-1] > 1:
-            yield (
-                f"{type(item).__name__} is a table over the crank angles given, unknown between them; use a constant, "
-                "a table by crank angle or a function of the motion"
-            )
-
-
-def driven_machine(owner, scene, motor, flywheel, engine=None, direction=None) -> DrivenMachine:
-    """A scene as one degree of freedom, with friction or without."""
-    friction = getattr(scene, "friction", None)
-    kind = DrivenMachineWithFriction if friction and friction.acting else DrivenMachine
-    return kind(owner, scene, motor, flywheel, engine, direction)
-
-
-class DrivenMachineWithFriction(DrivenMachine):
-    """A scene with friction as one degree of freedom; the crank turns in `direction` unless a sense is given."""
-
-    def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
-        super().__init__(owner, scene, motor, flywheel, engine, direction)
-        self.senses = Senses.of(self.scene)
-        self._engine = engine
-        rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
-        self._friction_scene = replace_unchecked(self.scene, friction=replace_unchecked(self.scene.friction, rubs=rubs))
-        self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
-        self._single_by_loop = engine == "compiled" or (engine is None and numba_available())
-        self._last_solution: tuple[Any, ...] = (None,)
-        self._last_solution_at_angle: Any = ()
-
-    @property
-    def by_speed(self):
-        return True
-
-    @property
-    def smooth_by_speed(self):
-        return not self.loads_by_speed
-
-    @cached_property
-    def kinks(self):
-        """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
-        return distinct_angles(np.concatenate([super().kinks, self.senses.all_edges]), self.period)
-
-    @property
-    def jumps(self):
-        return self.senses.all_edges
 
     @cached_property
     def _program(self):
@@ -372,7 +357,7 @@ class DrivenMachineWithFriction(DrivenMachine):
         """Outputs of the friction program at crank angles, speeds and accelerations of one shape."""
         shape = np.shape(angle)
         if self._has_load_functions:
-            speed = clip_at_standstill(speed, senses["sense"])
+            speed = _clip_at_standstill(speed, senses["sense"])
         given = {"crank_speed": speed, "crank_acceleration": acceleration} | senses
         if not shape:
             found = self._program.unlooked(float(angle), given, self._single_by_loop)
@@ -381,54 +366,7 @@ class DrivenMachineWithFriction(DrivenMachine):
         rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")
         return {name: value.reshape(shape) for name, value in rows.items()}
 
-    def at(self, angle, speed=None) -> State:
-        state = self.without_friction(angle, speed)
-        friction, _ = self.friction_and_acceleration(angle, speed, state)
-        return state._replace(torque=state.torque + friction)
-
-    def at_acceleration(self, angle, speed, acceleration) -> State:
-        state = self.without_friction(angle, speed)
-        parts = [part.ravel() for part in np.broadcast_arrays(angle, speed, acceleration)]
-        starts = range(0, parts[0].size, BLOCK_SIZE)
-        blocks = [self._converged_outputs(*(part[start : start + BLOCK_SIZE] for part in parts)) for start in starts]
-        friction = np.concatenate([block[FRICTION] for block in blocks])
-        return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
-
-    def balance(self, angle, speed, sense=None):
-        senses = {name: float(sign) for name, sign in self.senses.at(angle, sense or self.direction).items()}
-        return self.balance_along(angle, speed, senses)[:3]
-
-    def senses_ahead(self, angle, sense):
-        return self.senses.stretch(angle, sense)
-
-    def balance_along(self, angle, speed, senses):
-        inertia, slope, spare = super().balance(angle, speed, senses["sense"])
-        friction, *self._last_solution_at_angle = self._solve_at_angle(
-            lambda acceleration: self.friction_outputs(angle, speed, acceleration, senses),
-            angle,
-            speed,
-            inertia,
-            spare - 0.5 * speed * speed * slope,
-            *self._last_solution_at_angle,
-        )
-        return inertia, slope, spare - friction, friction
-
-    def torque_at_rest(self, angle, sense):
-        senses, _ = self.senses.stretch(angle % self.period, sense)
-        friction = self.friction_outputs(angle, 0.0, 0.0, senses)[FRICTION]
-        return super().balance(angle, 0.0, sense)[2] - friction, friction
-
-    def prepare(self, speed):
-        angle = np.linspace(0.0, self.period, PREPARED_ANGLES, endpoint=False) + 0.5 * self.period / PREPARED_ANGLES
-        for part in (0.0, 0.5, 1.0):
-            self._converged_outputs(angle, np.full(PREPARED_ANGLES, self.direction * part * speed), 0.0)
-
-    def acceleration_along(self, angle, speed, sense):
-        state, senses = self.without_friction(angle, speed, sense), self.senses.at(angle, sense)
-        rest = self._accelerating_torque(state, speed)
-        return self._solve_acceleration(angle, speed, senses, self.flywheel + state.inertia, rest)[1]
-
-    def friction_and_acceleration(self, angle, speed, state):
+    def _solve_friction(self, angle, speed, state):
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
         rest = self._accelerating_torque(state, speed)
         guess = self._last_solution[1:] if self._last_solution[0] is angle else ()
@@ -437,30 +375,9 @@ class DrivenMachineWithFriction(DrivenMachine):
         self._last_solution = angle, acceleration, slope
         return friction, acceleration
 
-    def forces_in_running(self, angle, speed):
-        if not self._friction_pairs:
-            return []
-        state = self.without_friction(angle, speed)
-        return self.forces_at(angle, speed, self.friction_and_acceleration(angle, speed, state)[1])
-
-    def forces_at(self, angle, speed, acceleration):
-        if not self._friction_pairs:
-            return []
-        return self._kink_values(self._converged_outputs(angle, speed, acceleration))
-
-    def torque_by_speed(self, angle, speed, torque):
-        """Derivative by the crank speed, with the acceleration that follows from the speed."""
-        _, acceleration, by_acceleration = self._last_solution
-        state, step = self.without_friction(angle, speed), RELATIVE_SPEED_STEP * np.abs(speed).max()
-        changed = self._converged_outputs(angle, speed + step, acceleration)[FRICTION]
-        own = super().torque_by_speed(angle, speed, state.torque) + (changed - torque + state.torque) / step
-        drive = 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
-        rising = (drive - own - speed * state.slope) / (self.flywheel + state.inertia + by_acceleration)
-        return own + by_acceleration * rising
-
     def _converged_outputs(self, angle, speed, acceleration, senses=None):
         """Outputs of the friction program after as many passes as it needs."""
-        senses = self.senses.at(angle, self.direction) if senses is None else senses
+        senses = self._slip.at(angle, self.direction) if senses is None else senses
         found: dict[str, Any] = {}
 
         def evaluate(scene):
@@ -555,7 +472,16 @@ class DrivenMachineWithFriction(DrivenMachine):
             if not jams.any():
                 break
         else:
-            self._refuse_jam(angle, speed, inertia, np.divide(first - friction, reach, where=jams, out=0.0 * reach))
+            growth = np.divide(first - friction, reach, where=jams, out=0.0 * reach)
+            worst = int(np.argmax(growth - inertia))
+            raise DriveError(
+                f"{self.scene.mechanism.name}: friction jams at crank angle "
+                f"{math.degrees(angle[worst] % self.period):.6g} deg and {speed[worst]:.6g} rad/s: each rad/s2 of "
+                f"deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only {inertia[worst]:.6g} N "
+                "m of inertia torque, so no acceleration balances them; give a flywheel of "
+                f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
+                crank_angle=float(angle[worst]),
+            )
 
         def left(share, place):
             return friction_at(start[place] + share * reach[place], place) + inertia[place] * share * reach[place]
@@ -566,19 +492,6 @@ class DrivenMachineWithFriction(DrivenMachine):
         with np.errstate(invalid="ignore"):
             slope = np.where(share * reach != 0.0, (friction - first) / (share * reach), 0.0)
         return friction, acceleration, slope
-
-    def _refuse_jam(self, angle, speed, inertia, growth):
-        """Raise: friction grows with the deceleration faster than the inertia torque."""
-        worst = int(np.argmax(growth - inertia))
-        degrees = math.degrees(angle[worst] % self.period)
-        raise DriveError(
-            f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and "
-            f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, "
-            f"but frees only {inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a "
-            f"flywheel of {growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower "
-            "coefficients of friction",
-            crank_angle=float(angle[worst]),
-        )
 
     def _kink_values(self, found):
         rows = []
@@ -593,3 +506,26 @@ class DrivenMachineWithFriction(DrivenMachine):
 def _at_places(values, place):
     """Values at indices; a number holds at every index."""
     return values[place] if np.ndim(values) else values
+
+
+def _clip_at_standstill(speed, sense):
+    """Speeds against the sense become 0: a step may end beyond a standstill, where loads continue smoothly."""
+    forward = sense * speed
+    return sense * (max(forward, 0.0) if isinstance(forward, float) else np.maximum(forward, 0.0))
+
+
+def _distinct_angles(angles, period):
+    """Distinct crank angles in (0, period), rising, rad."""
+    angles = np.unique(np.mod(angles, period))
+    return angles[(np.diff(angles, prepend=0.0) > ANGLE_TOLERANCE) & (angles < period - ANGLE_TOLERANCE)]
+
+
+def _load_problems(scene):
+    """Sentences about loads that are unknown at some crank angles."""
+    for item in scene.loads:
+        value = value_of(item)
+        if np.ndim(value) and not callable(value) and np.shape(value)[-1] > 1:
+            yield (
+                f"{type(item).__name__} is a table over the crank angles given, unknown between them; use a constant, "
+                "a table by crank angle or a function of the motion"
+            )

@@ -1,6 +1,6 @@
-"""Functions of the crank angle as Chebyshev series between their kinks.
+"""Functions of the crank angle as Chebyshev series on pieces between their kinks.
 
-Values stand at Chebyshev points of the first kind, none of them at an end of a piece, so jumps there do no harm
+The points are Chebyshev points of the first kind: none is at an end of a piece, so jumps there do no harm
 (Trefethen, *Approximation Theory and Approximation Practice*, chapters 2, 8 and 19).
 """
 
@@ -15,17 +15,16 @@ from ..numbers.lazy import cached_property
 
 TAIL = 2e-14
 """Size of the last coefficients of a series, relative to its largest value, that is rounding."""
-LEVELS = 60
-"""How often pieces are halved."""
-MOST_PIECES = 20_000
+MAX_HALVINGS = 60
+MAX_PIECES = 20_000
 DENSE = 8
-"""Places beside each point of a series at which its extremes are looked for."""
-SMALLEST = 1e-13
-"""Width of a piece, relative to all, that is not split: there is a jump in it."""
+"""Places for each point of a series at which extremes are sought."""
+MIN_WIDTH = 1e-13
+"""Width of a piece, relative to the period, below which it is not split: it contains a jump."""
 
 
 class Rule(NamedTuple):
-    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between.
+    """Matrices from values at the points in [-1, 1] to series, integrals from -1, slopes, and values at dense places.
 
     `vander` goes from series to values.
     """
@@ -61,7 +60,7 @@ def rule(count) -> Rule:
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Pieces of a turn between edges, each with so many points; values are (pieces, points)."""
+    """Pieces of a turn between edges, each with `count` points; values are (pieces, points)."""
 
     edges: np.ndarray
     count: int
@@ -97,12 +96,12 @@ class Pieces:
         return rule(self.count).series @ values.T
 
     def smoothed(self, values):
-        """Values of the lower half of each series: what hangs on the upper half of differences is noise."""
+        """Values of the lower half of each series; the upper half of difference quotients is noise."""
         count = self.count // 2
         return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
 
     def with_ends(self, values):
-        """Values at both ends of each piece beside those at its points, read from its series: (pieces, points + 2)."""
+        """Values at the start, the points and the end of each piece, (pieces, points + 2)."""
         series = self.series(values)
         starts = ((-1.0) ** np.arange(self.count)) @ series
         return np.column_stack([starts, values, series.sum(axis=0)])
@@ -120,7 +119,7 @@ class Pieces:
         return chebyshev.chebval(place, series[:, piece], tensor=False).reshape(shape)
 
     def largest(self, values):
-        """Largest value of a function given at the points, and where: crank angle."""
+        """Largest value of a function given at the points, and its crank angle."""
         dense = values @ rule(self.count).dense.T
         piece, at = np.unravel_index(np.argmax(dense), dense.shape)
         place = rule(self.count).places[at]
@@ -134,15 +133,15 @@ class Pieces:
         return float(chebyshev.chebval(place, series)), float(angle)
 
     def peak(self, values):
-        """Largest value by size of a function given at the points, with its sign."""
+        """Value of largest size of a function given at the points, with its sign."""
         return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
 
     def split(self, marked):
-        """Pieces with those marked halved."""
+        """Pieces, those in the mask `marked` halved."""
         middle = 0.5 * (self.edges[:-1] + self.edges[1:])[marked]
         return Pieces(np.sort(np.concatenate([self.edges, middle])), self.count)
 
     @property
     def can_split(self):
-        """Whether a piece is wide enough to be halved."""
-        return 2.0 * self.half[:, 0] > SMALLEST * (self.edges[-1] - self.edges[0])
+        """Mask of the pieces that are wide enough to be halved."""
+        return 2.0 * self.half[:, 0] > MIN_WIDTH * (self.edges[-1] - self.edges[0])

@@ -1,4 +1,8 @@
-"""Pieces of a turn in which a machine's inertia and load torque are Chebyshev series to rounding."""
+"""Pieces of a turn on which inertia and load torque of a machine are Chebyshev series exact to rounding.
+
+Kinks of friction depend on speed and acceleration: solve, locate kinks, split the pieces there (`split_at_kinks`),
+repeat until they stop moving. An error d of an edge changes the result by about d squared.
+"""
 
 import itertools
 import math
@@ -7,60 +11,83 @@ import numpy as np
 
 from ..errors import DriveError
 from ..machine.loads import TURN
-from .bends import NONE, parted
-from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
+from .pieces import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
 
-POINTS, FEW_POINTS, MANY = 24, 12, 60
-"""Points of a piece, and those where there are so many pieces."""
-WIDEST = TURN / 6
-ROUNDS = 8
-"""How often kinks of friction are looked for anew, at most."""
-JUMP = 1e-9
-"""Difference of values, relative to the largest, from both sides of an edge that is a jump."""
-UNRESOLVED = 1e-6
-"""Share of a torque in pieces that are not done with which no running can be trusted."""
-VANISHING = 1e-10
+POINTS, FEW_POINTS, MANY_EDGES = 24, 12, 60
+"""Points of a piece, and those where there are more edges than `MANY_EDGES`."""
+MAX_WIDTH = TURN / 6
+MAX_ROUNDS = 8
+"""Rounds of locating kinks of friction."""
+KINK_TOLERANCE = 1e-9
+"""Shift of an edge, relative to the period, that is harmless."""
+MIN_EDGE_DISTANCE = 1e-6
+"""Distance of edges from a new one, relative to the period, below which they are removed."""
+JUMP_TOLERANCE = 1e-9
+"""Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
+MAX_UNRESOLVED = 1e-6
+"""Share of a torque in unresolved pieces above which running is refused."""
+MIN_INERTIA_RATIO = 1e-10
 """Smallest inertia, relative to the largest, with which there is a speed."""
+NO_ANGLES = np.empty(0)
 
 
 def resolved(driven, speed):
-    """Pieces in which inertia and torque at a speed are series that are done."""
-    return resolved_with_bends(driven, speed)[0]
-
-
-def resolved_with_bends(driven, speed):
-    """The same, and crank angles of bends of friction among their edges."""
-    edges = _edges(np.concatenate([[0.0], driven.kinks, [driven.period]]))
-    pieces, bends = _bent(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
-    pieces = _refined(driven, pieces, speed)
+    """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
+    edges = _with_edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]))
+    pieces, kinks = Pieces(edges, FEW_POINTS if len(edges) > MANY_EDGES else POINTS), NO_ANGLES
+    for _ in range(MAX_ROUNDS):
+        forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
+        split = split_at_kinks(driven, pieces, forces, kinks)
+        if split is None:
+            break
+        pieces, kinks = split
+    pieces = _halve_unresolved(driven, pieces, speed)
     width = 2.0 * pieces.half[:, 0]
-    if np.any(width < 1e-6 * driven.period) or len(width) > MOST_PIECES:
+    if np.any(width < 1e-6 * driven.period) or len(width) > MAX_PIECES:
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
-        edges = _edges(np.unique(np.concatenate([[0.0], driven.kinks, bends, jumps, [driven.period]])))
-        again = _refined(driven, Pieces(edges, pieces.count), speed)
+        edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
+        again = _halve_unresolved(driven, Pieces(_with_edges_between(edges), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
-    return _with_jumps(driven, pieces, speed), bends
+    return _split_at_jumps(driven, pieces, speed), kinks
 
 
-def _bent(driven, pieces, speed):
-    """Pieces parted where friction at a speed has kinks, and the crank angles of these."""
-    bends = NONE
-    for _ in range(ROUNDS):
-        found = parted(driven, pieces, driven.forces_at(pieces.angle, np.full(pieces.angle.shape, speed), 0.0), bends)
-        if found is None:
-            break
-        pieces, bends = found
-    return pieces, bends
+def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
+    """Pieces split where rows change their signs, and these crank angles; None where all of them are edges already.
+
+    `rows` are functions given at the points; edges at the angles `before`, found earlier, are removed.
+    """
+    if not rows:
+        return None
+    period = pieces.edges[-1] - pieces.edges[0]
+    angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]])
+    zeros = []
+    for value in map(pieces.with_ends, rows):  # a jump from one piece to the next is no zero
+        at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
+        (low, high), (first, second) = ((part[:, :-1][at], part[:, 1:][at]) for part in (angle, value))
+        zeros.append(low + (high - low) * first / (first - second))
+    fixed = np.concatenate([pieces.edges[:1], driven.kinks, pieces.edges[-1:]])
+    kinks = np.mod(np.concatenate(zeros), period)
+    kinks = kinks[_distance(kinks, fixed) > KINK_TOLERANCE * period]
+    if np.all(_distance(kinks, pieces.edges) <= KINK_TOLERANCE * period):
+        return None
+    other = np.setdiff1d(pieces.edges, before)
+    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * period]
+    return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), kinks
 
 
-def _with_jumps(driven, pieces, speed):
+def _distance(angles, others):
+    """Distance of each angle to the nearest of others; infinite where there are none."""
+    return np.abs(angles[:, None] - others).min(axis=1, initial=np.inf)
+
+
+def _split_at_jumps(driven, pieces, speed):
     """Pieces with further edges where the load torque jumps between an edge and the points beside it."""
     torque = _state_at(driven, pieces.angle, speed).torque
     both = pieces.with_ends(torque)
     starts, ends = both[:, 0], both[:, -1]
     starts = np.append(starts[1:], starts[0])
-    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP * np.abs(torque).max())
+    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP_TOLERANCE * np.abs(torque).max())
     known = np.isin(np.mod(pieces.edges[1:], driven.period), driven.jumps)
     jumping = jumping[~known[jumping]]
     found = []
@@ -82,30 +109,30 @@ def _with_jumps(driven, pieces, speed):
 
 
 def _state_at(driven, angle, speed):
-    return driven.at_constant_speed(angle, np.full(angle.shape, speed) if driven.by_speed else None)
+    return driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
 
 
-def _refined(driven, pieces, speed):
-    for _ in range(LEVELS):
+def _halve_unresolved(driven, pieces, speed):
+    for _ in range(MAX_HALVINGS):
         state = _state_at(driven, pieces.angle, speed)
         marked = ((pieces.tail(state.inertia) > TAIL) | (pieces.tail(state.torque) > TAIL)) & pieces.can_split
-        if not marked.any() or len(marked) > MOST_PIECES:
+        if not marked.any() or len(marked) > MAX_PIECES:
             break
         pieces = pieces.split(marked)
     return pieces
 
 
-def _edges(breaks):
-    """Edges at breaks, and between them where they are far apart."""
-    parts = [np.linspace(a, b, math.ceil((b - a) / WIDEST - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
+def _with_edges_between(breaks):
+    """Edges at breaks, and between those more than `MAX_WIDTH` apart."""
+    parts = [np.linspace(a, b, math.ceil((b - a) / MAX_WIDTH - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
     return np.concatenate([*parts, breaks[-1:]])
 
 
 def _require_resolved(driven, pieces, torque):
-    """Refuse a load torque that pieces do not resolve, as one that grows without bound."""
+    """Refuse a load torque that the pieces do not resolve: it grows without bound."""
     size = np.abs(pieces.whole(np.abs(torque)))
     lost = pieces.half[:, 0] * np.abs(pieces.series(torque)[-3:]).max(axis=0)
-    if lost.sum() > UNRESOLVED * size.sum():
+    if lost.sum() > MAX_UNRESOLVED * size.sum():
         worst = int(np.argmax(lost))
         angle = float(pieces.edges[worst : worst + 2].mean())
         raise DriveError(
@@ -117,10 +144,10 @@ def _require_resolved(driven, pieces, torque):
 
 
 def require_inertia(driven, pieces):
-    """Refuse a machine whose inertia vanishes somewhere, so that it has no speed there."""
+    """Refuse a machine whose inertia vanishes somewhere: it has no speed there."""
     inertia = driven.inertia(pieces.angle)
     least, angle = pieces.largest(-inertia)
-    if not -least > VANISHING * inertia.max():
+    if not -least > MIN_INERTIA_RATIO * inertia.max():
         raise DriveError(
             f"{driven.scene.mechanism.name}: all inertia vanishes at crank angle {math.degrees(angle):.6g} deg "
             f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there; give a "

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..errors import DriveError
+from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
@@ -39,13 +40,6 @@ class RunningSolution(Solution):
     running: Any = None
 
     COMPARISON: ClassVar = DrivenComparison
-
-    @classmethod
-    def of(cls, running):
-        """Solution of a `Running` at its crank angles."""
-        scene = replace_unchecked(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
-        plain = scene.solve(running.crank_angle)
-        return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
 
     def __repr__(self):
         return super().__repr__().replace("<Solution", "<RunningSolution").split(", crank_speed=")[0] + (
@@ -181,7 +175,7 @@ class Running:
     @property
     def turns(self):
         """Turns of the crank after which running repeats."""
-        return self._driven.turns
+        return round(self.period / TURN)
 
     @cached_property
     def duration(self):
@@ -233,7 +227,12 @@ class Running:
 
         It falls along rising crank angles where the crank turns clockwise.
         """
-        return read_only(self._time_after(np.mod(self.direction * self.crank_angle, self.period)))
+        turned = np.mod(self.direction * self.crank_angle, self.period)
+        series = self._pieces.series(self._pieces.integrated(1.0 / np.abs(self._speed)))
+        if self.direction > 0:
+            return read_only(self._pieces.evaluate(series, turned))
+        after = self.duration - self._pieces.evaluate(series, self.period - turned)
+        return read_only(np.where(turned == 0.0, 0.0, after))
 
     @cached_property
     def motor_torque(self):
@@ -267,7 +266,9 @@ class Running:
     @cached_property
     def solution(self):
         """`Solution` at the crank angles with the true speed and acceleration."""
-        return RunningSolution.of(self)
+        scene = replace_unchecked(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration)
+        plain = scene.solve(self.crank_angle)
+        return RunningSolution(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=self)
 
     @property
     def crank_flywheel(self):
@@ -484,11 +485,3 @@ class Running:
     @property
     def _powers(self):
         return self._transmission * self._motor_torque(self._speed) * self._speed
-
-    def _time_after(self, turned):
-        """Time, s, to turn from angle 0 by `turned`, less than a period, in the crank's own direction."""
-        slowness = 1.0 / np.abs(self._speed)
-        series = self._pieces.series(self._pieces.integrated(slowness))
-        if self.direction > 0:
-            return self._pieces.evaluate(series, turned)
-        return np.where(turned == 0.0, 0.0, self.duration - self._pieces.evaluate(series, self.period - turned))

@@ -39,7 +39,7 @@ class DrivenComparison(Comparison):
     >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> light, heavy = (ks.drive.steady(pump, motor, flywheel=inertia) for inertia in (0.05, 0.5))
-    >>> found = ks.compare(light, heavy)  # what a larger flywheel takes off the motor
+    >>> found = ks.compare(light, heavy)  # effect of a larger flywheel on the motor
     >>> [round(torque, 2) for torque in found.peak_motor_torques]
     [5.61, 3.42]
     """
@@ -150,8 +150,7 @@ def running_table(runs, starts):
     starts : mapping of label to Trajectory or None
         From rest, None where a machine does not start.
     """
-    columns = {name: _running_rows(run, starts[name]) for name, run in runs.items()}
-    return _table(columns)
+    return _table({name: _running_rows(run, starts[name]) for name, run in runs.items()})
 
 
 def energy_table(runs):

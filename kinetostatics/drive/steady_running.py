@@ -1,10 +1,10 @@
 """Periodic running of a machine under its motor, or under a constant torque, exact to rounding.
 
 The state is the energy U = (Jf + J(phi)) omega^2 / 2 over the crank angle: dU/dphi = motor torque - load torque, which
-needs no derivative of J. Newton's method linearises this to u' = a u + g, with a = d(net torque)/dU, solved by its
-integrating factor in Chebyshev series between the kinks; about four steps reach rounding. It starts at the operating
-speed, where the mean torques of motor and loads agree. Where it does not converge, an integration in time from a high
-speed gives the start.
+needs no derivative of J. Newton's method linearises this to u' = a u + g, with a = d(net torque)/dU, and solves it by
+its integrating factor in Chebyshev series between the kinks; about four steps reach rounding. The start is the
+operating speed, at which the mean torques of motor and loads agree; where Newton's method does not converge from
+there, an integration in time from a high speed gives the start.
 """
 
 import math
@@ -18,10 +18,9 @@ from ..numbers import checks
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
-from .bends import parted
-from .one_dof import driven_machine
-from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
-from .resolution import require_inertia, resolved_with_bends
+from .one_dof import DrivenMachine
+from .pieces import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
+from .resolution import require_inertia, resolved, split_at_kinks
 from .running import Running
 
 MAX_GROWTH_EXPONENT = 4.0
@@ -29,45 +28,26 @@ MAX_GROWTH_EXPONENT = 4.0
 SPEED_ROUNDING = 1e-14
 """Rounding of the speed, relative; the motor's slope turns it into rounding of the torque."""
 MAX_NEWTON_STEPS = 40
-MAX_HALVINGS = 3
+MAX_STIFF_HALVINGS = 3
 """Halvings of all pieces where the iteration does not converge, as with stiff motors."""
 ENERGY_TOLERANCE = 1e-14
 
 
 def solve_near(driven, pieces, guess):
     """Pieces and energy of periodic running near `guess(pieces)`, on finer pieces if needed; else None."""
-    for halving in range(MAX_HALVINGS + 1):
+    for halving in range(MAX_STIFF_HALVINGS + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
-        pieces = _split_stiff_pieces(driven, pieces, guess)
+        growth = np.abs(pieces.whole(linearise(driven, pieces, guess(pieces))[3]))
+        parts = np.ceil(np.fmin(growth / MAX_GROWTH_EXPONENT, MAX_PIECES + 1.0)).astype(int)
+        if parts.max() > 1 and parts.sum() <= MAX_PIECES:
+            spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
+            edges = [np.linspace(low, high, max(count, 1), endpoint=False) for low, high, count in spans]
+            pieces = Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
         energy = _newton(driven, pieces, guess(pieces))
         if energy is not None:
             return pieces, energy
     return None
-
-
-def _split_stiff_pieces(driven, pieces, guess):
-    """Pieces divided where the integral of a near a guess is large."""
-    _, _, _, growth = linearise(driven, pieces, guess(pieces))
-    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / MAX_GROWTH_EXPONENT, MOST_PIECES + 1.0)).astype(int)
-    if parts.max() <= 1 or parts.sum() > MOST_PIECES:
-        return pieces
-    spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
-    edges = [np.linspace(low, high, max(count, 1), endpoint=False) for low, high, count in spans]
-    return Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
-
-
-def unresolved_pieces(driven, pieces, energy):
-    """Mask of the pieces whose series are not resolved and that can be halved."""
-    state, inertia, speed, growth = linearise(driven, pieces, energy)
-    drive = driven.motor_torque(speed)
-    wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
-    rounding = SPEED_ROUNDING * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
-    floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
-    rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
-    tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
-    tails.append(pieces.tail(speed) > 10.0 * TAIL)
-    return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
 
 
 def linearise(driven, pieces, energy, state=None):
@@ -169,6 +149,9 @@ def settle_by_integration(driven, pieces, start):
     def standstill(angle, energy):
         return energy[0] - 1e-9 * most
 
+    def path_energy(path, pieces):
+        return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), 1e-9 * most)
+
     vars(standstill)["terminal"] = True
     energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
     for turn in range(MAX_TURNS):
@@ -195,7 +178,7 @@ def settle_by_integration(driven, pieces, start):
             )
         last, energy = energy, float(found.y[0, -1])
         if abs(energy - last) < 0.05 * last:
-            running = solve_near(driven, pieces, partial(_path_energy, found.sol, 1e-9 * most))
+            running = solve_near(driven, pieces, partial(path_energy, found.sol))
             if running is not None:
                 return running
             if abs(energy - last) < 1e-4 * last:
@@ -224,11 +207,6 @@ def _remedy(driven, pieces, start):
     return "give a larger flywheel"
 
 
-def _path_energy(path, least, pieces):
-    """Energy of an integrated path at the points of pieces, at least `least`."""
-    return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), least)
-
-
 MEAN_LOAD_ANGLES = 96
 """Crank angles of a mean load torque."""
 SPEED_COUNT = 512
@@ -250,8 +228,7 @@ def operating_speed(driven):
             f"{name}: nothing holds the speed, as neither the motor's torque nor the loads depend on it; a turn leaves "
             f"{TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with speed"
         )
-    load = _interpolated_mean_load if driven.smooth_by_speed else _mean_load
-    load, spare, ends = _spare_torque(driven, speed, load)
+    load, spare, ends = _spare_torque(driven, speed, interpolate=driven.smooth_by_speed)
     if driven.smooth_by_speed:  # the interpolated load may place the interval wrongly
         above, below = (1.0, 1.0) if ends is None else _spare_torque(driven, np.array(ends))[1]
         if not above > 0.0 >= below:
@@ -273,30 +250,35 @@ def operating_speed(driven):
         )
     best = int(np.argmax(spare))
     missing = float(-spare[best] * abs(motor.transmission))
+    torque, remedy = motor.torque(speed), "that drives "
+    drives = torque > 0.0
+    if drives.any():
+        remedy = f"{math.ceil(1e3 * np.min(load[drives] / torque[drives])) / 1e3:.6g} times as strong "
     raise DriveError(
         f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
         f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
         f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
-        f"{_required_strength(load, motor.torque(speed))}or another transmission",
+        f"{remedy}or another transmission",
         missing,
     )
 
 
-def _spare_torque(driven, speed, load_at=None):
-    """Mean load torque at motor speeds, motor torque less it, and the highest interval where that turns negative."""
+def _spare_torque(driven, speed, interpolate=False):
+    """Mean load torque at motor speeds, motor torque less it, and the highest interval where that turns negative.
+
+    To `interpolate` is to compute the load at a few speeds only, and linearly over the squared speed between them.
+    """
     motor = driven.motor
-    load = (load_at or _mean_load)(driven, speed / motor.transmission) / motor.transmission
+    crank_speed = speed / motor.transmission
+    if interpolate:
+        few = np.linspace(0, crank_speed.size - 1, FRICTION_SPEED_COUNT).astype(int)
+        load = np.interp(crank_speed**2, crank_speed[few] ** 2, _mean_load(driven, crank_speed[few]))
+    else:
+        load = _mean_load(driven, crank_speed)
+    load = load / motor.transmission
     spare = motor.torque(speed) - load
     crossing = np.flatnonzero((spare[:-1] > 0.0) & (spare[1:] <= 0.0))
     return load, spare, (speed[crossing[-1]], speed[crossing[-1] + 1]) if crossing.size else None
-
-
-def _required_strength(load, torque):
-    """Text of how many times stronger the motor must be to carry the loads at some speed."""
-    drives = torque > 0.0
-    if not drives.any():
-        return "that drives "
-    return f"{math.ceil(1e3 * np.min(load[drives] / torque[drives])) / 1e3:.6g} times as strong "
 
 
 def require_within_motor_table(driven, speed):
@@ -316,13 +298,7 @@ def _mean_load(driven, speed):
     if not driven.by_speed:
         return driven.at(angle).torque.mean() + 0.0 * speed
     grid = np.broadcast_arrays(angle[None, :], speed[:, None])
-    return driven.at_constant_speed(*grid).torque.mean(axis=1)
-
-
-def _interpolated_mean_load(driven, speed):
-    """Mean load torque interpolated linearly over the squared speed, from a few speeds."""
-    few = np.linspace(0, speed.size - 1, FRICTION_SPEED_COUNT).astype(int)
-    return np.interp(speed**2, speed[few] ** 2, _mean_load(driven, speed[few]))
+    return driven.at_acceleration(*grid, 0.0).torque.mean(axis=1)
 
 
 MAX_FRICTION_UPDATES = 60
@@ -345,9 +321,9 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
         None: a motor that gives the constant torque that the machine takes at the mean speed of the scene, as textbooks
         assume; loads must not depend on the speed then.
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     angles : int or array
-        Crank angles of the tables: so many over the period, its end excluded, or these, rad.
+        Crank angles of the tables: their number over the period, its end excluded, or the angles, rad.
     engine : "numpy" or "compiled"
         As for `solve`; "compiled" pays where the same kind of machine is run often.
 
@@ -361,7 +337,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
         There is no periodic running: the motor is too weak, with the torque missing; nothing holds the speed; the
         inertia vanishes somewhere.
     ParameterError
-        A value is out of range, or a load cannot be taken at any crank angle.
+        A value is out of range, or a load is known at some crank angles only.
     AssemblyError
         The mechanism does not make full turns.
 
@@ -374,8 +350,13 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     >>> print(f"{run.mean_speed:.4f} rad/s, fluctuation {run.fluctuation:.5f}")
     104.6753 rad/s, fluctuation 0.05021
     """
-    direction = _direction_without_motor(scene) if motor is None else None
-    driven = driven_machine("steady", scene, motor, flywheel, engine, direction)
+    direction = None
+    if motor is None:
+        checks.require("steady", scene_problem(scene))
+        speed, wrong = checks.single_number("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
+        checks.require("steady", wrong)
+        direction = math.copysign(1.0, speed)
+    driven = DrivenMachine("steady", scene, motor, flywheel, engine, direction)
     is_count = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
     checks.require("steady", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE) if is_count else None)
     scene = replace_unchecked(scene, sense=None)  # the sense is the sign of the speed, which never vanishes in running
@@ -388,25 +369,38 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
 def _run_under_motor(driven, scene):
     """Pieces, and energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
-    pieces, bends = resolved_with_bends(driven, start)
+    pieces, kinks = resolved(driven, start)
     require_inertia(driven, pieces)
     found = solve_near(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
     pieces, energy = found or settle_by_integration(driven, pieces, start)
-    for _ in range(LEVELS):
+    for _ in range(MAX_HALVINGS):
         speed = linearise(driven, pieces, energy)[2]
-        moved = parted(driven, pieces, driven.forces_in_running(pieces.angle, speed), bends)
+        moved = split_at_kinks(driven, pieces, driven.kink_forces(pieces.angle, speed), kinks)
         if moved is None:
-            marked = unresolved_pieces(driven, pieces, energy)
-            if not marked.any() or len(pieces.half) > MOST_PIECES:
+            marked = _unresolved(driven, pieces, energy)
+            if not marked.any() or len(pieces.half) > MAX_PIECES:
                 break
             finer = pieces.split(marked)
         else:
-            finer, bends = moved
+            finer, kinks = moved
         series = pieces.series(energy)
         found = solve_near(driven, finer, lambda finer, old=pieces, series=series: old.evaluate(series, finer.angle))
         pieces, energy = found or settle_by_integration(driven, finer, start)
     require_within_motor_table(driven, linearise(driven, pieces, energy)[2])
     return pieces, energy
+
+
+def _unresolved(driven, pieces, energy):
+    """Mask of the pieces whose series are not resolved and that can be halved."""
+    state, inertia, speed, growth = linearise(driven, pieces, energy)
+    drive = driven.motor_torque(speed)
+    wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
+    rounding = SPEED_ROUNDING * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
+    floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
+    rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
+    tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
+    tails.append(pieces.tail(speed) > 10.0 * TAIL)
+    return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
 
 
 def _run_at_mean_speed(driven, scene):
@@ -417,14 +411,14 @@ def _run_at_mean_speed(driven, scene):
             "give a motor"
         )
     speed = abs(scene.crank_speed)
-    pieces, bends = resolved_with_bends(driven, driven.direction * speed)
+    pieces, kinks = resolved(driven, driven.direction * speed)
     require_inertia(driven, pieces)
-    for _ in range(LEVELS):
+    for _ in range(MAX_HALVINGS):
         energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)
-        rows = driven.forces_at(pieces.angle, driven.direction / slow, acceleration)
-        moved = parted(driven, pieces, rows, bends)
+        rows = driven.kink_forces(pieces.angle, driven.direction / slow, acceleration)
+        moved = split_at_kinks(driven, pieces, rows, kinks)
         if moved is not None:
-            pieces, bends = moved
+            pieces, kinks = moved
             continue
         marked = ((pieces.tail(energy) > TAIL) | (pieces.tail(slow) > TAIL)) & pieces.can_split
         if not marked.any():
@@ -438,6 +432,8 @@ def _under_constant_torque(driven, pieces, speed):
 
     Friction depends on speed and acceleration: solve, update friction, repeat until the speed stops changing.
     """
+    from scipy.optimize import brentq
+
     slow, acceleration = np.full(pieces.angle.shape, 1.0 / speed), np.zeros(pieces.angle.shape)
     for _ in range(MAX_FRICTION_UPDATES):
         state = driven.at_acceleration(pieces.angle, driven.direction / slow, acceleration)
@@ -445,36 +441,21 @@ def _under_constant_torque(driven, pieces, speed):
         driven.constant_torque = pieces.total(state.torque) / driven.period
         gained = pieces.integrated(driven.constant_torque - state.torque)
         gained = gained + pieces.largest(-gained)[0]
-        energy, slow = _at_mean_speed(driven, pieces, inertia, gained, speed)
+        scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
+
+        def excess_speed(size, inertia=inertia, gained=gained, scale=scale):
+            slowness = np.sqrt(0.5 * inertia / (gained + scale * math.exp(size)))
+            return driven.period / pieces.total(slowness) - speed
+
+        low = next((size for size in (-5.0, -12.0, -25.0) if excess_speed(size) < 0.0), None)
+        if low is None:
+            raise DriveError(
+                f"{driven.scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: "
+                "the energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
+            )
+        energy = gained + scale * math.exp(brentq(excess_speed, low, 5.0, xtol=1e-15, rtol=1e-15))
+        slow = np.sqrt(0.5 * inertia / energy)
         acceleration = (driven.constant_torque - state.torque - 0.5 * state.slope / slow**2) / inertia
         if not driven.by_speed or np.abs(slow - before).max() <= SPEED_TOLERANCE * slow.max():
             break
     return energy, slow, acceleration
-
-
-def _at_mean_speed(driven, pieces, inertia, gained, speed):
-    """Energy U = gained + constant that gives a mean speed, and the inverse of the speed."""
-    from scipy.optimize import brentq
-
-    scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
-
-    def too_fast(size):
-        slowness = np.sqrt(0.5 * inertia / (gained + scale * math.exp(size)))
-        return driven.period / pieces.total(slowness) - speed
-
-    low = next((size for size in (-5.0, -12.0, -25.0) if too_fast(size) < 0.0), None)
-    if low is None:
-        raise DriveError(
-            f"{driven.scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the "
-            "energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
-        )
-    energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=1e-15))
-    return energy, np.sqrt(0.5 * inertia / energy)
-
-
-def _direction_without_motor(scene):
-    """Sign of the scene's crank speed, for running without motor."""
-    checks.require("steady", scene_problem(scene))
-    speed, wrong = checks.single_number("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
-    checks.require("steady", wrong)
-    return math.copysign(1.0, speed)

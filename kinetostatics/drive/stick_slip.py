@@ -21,7 +21,7 @@ ABSOLUTE_TOLERANCE = 1e-15
 ANGLE_AHEAD = 1e-6
 """Crank angle, rad, after the start of a stretch that gives the sign of a force that is 0 at the start."""
 MAX_STRETCHES = 20_000
-"""Stretches of a motion before it is given up."""
+"""Stretches after which a motion ends."""
 MAX_EVALUATIONS = 1_000_000
 """Evaluations of the acceleration before a motion is refused: some thousand turns."""
 
@@ -116,7 +116,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
         if what == "lost":
             break
         stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
-        inner = slice(1, -1 if what in ("edge", "bend") else None)
+        inner = slice(1, -1 if what in ("edge", "kink") else None)
         times += (time + found.t[inner]).tolist()
         rows += [np.array([row[0] + shift, *row[1:], direction]) for row in found.y.T[inner]]
         time, state = time + found.t[-1], found.y[:, -1].copy()
@@ -130,7 +130,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
         if what in ("end", "ready", "standstill", "stuck"):
             break
     path = MotionPath(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
-    ended = "lost" if what in ("edge", "bend", "still") else what
+    ended = "lost" if what in ("edge", "kink", "still") else what
     starts = [stretch.start for stretch in stretches]
     return Motion(np.array(times), np.array(rows).T, path, reversals, ended, starts)
 
@@ -152,7 +152,7 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
         driven.balance_along(angle, speed, senses)
         return driven.last_forces
 
-    def bend(row, side):  # the sign after the start, so that no zero counts twice
+    def contact_force(row, side):  # the sign after the start, so that no zero counts twice
         return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side
 
     events = [
@@ -164,8 +164,8 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
     here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, ANGLE_AHEAD * direction))
     for row, pair in enumerate(zip(here, ahead, strict=True)):
         side = (crossed or {}).get(row) or next((math.copysign(1.0, one) for one in pair if one), 1.0)
-        events.append(_event(bend(row, side), 0))
-        names.append("bend")
+        events.append(_event(contact_force(row, side), 0))
+        names.append("kink")
     options = {"rtol": RELATIVE_TOLERANCE, "atol": ABSOLUTE_TOLERANCE, "method": "DOP853"}
     found = solve_ivp(change, (0.0, time), state, dense_output=True, events=events, **options)
     if found.status < 0 or not np.isfinite(found.y).all():
@@ -178,10 +178,10 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
         found.y[:, -1] = again.y[:, -1]
     if names[which] == "edge":
         found.y[0, -1] = edge
-    if names[which] != "bend":
+    if names[which] != "kink":
         return found, names[which], None
     before = events[which](found.t[-2], found.y[:, -2])
-    return found, "bend", {which - 3: math.copysign(1.0, -before)}
+    return found, "kink", {which - 3: math.copysign(1.0, -before)}
 
 
 def _event(function, direction):
@@ -197,10 +197,28 @@ ENERGY_TOLERANCE = 1e-9
 
 
 def require_standstill(driven, angle, speed):
-    """Refuse a machine that never stops: its motor or loads return in a turn all the energy that they take."""
-    way = math.copysign(1.0, speed)
+    """Refuse a machine that never stops: its motor or loads return in a turn all the energy that they take.
+
+    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and a machine
+    that is not slower after a period never becomes slower.
+    """
+    way, name = math.copysign(1.0, speed), driven.scene.mechanism.name
     if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
-        _require_slowing(driven, angle, speed, way)
+        steady_speed = math.inf
+        if driven.motor is not None and way == driven.direction:
+            try:
+                running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
+                steady_speed = abs(float(running.motion(np.array([angle]))[0][0]))
+            except DriveError:  # no running that keeps it from stopping
+                pass
+        if abs(speed) >= steady_speed:
+            raise DriveError(f"{name}: never comes to a standstill: its motor keeps it running; give a time as until")
+        left = _energy_after_a_period(driven, angle, speed, way)
+        if left >= 1.0 - SLOWING_TOLERANCE:
+            raise DriveError(
+                f"{name}: never comes to a standstill: after a period it has {left:.6g} times the kinetic energy of "
+                "before; give a time as until"
+            )
         return
     places = angle + way * np.linspace(0.0, driven.period, 721)
     state = driven.without_friction(np.mod(places, driven.period), sense=way)
@@ -209,34 +227,10 @@ def require_standstill(driven, angle, speed):
     motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
     if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
         raise DriveError(
-            f"{driven.scene.mechanism.name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
+            f"{name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
             f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
             "or a load that resists"
         )
-
-
-def _require_slowing(driven, angle, speed, way):
-    """Refuse a machine under motor, friction or dampers that never stops.
-
-    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and a machine
-    that is not slower after a period never becomes slower.
-    """
-    why, forward = None, driven.motor is not None and way == driven.direction
-    if forward and abs(speed) >= _steady_speed(driven, angle):
-        why = "its motor keeps it running"
-    elif (left := _energy_after_a_period(driven, angle, speed, way)) >= 1.0 - SLOWING_TOLERANCE:
-        why = f"after a period it has {left:.6g} times the kinetic energy of before"
-    if why is not None:
-        raise DriveError(f"{driven.scene.mechanism.name}: never comes to a standstill: {why}; give a time as until")
-
-
-def _steady_speed(driven, angle):
-    """Size of the speed at a crank angle in periodic running under the motor, rad/s; infinite without running."""
-    try:
-        running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
-    except DriveError:
-        return math.inf
-    return abs(float(running.motion(np.array([angle]))[0][0]))
 
 
 def _energy_after_a_period(driven, angle, speed, way):

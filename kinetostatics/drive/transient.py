@@ -15,7 +15,7 @@ from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from .motor import Motor
-from .one_dof import driven_machine
+from .one_dof import DrivenMachine
 from .steady_running import require_within_motor_table, steady
 from .stick_slip import integrate_motion, require_standstill
 from .trajectory import Event, Trajectory
@@ -38,7 +38,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     scene : Scene
         Mechanism and loads; its crank speed does not matter.
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     from_angle, from_speed : float
         rad, rad/s.
     until : float or "standstill"
@@ -89,11 +89,11 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
         Mechanism and loads; its crank speed does not matter.
     motor : Motor
     flywheel : float
-        Moment of inertia on the crank, beside its own link, kg m2.
+        Moment of inertia on the crank besides its own link, kg m2.
     from_angle : float
         rad.
     until : float, optional
-        Time, s; unless told, until the crank has 99 per cent of the mean speed of steady running.
+        Time, s; by default until the crank has 99 per cent of the mean speed of steady running.
     engine : "numpy" or "compiled"
         As for `solve`.
 
@@ -129,7 +129,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
         checks.require("start", wrong)
     pushing, _ = driven.torque_at_rest(angle, driven.direction)
     places = np.linspace(0.0, driven.period, 96, endpoint=False)
-    loads = float(np.abs(driven.at_constant_speed(places, 0.0 * places).torque).max())
+    loads = float(np.abs(driven.at_acceleration(places, 0.0 * places, 0.0).torque).max())
     if not pushing * driven.direction > MIN_TORQUE_RATIO * max(loads, abs(float(driven.motor_torque(0.0)))):
         raise _start_error(driven, angle, "it does not start")
     found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True)
@@ -148,7 +148,7 @@ def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
     for hint in plausibility.single_angle_hints(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
-    driven = driven_machine(owner, scene, motor, inertia, engine)
+    driven = DrivenMachine(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():
         raise DriveError(
@@ -163,14 +163,16 @@ def _start_error(driven, angle, what):
     """Error of a machine that does not start, with remedies."""
     rest = float(driven.motor_torque(0.0)) * driven.direction
     places = np.linspace(0.0, driven.period, 720, endpoint=False)
-    asked = driven.at_constant_speed(places, 0.0 * places).torque * driven.direction
+    asked = driven.at_acceleration(places, 0.0 * places, 0.0).torque * driven.direction
     spare, friction = driven.torque_at_rest(angle, driven.direction)
     here, friction = rest - spare * driven.direction, friction * driven.direction
     rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
-    easy = _easiest_start(places, asked - rest, driven.direction)
-    if easy is not None:
+    step = int(driven.direction)
+    energy = np.cumsum((asked - rest)[::step])  # missing energy, in the order of motion
+    if energy[-1] < 0.0:  # from its peak on the motor always gives more than the loads take
+        easy = float(places[::step][(int(np.argmax(energy)) + 1) % places.size])
         remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque carries it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
@@ -183,20 +185,6 @@ def _start_error(driven, angle, what):
     )
 
 
-def _easiest_start(places, missing, direction):
-    """Crank angle from which the motor's torque at rest carries a machine through a turn, or None.
-
-    It follows the peak of the missing energy: from there on the motor always gives more than the loads take.
-    """
-    step = int(direction)
-    missing = missing[::step]  # in the order of motion
-    energy = np.cumsum(missing)
-    if energy[-1] >= 0.0:
-        return None
-    high = int(np.argmax(energy)) + 1
-    return float(places[::step][high % places.size])
-
-
 def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     """`Trajectory` from an angle and speed until a time, a standstill, or a target speed."""
     driven.prepare(max(abs(speed), abs(target or 0.0)))
@@ -206,7 +194,13 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
     time, rows = found.time, found.rows
     if found.end == "lost":
-        raise _integration_error(driven, time[-1], *rows[:2, -1])
+        angle, speed = rows[:2, -1]
+        driven.scene.solve(np.array([angle + speed * 1e-6]))
+        raise DriveError(
+            f"{scene.mechanism.name}: the motion cannot be followed beyond {time[-1]:.6g} s, at crank angle "
+            f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position there",
+            crank_angle=float(angle),
+        )
     if found.end == "end" and not isinstance(until, float):
         what = "standstill" if target is None else f"{target:.6g} rad/s"
         raise DriveError(f"{scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until")
@@ -220,13 +214,3 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     moving = time, angles, speeds, read_only(driven.acceleration_along(angles, speeds, senses))
     ends = np.union1d(time, found.starts)  # power is smooth between these times
     return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, ends)
-
-
-def _integration_error(driven, time, angle, speed):
-    """Error of a motion that cannot continue."""
-    driven.scene.solve(np.array([angle + speed * 1e-6]))
-    return DriveError(
-        f"{driven.scene.mechanism.name}: the motion cannot be followed beyond {time:.6g} s, at crank angle "
-        f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position there",
-        crank_angle=float(angle),
-    )

@@ -1,23 +1,26 @@
 """Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import QuantityError
+from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
+from .kinks import ANGLE_TOLERANCE
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
-from .pairing import chosen, counted, of_partners, partners
-from .rounding import MOST, Known, without_rounding
+from .rounding import MAX_LISTED, BoundedExtremes, without_rounding
 
 TORQUE = "balancing_torque"
 EXTREMUM = "torque extremum"
-"""What rows of the table are called that tell one, before its number."""
+"""Label of a table's row, before its number."""
+PARTNER_DISTANCE = TURN / 3
+"""Largest difference in crank angle of extrema that are compared, rad; a reversed torque has them TURN / 4 apart."""
 ENDS = {"smallest": np.argmin, "largest": np.argmax}
 
 
@@ -45,12 +48,12 @@ class Comparison:
     def torque_extremes(self):
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
-        To each extremum of the reference belongs one of the balanced mechanism of the same kind (maximum or minimum),
-        each to one at most, so that they lie as near in crank angle as they can; NaN where none is left within a third
-        of a turn. The two sides of a jump on a flank, as friction makes at dead centres, are none of them.
+        Extrema of one kind (maximum or minimum) are matched one to one, as near in crank angle as possible; NaN where
+        none is left within a third of a turn. The two sides of a jump on a flank, as friction makes at dead centres, do
+        not count.
         """
-        reference, balanced = self._between_jumps
-        return reference, of_partners(partners(reference, balanced), balanced.value)
+        reference, balanced = self._torque_extrema
+        return reference, np.append(balanced.value, np.nan)[_partners(reference, balanced)]
 
     @cached_property
     def torque_extremum_ratios(self):
@@ -66,7 +69,7 @@ class Comparison:
 
     @cached_property
     def mean_torque_errors(self):
-        """Errors of the mean torques of both, N m: `rounding`, which is proven, and about that of the `quadrature`."""
+        """Errors of both mean torques, N m: proven bound on the `rounding`, estimate of that of the `quadrature`."""
         return mean_absolute_torque_errors(self.reference), mean_absolute_torque_errors(self.balanced)
 
     @property
@@ -89,7 +92,7 @@ class Comparison:
 
     @property
     def lost_power_ratio(self):
-        """Ratio of the mean powers lost: what balancing saves of friction."""
+        """Ratio of the mean powers lost."""
         return _ratio(*self.lost_powers)
 
     def cam_force_range(self):
@@ -107,14 +110,14 @@ class Comparison:
     def frame(self):
         """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
 
-        What is rounding, within its proven bound or beside the largest force or torque of its mechanism, stands as 0.
+        Values that are rounding, within their proven bound or beside the largest force or torque, are 0.
         """
         return self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
 
     def error_bounds(self):
-        """By how much the numbers of `frame` may be wrong by rounding, a pandas DataFrame of the same rows and columns.
+        """Proven bounds on the rounding errors of `frame`, a pandas DataFrame of the same rows and columns.
 
-        NaN where nothing is proven: of means, of what is no quantity of the solution, and where there is no
+        NaN where nothing is proven: for means, numbers that are no quantity of the solution, and without
         `Solution.error_bound`.
         """
         return self._as_frame((row.label, row.unit, *row.bounds, row.bound_of_ratio) for row in self.rows)
@@ -127,30 +130,56 @@ class Comparison:
     @cached_property
     def rows(self):
         """Rows of `frame`, a list: `label`, `unit`, the `pair` of values, `ratio` and bounds on the errors of each."""
-        return [row for row in self._all_rows() if not np.isnan(row.pair).all()]
-
-    def _all_rows(self):
-        yield self._row("mean |balancing torque|", TORQUE, self.mean_torques)
-        yield from self._torque_extrema()
-        yield from self._lost()
-        for name in (*self._shared, "shaking_force", "shaking_moment"):
-            yield self._largest(f"largest {label_of(self.reference, name)}", name)
+        rows = [self._row("mean |balancing torque|", TORQUE, self.mean_torques), *self._torque_rows()]
+        if lose(*self._both):
+            both = [solution.losses for solution in self._both]
+            for name in dict.fromkeys(name for losses in both for name in losses.lost):
+                powers = tuple(losses.lost.get(name, np.nan) for losses in both)
+                rows.append(Row(f"mean power lost, {name}", "W", powers, _ratio(*powers)))
+            rows.append(Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio))
+            rows.append(Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan))
+        for name in self._force_names:
+            values, errors = self._ends(name, _largest)
+            label = f"largest {label_of(self.reference, name)}"
+            rows.append(self._row(label, name, tuple(map(abs, values)), errors))
         for bar in self.reference.mechanism.couplers:
             for which, pair in zip(ENDS, zip(*self.inertia_force_range(bar.link), strict=True), strict=True):
-                yield Row(f"{which} {bar.link} inertia force", "N", pair, np.nan)
+                rows.append(Row(f"{which} {bar.link} inertia force", "N", pair, np.nan))
         for which, find in ENDS.items():
             pair, errors = self._ends("cam_force", find)
-            yield Row(f"{which} cam force", "N", pair, np.nan, errors)
-        yield Row("power residual", "1", tuple(solution.power_residual for solution in self._both), np.nan)
+            rows.append(Row(f"{which} cam force", "N", pair, np.nan, errors))
+        rows.append(Row("power residual", "1", tuple(solution.power_residual for solution in self._both), np.nan))
+        return [row for row in rows if not np.isnan(row.pair).all()]
+
+    def _torque_rows(self):
+        """Rows of the torque extrema, and of the largest torques if one of them is no such extremum."""
+        reference, matched = self.torque_extremes
+        own, other = (
+            bounded.errors(TORQUE)[_are_outside_jumps(bounded.found[TORQUE])] for bounded in self._bounded_extremes
+        )
+        errors = zip(own, np.append(other, np.nan)[_partners(*self._torque_extrema)], strict=True)
+        pairs = zip(reference.value, matched, strict=True)
+        rows = [
+            self._row(f"{EXTREMUM} {number}", TORQUE, pair, error)
+            for number, (pair, error) in enumerate(zip(pairs, errors, strict=True), 1)
+        ]
+        paired = np.isfinite(matched)
+        values, bounds = self._ends(TORQUE, _largest)
+        peaks = self._row("largest |balancing torque|", TORQUE, tuple(map(abs, values)), bounds)
+        for shown, peak in zip((reference.value, matched), peaks.pair, strict=True):
+            if not np.isclose(np.abs(shown[paired]), peak, rtol=1e-9).any():
+                return [*rows, peaks]
+        return rows
 
     @property
     def _both(self):
         return self.reference, self.balanced
 
     @property
-    def _shared(self):
-        """Joints that both mechanisms have."""
-        return [joint for joint in self.reference.reactions if joint in self.balanced.reactions]
+    def _force_names(self):
+        """Joints that both mechanisms have, and shaking force and moment."""
+        shared = [joint for joint in self.reference.reactions if joint in self.balanced.reactions]
+        return [*shared, "shaking_force", "shaking_moment"]
 
     @cached_property
     def _torques(self):
@@ -158,66 +187,40 @@ class Comparison:
         return [extremes(solution, TORQUE) for solution in self._both]
 
     @cached_property
-    def _between_jumps(self):
-        """The same but for those that are sides of a jump."""
-        return [chosen(found, counted(found)) for found in self._torques]
+    def _torque_extrema(self):
+        """Extremes of the torque of both mechanisms, without the sides of jumps."""
+        both = ((found, _are_outside_jumps(found)) for found in self._torques)
+        return [
+            replace(found, angle=found.angle[kept], value=found.value[kept], maximum=found.maximum[kept])
+            for found, kept in both
+        ]
 
     @cached_property
-    def _known(self):
-        """What is known of the extremes that rows tell of both mechanisms."""
-        names = *self._shared, "shaking_force", "shaking_moment", "cam_force"
-        both = zip(self._both, self._torques, strict=True)
+    def _bounded_extremes(self):
+        """Extremes of all quantities in the rows, of both mechanisms."""
+        names, both = (*self._force_names, "cam_force"), zip(self._both, self._torques, strict=True)
         return [
-            Known(at, {TORQUE: torque} | {name: extremes(at, name) for name in names if name in of_scene(at)})
+            BoundedExtremes(at, {TORQUE: torque} | {name: extremes(at, name) for name in names if name in of_scene(at)})
             for at, torque in both
         ]
 
     def _ends(self, name, find):
-        """The value that a function finds among the extremes of each mechanism, and bounds on their errors."""
-        ends = [known.end(name, find) if name in known.found else (np.nan,) * 3 for known in self._known]
+        """Values that `find` chooses from the extremes of each mechanism, and bounds on their errors."""
+        unknown = (np.nan,) * 3
+        both = self._bounded_extremes
+        ends = [bounded.end(name, find) if name in bounded.found else unknown for bounded in both]
         values, _, errors = zip(*ends, strict=True)
         return values, errors
 
     def _row(self, label, name, values, errors=(np.nan, np.nan)):
-        """A row of a quantity of both mechanisms, 0 where it is rounding."""
+        """Row of a quantity of both mechanisms, 0 where a value is rounding."""
         each = zip(self._both, values, errors, strict=True)
         pair = tuple(float(without_rounding(solution, name, [value], error)[0]) for solution, value, error in each)
         return Row(label, unit_of(self.reference, name), pair, _ratio(*pair), errors)
 
-    def _largest(self, label, name):
-        """A row of the largest magnitudes of a quantity."""
-        values, errors = self._ends(name, lambda values: np.argmax(np.abs(values)))
-        return self._row(label, name, tuple(map(abs, values)), errors)
-
-    def _torque_extrema(self):
-        """Rows of the torque's extrema, and of the largest torques where one is none of those beside each other."""
-        reference, matched = self.torque_extremes
-        own, other = (known.errors(TORQUE)[counted(known.found[TORQUE])] for known in self._known)
-        errors = zip(own, of_partners(partners(*self._between_jumps), other), strict=True)
-        pairs = zip(reference.value, matched, strict=True)
-        for number, (pair, error) in enumerate(zip(pairs, errors, strict=True), 1):
-            yield self._row(f"{EXTREMUM} {number}", TORQUE, pair, error)
-        paired = np.isfinite(matched)
-        peaks = self._largest("largest |balancing torque|", TORQUE)
-        for shown, peak in zip((reference.value, matched), peaks.pair, strict=True):
-            if not np.isclose(np.abs(shown[paired]), peak, rtol=1e-9).any():
-                yield peaks
-                return
-
-    def _lost(self):
-        """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""
-        if not lose(*self._both):
-            return
-        both = [solution.losses for solution in self._both]
-        for name in dict.fromkeys(name for losses in both for name in losses.lost):
-            powers = tuple(losses.lost.get(name, np.nan) for losses in both)
-            yield Row(f"mean power lost, {name}", "W", powers, _ratio(*powers))
-        yield Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio)
-        yield Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan)
-
 
 class Row(NamedTuple):
-    """A row of the table: values in both mechanisms, bounds on their errors."""
+    """Row of the table: values in both mechanisms, bounds on their errors."""
 
     label: str
     unit: str
@@ -232,12 +235,12 @@ class Row(NamedTuple):
 
 
 def left_out(rows):
-    """Torque extrema that a table for people can do without, if they are many: all but each column's ends.
+    """Labels of the torque extrema that a table omits if they are many: all but each column's smallest and largest.
 
-    `rows` are the values of the columns by label; labels are returned.
+    `rows` are the values of the columns by label.
     """
     labels = [label for label in rows if label.startswith(EXTREMUM)]
-    if len(labels) <= MOST:
+    if len(labels) <= MAX_LISTED:
         return []
     columns = np.array([rows[label] for label in labels], dtype=float).T
     ends = {find(column) for column in columns if not np.isnan(column).all() for find in (np.nanargmin, np.nanargmax)}
@@ -250,18 +253,18 @@ def compare(reference, balanced):
     Parameters
     ----------
     reference, balanced : Solution, or Running as `ks.drive.steady` returns it
-        Of one design each; their own crank angles do not matter.
+        Each of one design; their own crank angles do not matter.
 
     Returns
     -------
     Comparison
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
-        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`. Of machines in periodic running
-        also what their drives take: see `drive.saving.DrivenComparison`.
+        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`. For machines in periodic running
+        also figures of their drives: see `drive.savings.DrivenComparison`.
 
     Examples
     --------
-    What does a counterweight on the crank buy, and where?
+    How much does a counterweight on the crank reduce, and where?
 
     >>> import kinetostatics as ks
     >>> mower = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.15, 0.015), slider=ks.Link(5.0))
@@ -271,19 +274,21 @@ def compare(reference, balanced):
     >>> print(f"{found.peak_reaction_ratio('O'):.2f} {found.mean_torque_ratio:.2f}")  # reference / balanced
     2.06 1.00
     """
-    reference, balanced = _solution(reference), _solution(balanced)
+    reference, balanced = (
+        given.solution if hasattr(given, "energy_flow") else given  # periodic running
+        for given in (reference, balanced)
+    )
     checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))
     kinds = {getattr(solution, "COMPARISON", Comparison) for solution in (reference, balanced)}
     return (kinds.pop() if len(kinds) == 1 else Comparison)(reference, balanced)
 
 
-def _solution(given):
-    """The solution of what `ks.drive.steady` returns; all else as it is."""
-    return given.solution if hasattr(given, "energy_flow") else given
+def _largest(values):
+    return np.argmax(np.abs(values))
 
 
 def _ratio(reference, balanced):
-    """Ratio of two peaks; infinite where the balanced one is zero but for rounding, NaN if neither has a value."""
+    """Ratio of two peaks; infinite where the balanced one is rounding, NaN if neither has a value."""
     if abs(balanced) > 1e-12 * abs(reference):
         return reference / balanced
     return np.inf if abs(reference) > 0 and np.isfinite(balanced) else np.nan
@@ -294,3 +299,45 @@ def _range(solution, quantity):
         return extremes(solution, quantity).range
     except QuantityError:
         return np.nan, np.nan
+
+
+def _partners(reference, balanced):
+    """Index of the balanced extremum that belongs to each of the reference (K,), -1 where there is none.
+
+    Pairs are of one kind (maximum or minimum), one to one, with the least sum of distances in crank angle.
+    """
+    period, own = reference.solution.period, balanced.solution.period
+    times = max(1, round(period / own))
+    angle = np.ravel(balanced.angle + own * np.arange(times)[:, None])
+    maximum, second = (np.tile(part, times) for part in (balanced.maximum, _are_second_sides(balanced)))
+    distance = np.abs((reference.angle[:, None] - angle + period / 2) % period - period / 2)
+    distance = distance + ANGLE_TOLERANCE * (_are_second_sides(reference)[:, None] != second)
+    same_kind = reference.maximum[:, None] == maximum
+    distance = np.where(same_kind, np.minimum(distance, PARTNER_DISTANCE), PARTNER_DISTANCE)
+    rows = np.flatnonzero((distance < PARTNER_DISTANCE).any(axis=1))
+    columns = distance[rows].argmin(axis=1) if rows.size else rows
+    if np.unique(columns).size < columns.size:  # the nearest of two are the same
+        from scipy.optimize import linear_sum_assignment
+
+        rows, columns = linear_sum_assignment(distance)
+        near = distance[rows, columns] < PARTNER_DISTANCE
+        rows, columns = rows[near], columns[near]
+    found = np.full(len(reference), -1)
+    found[rows] = columns % max(len(balanced), 1)
+    return found
+
+
+def _are_outside_jumps(found):
+    """Mask (K,) of the extrema that are not the two sides of a jump between the extrema before and after it."""
+    keep = np.ones(len(found), dtype=bool)
+    for second in np.flatnonzero(_are_second_sides(found)) if len(found) > 2 else ():
+        sides = slice(second - 1, second + 1)
+        low, high = sorted((found.value[second - 2], found.value[(second + 1) % len(found)]))
+        if ((low < found.value[sides]) & (found.value[sides] < high)).all():
+            keep[sides] = False
+    return keep
+
+
+def _are_second_sides(found):
+    """Mask (K,) of the extrema that follow another one at the same crank angle: the value after a limit or jump."""
+    return np.diff(found.angle, prepend=-1.0) <= ANGLE_TOLERANCE

@@ -1,27 +1,31 @@
-"""True extrema of a result over the turn, found between samples by evaluating the mechanism itself."""
+"""True extrema of quantities over the period, refined between samples by evaluating the mechanism itself.
+
+`extremes` returns those of one quantity, `extremes_frame` a table of the smallest and largest of all.
+"""
 
 import warnings
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import ConditionWarning, NotGivenError, ParameterError
 from ..mechanics import jamming, quantities
-from ..mechanics.quantities import largest_term, unit_of, values
+from ..mechanics.quantities import Quantity, largest_term, of_scene, unit_of, values
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
-from .rounding import FLOOR, told
+from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turn import require_single
-from .turning_points import Path, at_jumps, in_order, open_paths, turning_points
+from .turning_points import Path, open_paths, refine_turning_points, replace_jumps, turning_points
 
-APART = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
-"""Parts of the period at which functions are compared with themselves a period later."""
-DRIFT = 1e-6
-"""Growth in a period, relative to the largest value, from which on a function does not repeat."""
-CALM = 1e6
+PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
+"""Places in the period, relative to it, at which functions are compared with their values a period later."""
+GROWTH_TOLERANCE = 1e-6
+"""Growth in a period, relative to the largest value, above which a function does not repeat."""
+MAX_ORDINARY_CONDITION = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
+SHOWN = ("smallest", "smallest at [deg]", "largest", "largest at [deg]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +38,7 @@ class Extremes:
     angle : array (K,)
         Crank angles in [0, period), rad.
     value : array (K,)
-        Values of the quantity, SI; at a limit position or the end of a gap what it tends to there, infinite if it grows
+        Values of the quantity, SI; at a limit position or the end of a gap its limit there, infinite if it grows
         without bound.
     maximum : array (K,) of bool
         Whether each is a maximum.
@@ -65,7 +69,7 @@ class Extremes:
 
     @cached_property
     def error_bound(self):
-        """Proven bound on the rounding error of each value, (K,): of the quantity at the angle told.
+        """Proven bound on the rounding error of each value at its angle, (K,).
 
         Raises
         ------
@@ -94,20 +98,20 @@ class Extremes:
         return len(self.angle)
 
     def __repr__(self):
-        return told(self)
+        return extremes_text(self)
 
 
 def extremes(solution, quantity):
     """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
 
     Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
-    limit positions; each extremum is then found by minimisation (Chandrupatla's method) of the quantity evaluated
-    by the mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope
-    of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. At a jump the extrema are
-    the values on its two sides; at one that a function does not declare, those of the nearest samples.
+    limit positions; in each, Chandrupatla's method minimises the quantity as the mechanism itself gives it. As a
+    minimum fixes its place to half the digits only, a Chebyshev fit through nearby values then gives the angle, kept
+    if the value there is as good. At a jump the extrema are the values on its two sides; at one that a function does
+    not declare, those of the nearest samples.
 
-    Values with less than two correct digits, by `Solution.condition`, do not count. In their place, and at the ends of
-    gaps, stands what the quantity tends to there, from each side.
+    Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
+    each side replace them, also at the ends of gaps.
 
     Parameters
     ----------
@@ -120,7 +124,7 @@ def extremes(solution, quantity):
     Returns
     -------
     Extremes
-        `.angle` and `.value` in order of angle; empty for a constant, or what is constant but for rounding.
+        `.angle` and `.value` in order of angle; empty for a quantity that is constant but for rounding.
 
     Raises
     ------
@@ -153,7 +157,7 @@ def extremes(solution, quantity):
 
 
 def warning(solution, several):
-    """What must be said about extremes of a solution, as a sentence, or None."""
+    """Sentence of a `ConditionWarning` on extremes of a solution, or None."""
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
@@ -178,7 +182,7 @@ def _degrees(angles):
 
 
 def extrema(solution, quantity):
-    """The extrema without a warning; those of quantities are kept for all solutions of the same turn."""
+    """The extrema without a warning; those of named quantities are cached for all solutions of the same turn."""
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
@@ -195,53 +199,51 @@ def _extrema(solution, turn, quantity):
     def function(at):
         return values(at, quantity)
 
-    position, own = unit_of(solution, quantity) == "m", None if callable(quantity) else solution
-    called = quantity if isinstance(quantity, str) else "a function of the solution"
+    is_function = callable(quantity)
+    position, own = unit_of(solution, quantity) == "m", None if is_function else solution
+    name = quantity if isinstance(quantity, str) else "a function of the solution"
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        samples = _sampled(turn, function, quantity)
-        if callable(quantity):
+        samples = np.asarray(function(turn.at))
+        if samples.shape != turn.angle.shape:
+            raise ParameterError(
+                f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
+                "angles"
+            )
+        if is_function:
             _require_repeating(turn, function, float(np.max(np.abs(samples), initial=0.0)))
         good = np.isfinite(samples) & (position | turn.usable)
-        size, floor = _sizes(turn, quantity, samples, good, position)
-        samples, jumps = at_jumps(turn, samples, size)
+        size, floor = _size_and_rounding(turn, quantity, samples, good, position)
+        samples, jumps = replace_jumps(turn, samples, size)
         paths = [Path(turn.angle, samples, floor, turn.period)]
         if not good.all():
             paths = list(open_paths(turn, function, samples, good, floor, size))
-        found = [turning_points(path) for path in paths]
-        if not any(maximum.size for *_, maximum in found):
+        points = [turning_points(path) for path in paths]
+        if not any(maximum.size for *_, maximum in points):
             constant = float(np.max(samples[good])) if good.any() else np.nan
-            nothing = np.empty(0)
-            return Extremes(called, nothing, nothing, nothing.astype(bool), constant, left_out, own)
-        joined = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
-        angle, value, maximum = in_order(turn, function, size, jumps, *joined)
-    return Extremes(called, angle, value, maximum, np.nan, left_out, own)
-
-
-def _sampled(turn, function, quantity):
-    samples = np.asarray(function(turn.at))
-    if samples.shape != turn.angle.shape:
-        raise ParameterError(
-            f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
-            "angles"
-        )
-    return samples
+            empty = np.empty(0)
+            return Extremes(name, empty, empty, empty.astype(bool), constant, left_out, own)
+        joined = (np.concatenate(parts, axis=-1) for parts in zip(*points, strict=True))
+        angle, value, maximum = refine_turning_points(turn, function, size, jumps, *joined)
+    return Extremes(name, angle, value, maximum, np.nan, left_out, own)
 
 
 def _require_repeating(turn, function, size):
     """Refuse a function that grows by the same amount in each period, as the angle of a link that turns fully."""
-    first, second = (np.asarray(function(turn.at.at(turn.period * (APART + turns)))) for turns in (0.0, 1.0))
+    first, second = (np.asarray(function(turn.at.at(turn.period * (PROBE_PLACES + turns)))) for turns in (0.0, 1.0))
     growth = float(np.mean(second - first))
-    if abs(growth) > DRIFT * size and np.all(np.abs(second - first - growth) < DRIFT * abs(growth)):
+    if abs(growth) > GROWTH_TOLERANCE * size and np.all(
+        np.abs(second - first - growth) < GROWTH_TOLERANCE * abs(growth)
+    ):
         raise ParameterError(
             f"extremes: the function of the solution grows by {growth:.6g} in each period of {turn.period:.6g} rad, as "
             "the angle of a link that turns fully does, so it has no extremes; take its rate, or what repeats"
         )
 
 
-def _sizes(turn, quantity, samples, good, position):
-    """Largest value of a quantity but for its growth at limit positions, and the rounding of it at each sample."""
-    calm = good & (turn.condition < CALM)
+def _size_and_rounding(turn, quantity, samples, good, position):
+    """Largest value of a quantity without its growth at limit positions, and its rounding at each sample."""
+    calm = good & (turn.condition < MAX_ORDINARY_CONDITION)
     calm = calm if calm.any() else good
     size = float(np.max(np.abs(samples[calm]), initial=0.0))
     terms = largest_term(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
@@ -250,3 +252,67 @@ def _sizes(turn, quantity, samples, good, position):
         return size, floor
     condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT_ROUNDOFF)) if position else turn.condition
     return size, np.fmax(floor, UNIT_ROUNDOFF * condition * np.maximum(np.abs(samples), size))
+
+
+class ExtremesRow(NamedTuple):
+    """Extremes of a quantity as a row of a table.
+
+    Attributes
+    ----------
+    quantity : Quantity
+    ends : tuple of float
+        As `SHOWN` names them.
+    errors : tuple of float
+        Bounds on the errors of `ends`; NaN where nothing is proven, and for crank angles.
+    """
+
+    quantity: Quantity
+    ends: tuple[float, ...]
+    errors: tuple[float, ...]
+
+
+def extremes_frame(solution):
+    """Smallest and largest true extremum of every quantity over the period, with its crank angle, a pandas DataFrame.
+
+    Values within their proven rounding error, or small beside the largest term of their kind, are 0; so are angles
+    within `PLACED` of 0.
+
+    Warns
+    -----
+    ConditionWarning
+        Once for all quantities: values around some crank angles have no correct digit, or grow without bound there.
+    """
+    return frames(extremes_by_name(solution))[0]
+
+
+def frames(rows):
+    """Two tables of the rows of `extremes_by_name`: their values, and bounds on the errors of these."""
+    import pandas as pd
+
+    tables = zip(*((row.ends, row.errors) for row in rows.values()), strict=True)
+    heads = [(row.quantity.label, row.quantity.unit) for row in rows.values()]
+    columns = ["quantity", "unit", *SHOWN]
+    lines = ([(*head, *numbers) for head, numbers in zip(heads, table, strict=True)] for table in tables)
+    return tuple(pd.DataFrame(table, columns=columns).set_index("quantity") for table in lines)
+
+
+def extremes_by_name(solution):
+    """`ExtremesRow` of every quantity by its name; as for `extremes_frame`."""
+    quantities_of = of_scene(solution)
+    found = {
+        name: extrema(solution, name)
+        for name, quantity in quantities_of.items()
+        if quantity.kind not in ("check", "energy")
+        and not (quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio_slope is None)
+    }
+    if text := warning(solution, found.values()):
+        warnings.warn(text, ConditionWarning, stacklevel=3)
+    bounded, rows = BoundedExtremes(solution, found), {}
+    for name in found:
+        pairs = (bounded.end(name, find) for find in (np.argmin, np.argmax))
+        ends, angles, errors = zip(*pairs, strict=True)
+        ends = without_rounding(solution, name, ends, errors)
+        degrees = np.degrees(zeroed(angles, PLACED))
+        numbers = tuple(float(item) for end in zip(ends, degrees, strict=True) for item in end)
+        rows[name] = ExtremesRow(quantities_of[name], numbers, (errors[0], np.nan, errors[1], np.nan))
+    return rows

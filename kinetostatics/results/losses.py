@@ -1,20 +1,21 @@
-"""Where the power of a machine goes over its period: friction by joint, dampers, loads, drive; mechanical efficiency.
+"""Mean powers of a machine over its period: friction by joint, dampers, loads, drive; mechanical efficiency.
 
-Over a period in which the machine comes back to its state, masses, weight and springs take as much as they give. What
-the drive and the other loads put in, they take out again or it is lost:
+Over a period, masses, weight and springs return all the energy that they take. The power that drive and other loads put
+in is taken out by them or lost:
 
     given = taken + lost        efficiency = taken / given = taken / (taken + lost)
 
 (Artobolevskii, *Theory of Mechanisms and Machines*: the work of the useful resistances over that of the driving forces,
-in a period of steady motion.) Drive and loads are each judged by their work in the whole period: an engine's gas force
-gives and its drive takes, a pump's the other way round. A machine that idles takes nothing, so its efficiency is 0; so
-is that of one whose load and drive both give, as where friction holds a weight that is let down.
+in a period of steady motion.) The work over the whole period decides whether drive or a load gives or takes: an
+engine's gas force gives and its drive takes, a pump's the other way round. An idling machine takes nothing: its
+efficiency is 0, as it is where load and drive both give, for example where friction holds a weight that is let down.
 """
 
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
+from operator import methodcaller
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,11 @@ from ..mechanics.load_values import title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
 from .extremes import extrema
-from .means import PRECISE, ROUNDED, closed_turn, means
+from .means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from .rounding import PLACED, zeroed
 
-NOTHING = 1e-12
-"""Mean power, relative to the largest power that flows, that is rounding of what goes to and fro."""
+POWER_TOLERANCE = 1e-12
+"""Mean power, relative to the largest power, that counts as 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class Losses:
     dampers : dict of str to float
         Lost by damper.
     loads : dict of str to float
-        Taken by each load that neither stores energy, as weight and springs, nor is a damper; negative if it gives.
+        Taken by each load that is no damper and, unlike weight and springs, stores no energy; negative if it gives.
     drive : float
         Given by the drive; negative if it takes, as of an engine.
     turn_time : float
@@ -92,12 +93,12 @@ class Losses:
 
     @property
     def taken(self):
-        """Taken out by those loads that take, and by the drive if it does, W: what the machine is for."""
+        """Taken out by those loads that take, and by the drive if it does, W: the useful power."""
         return -sum(power for power in self._ports if power < 0)
 
     @property
     def efficiency(self):
-        """Mechanical efficiency: of what is taken and lost together, the part that is taken; NaN where neither is."""
+        """Mechanical efficiency, taken / (taken + lost); NaN where nothing is taken or lost."""
         whole = self.taken + self.total
         return self.taken / whole if whole > 0 else np.nan
 
@@ -112,7 +113,7 @@ class Losses:
         return found | {"all": _largest(extrema(self.solution, self.power))}
 
     def frame(self):
-        """What is lost where, a pandas DataFrame: mean, share of all losses, largest and where, energy per turn."""
+        """Losses by joint and damper, a pandas DataFrame: mean, share, largest and its crank angle, energy per turn."""
         import pandas as pd
 
         mean = np.array([*self.lost.values(), self.total])
@@ -141,7 +142,7 @@ class Losses:
 
 
 def lose(*solutions):
-    """Whether any machine has friction, and all turn, so that there is a power to tell."""
+    """Whether any of the machines has friction and all of them turn, so that losses can be shown."""
     return any(s.friction for s in solutions) and all(np.all(np.asarray(s.crank_speed)) for s in solutions)
 
 
@@ -171,26 +172,32 @@ def losses(solution) -> Losses:
     at = turn.at.at(turn.angle[turn.usable])
     if not np.all(np.asarray(at.crank_speed)):
         raise ParameterError("losses: the crank stands still, so no power flows; give a crank_speed")
-    items = _named(item for item in solution.loads if not hasattr(item, "potential"))
+    items: dict[str, Any] = {}  # by title; loads of one title get numbers
+    for item in solution.loads:
+        if not hasattr(item, "potential"):
+            title = title_of(item)
+            count = sum(name.partition(" #")[0] == title for name in items)
+            items[f"{title} #{count + 1}" if count else title] = item
     dampers = {name: item for name, item in items.items() if getattr(item, "DISSIPATES", False)}
     loads = {name: item for name, item in items.items() if name not in dampers}
-    lost: dict[str, Callable[[Any], Any]] = {joint: partial(_friction_loss, joint) for joint in solution.friction}
+    lost: dict[str, Any] = {joint: methodcaller("friction_loss_at", joint) for joint in solution.friction}
     lost |= {name: partial(_taken, item) for name, item in dampers.items()}
-    powers: list[Callable[[Any], Any]] = [_drive, *lost.values(), *(partial(_taken, item) for item in loads.values())]
+    powers = [*lost.values(), *(partial(_taken, item) for item in loads.values())]
 
     def by_angle(angle):
         there = turn.at.at(turn.clear(angle))
         speed = np.broadcast_to(np.abs(there.crank_speed), angle.shape)
-        return np.array([np.ones(angle.shape), *(power(there) for power in powers)]) / speed
+        drive = there.crank_speed * there.balancing_torque
+        return np.array([np.ones(angle.shape), drive, *(power(there) for power in powers)]) / speed
 
     sizes = np.abs(by_angle(turn.angle)).max(axis=-1)
-    floor = ROUNDED * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * len(powers)])
-    found, wrong = means(by_angle, turn, floor)
-    if np.any(wrong > PRECISE * sizes + floor):
-        error = np.max(wrong[1:]) / found[0]
+    floor = TERM_ROUNDING * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * (1 + len(powers))])
+    found, errors, _ = means(by_angle, turn, floor)
+    if np.any(errors > WARNING_ERROR * sizes + floor):
+        error = np.max(errors[1:]) / found[0]
         text = f"losses: powers are right to about {error:.2g} W only, so uneven are the loads"
         warnings.warn(text, ConditionWarning, stacklevel=3)
-    drive, *rest = np.where(np.abs(found) <= NOTHING * sizes, 0.0, found)[1:] / found[0]
+    drive, *rest = np.where(np.abs(found) <= POWER_TOLERANCE * sizes, 0.0, found)[1:] / found[0]
     mean = dict(zip((*lost, *loads), map(float, rest), strict=True))
     return Losses(
         solution,
@@ -203,27 +210,9 @@ def losses(solution) -> Losses:
     )
 
 
-def _drive(at):
-    return at.crank_speed * at.balancing_torque
-
-
-def _friction_loss(joint, at):
-    return at.friction_loss_at(joint)
-
-
 def _taken(item, at):
-    """Power that a load takes of the machine."""
+    """Power that a load takes, W."""
     return np.broadcast_to(-at.crank_speed * number_or_zero(work_of(item, at)), at.crank_angle.shape)
-
-
-def _named(items):
-    """Loads by what messages call them, those of one name numbered."""
-    found: dict[str, Any] = {}
-    for item in items:
-        title = title_of(item)
-        taken = sum(name.partition(" #")[0] == title for name in found)
-        found[f"{title} #{taken + 1}" if taken else title] = item
-    return found
 
 
 def _largest(found):

@@ -1,4 +1,4 @@
-"""Peaks of evenly spaced values of many designs, between the samples, and memory for what is soon forgotten."""
+"""Peaks of evenly spaced values of many designs, interpolated between the samples; scratch memory for reductions."""
 
 import math
 import operator
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 REACH = 4
-"""Samples on either side of a peak that tell how high it is between them."""
+"""Samples on either side of a peak that interpolate its height."""
 SCRATCH = 2**18
-"""Bytes of memory for short use that each thread keeps."""
+"""Bytes of the scratch buffer of a thread."""
 TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
@@ -20,24 +20,24 @@ INNER = polynomial.polyfromroots(_AROUND[1:-1]).tolist()
 COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
 _WHOLE = math.factorial(2 * REACH)
 THROUGH = np.round(np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True)) * _WHOLE) / _WHOLE
-"""Coefficients of the polynomial through samples, from them; whole numbers over a factorial, so the nearest to them."""
+"""Coefficients of the polynomial through samples; whole numbers over a factorial, so rounded once."""
 
 
 def peak(values, sign=1.0):
-    """Largest value, times a sign, of each design: of all peaks of the samples the highest between them.
-
-    Also where it is, in periods, and about how much it may be wrong.
-    """
+    """Largest interpolated value, times a sign, of each design, its place in periods, and an estimate of its error."""
     count = values.shape[-1]
-    tops = [first * count + _tops(some, sign) for first, some in pieces(values, 2)]
+    tops = [first * count + _tops(some, sign) for first, some in blocks(values, 2)]
     design, place = np.divmod(np.concatenate(tops), count)
     if count < _AROUND.size:
         height, shift = sign * values[design, place], 0.0 * place
         error = height
     else:
-        rivals = _rivals(sign * _around(values, design, place, 1), design, len(values))
+        # a peak rises above its sample by less than that rises above its neighbours
+        before, here, after = sign * _around(values, design, place, 1)
+        bend = abs(before - 2.0 * here + after)
+        rivals = ~(here + bend < _highest(here - bend, design, len(values))[design])
         design, place = design[rivals], place[rivals]
-        height, shift, error = _between(sign * _around(values, design, place, REACH))
+        height, shift, error = _interpolate(sign * _around(values, design, place, REACH))
     highest = _highest(height, design, len(values))
     _, first = np.unique(np.where(height < highest[design], -1, design), return_index=True)
     first = first[-len(values) :]
@@ -46,7 +46,7 @@ def peak(values, sign=1.0):
 
 
 def _tops(values, sign):
-    """Places of samples higher than the one before and not lower than the one behind, or the first highest of all."""
+    """Flat indices of samples higher than the one before and not lower than the next, and of each first highest one."""
     higher, highest = (np.greater, np.argmax) if sign > 0 else (np.less, np.argmin)
     rising, tops = scratch(bool, 2, *values.shape)
     higher(values[:, 1:], values[:, :-1], out=rising[:, 1:])
@@ -61,42 +61,34 @@ def _around(values, design, place, reach):
     return values[design, (place + np.arange(-reach, reach + 1)[:, None]) % values.shape[-1]]
 
 
-def _rivals(near, design, count):
-    """Which peaks may be the highest of a design; one rises above its sample by less than that above its neighbours."""
-    before, here, after = near
-    bend = abs(before - 2.0 * here + after)
-    return ~(here + bend < _highest(here - bend, design, count)[design])
-
-
 def _highest(height, design, count):
-    """Highest of the peaks of each design, which stand one design after the other."""
+    """Highest of the peaks of each design; `design` rises."""
     return np.maximum.reduceat(height, np.searchsorted(design, np.arange(count)))
 
 
-def _between(near):
-    """The same as `between`, of samples as arrays (places, peaks)."""
+def _interpolate(near):
+    """`between` for samples as arrays (places, peaks)."""
+
+    def chosen(sign, one, other, here, there):
+        return np.where(COMPARED[sign](one, other), here, there)
+
     with np.errstate(all="ignore"):
-        return between(list(near), _chosen, np.sqrt)
-
-
-def _chosen(sign, one, other, here, there):
-    return np.where(COMPARED[sign](one, other), here, there)
+        return between(list(near), chosen, np.sqrt)
 
 
 def between(near, chosen, sqrt):
-    """Height of each peak, how far from its highest sample, and about how much the height may be wrong.
+    """Height of each peak, its distance from the highest sample, and an estimate of the error of the height.
 
-    From the samples around it, one after the other, by the polynomial through all of them, by the parabola through
-    three if others spoil it, as beyond a jump, and that of the sample if not even three go together. What does not
-    change its sign may be a magnitude, which has a corner at zero, but its square has none. About how much the height
-    may be wrong is what two samples less make of it.
+    The polynomial through all samples gives the height, or the parabola through three where the others do not fit, as
+    beyond a jump, or the sample itself where not even three fit. Values of one sign may be a magnitude with a corner at
+    zero; their squares are interpolated. The error is the difference from two samples less.
 
     Parameters
     ----------
     near : sequence of operand
-        Arrays, or vectors that write down what is done to them (`engines.simd_reductions`).
+        Samples in order: arrays, or vectors that record their operations (`engines.simd_reductions`).
     chosen : function
-        ``chosen(sign, one, other, here, there)``: `here` where two operands compare so, else `there`.
+        ``chosen(sign, one, other, here, there)``: `here` where ``one sign other`` holds, else `there`.
     sqrt : function
     """
 
@@ -121,7 +113,7 @@ def between(near, chosen, sqrt):
     top = _polynomial(series, place)
     fewer = top - _polynomial(INNER, place) * (series[-2] + series[-1] * place)
 
-    bent = chosen("<", first, 0.0, chosen("<", last, 0.0, bend, 0.0), 0.0)  # beside what is infinite one is none
+    bent = chosen("<", first, 0.0, chosen("<", last, 0.0, bend, 0.0), 0.0)  # false where a neighbour is infinite
 
     def if_smooth(one, other):
         return chosen("<", bent, 0.0, one, other)
@@ -141,7 +133,7 @@ def between(near, chosen, sqrt):
 
 
 def _series(curve):
-    """Coefficients of the polynomial through samples, from their sums and differences on either side of the middle."""
+    """Yield coefficients of the polynomial through samples, from sums and differences about the middle one."""
     after, before = curve[REACH + 1 :], curve[REACH - 1 :: -1]
     even = [curve[REACH], *(one + other for one, other in zip(after, before, strict=True))]
     odd = [one - other for one, other in zip(after, before, strict=True)]
@@ -151,33 +143,30 @@ def _series(curve):
 
 
 def _polynomial(series, place):
-    """Polynomial from its coefficients: even and odd powers apart, which wait for each other half as long."""
+    """Polynomial by even and odd powers apart, which run in parallel."""
     square = place * place
     even, odd = (reduce(lambda value, number: number + value * square, reversed(series[k::2])) for k in (0, 1))
     return even + odd * place
 
 
 def lowest(values, step):
-    """Smallest of values (designs, N) a step apart, between them; how far it is from the middle one; the bend there.
-
-    The bend is the second derivative.
-    """
+    """Smallest interpolated value of each row (designs, N), its distance from the middle, and the second derivative."""
     row, reach = np.arange(len(values)), values.shape[-1] // 2
     place = np.clip(values.argmin(axis=-1), REACH, values.shape[-1] - 1 - REACH)
     near = values[row, place + _AROUND[:, None]]
     bend = (near[REACH - 1] - 2.0 * near[REACH] + near[REACH + 1]) / (step * step)
-    height, shift, _ = _between(1.0 - near)  # no margin exceeds 1, so that none of these changes its sign
+    height, shift, _ = _interpolate(1.0 - near)  # no margin exceeds 1, so that none of these changes its sign
     return np.minimum(1.0 - height, near.min(axis=0)), (place + shift - reach) * step, bend
 
 
-def pieces(values, size):
-    """Number of the first design, and values, of some designs at a time that take one scratch at that size a value."""
+def blocks(values, size):
+    """Blocks of designs, as (first design, values), that fit the scratch buffer with `size` bytes a value."""
     step = max(1, SCRATCH // (size * values.shape[-1]))
     return [(first, values[first : first + step]) for first in range(0, len(values), step)]
 
 
 def scratch(kind, *shape):
-    """Memory for what is soon forgotten, the same each time: to get new one may take longer than to use it."""
+    """Scratch buffer, reused per thread: allocating costs more than the computation."""
     size = math.prod(shape) * np.dtype(kind).itemsize
     if size > SCRATCH:
         return np.empty(shape, kind)

@@ -1,9 +1,10 @@
-"""Reductions over a turn on which loads bend or jump, of many designs: by polynomials between the bends.
+"""Reductions over a turn with kinks and jumps, of many designs, by polynomials on the pieces between them.
 
-The turn is parted where anything bends, for each design where it does, and evenly besides. On every piece a quantity is
-smooth, so few values tell all of it: its peaks, also those at bends, and its integrals. No value is taken at a bend, so
-it does not matter on which side of it rounding would put that. What a piece does not tell is told of it by its series,
-and by what its neighbours have where they join; `refining` halves such pieces.
+Each design's turn is split at its kinks and evenly besides. A quantity is smooth on a piece, so a few values give its
+peaks, also those at kinks, and its integrals. No value is taken at a kink, so rounding of its crank angle does not
+matter. The last terms of the series, and the gap to the neighbours where pieces join, estimate the error; `refined`
+halves pieces until these errors are small: also undeclared kinks, as of friction in a pin whose reaction passes near
+zero, are smooth on pieces that are small enough.
 """
 
 from dataclasses import replace
@@ -13,7 +14,7 @@ import numpy as np
 
 from ..machine.loads import TURN
 from .means import NODES, WEIGHTS
-from .reductions import OVER_THE_ANGLE, PEAKS, is_rough
+from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 
 STEP = 0.25
 PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
@@ -23,27 +24,33 @@ SERIES = np.linalg.inv(np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NO
 _LEGENDRE = np.polynomial.legendre.legvander(2.0 * NODES - 1.0, NODES.size - 1)
 LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
 """The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
-SLOWEST = 0.1
-"""Least share of the last terms that those left out are taken to be: what is smooth may hide what is not."""
-AHEAD = 4.0
-"""How many times as much as the first of them all of them may be, at a kink, where they hardly decrease."""
-APPROACHES = 6
-"""Steps of Newton's method to a peak or zero that is known to a quarter of half a piece."""
-NARROW = 1e-12
-"""Piece, rad, that is none: its ends are one place, found twice, and what jumps there may do so between them."""
+MIN_REST = 0.1
+"""Least estimate of the missing terms relative to the last ones: smooth last terms may hide a kink."""
+MAX_REST = 4.0
+"""Largest sum of all missing terms relative to the first of them: at a kink they hardly decrease."""
+NEWTON_STEPS = 6
+"""Newton's steps to a peak or zero that is known to a quarter of half a piece."""
+EMPTY_WIDTH = 1e-12
+"""Width, rad, below which a piece is dropped: both ends are the same kink."""
 NARROWEST = 1e-9
-"""Piece, rad, on which what changes jumps: its values are those at the nodes."""
+"""Width of a piece, rad, below which a change on it is a jump: its values are those at the nodes."""
+GOAL = 1e-8
+"""Largest error of an output relative to the largest value of its quantity."""
+EXPECTED_ROUGH = 8
+"""Typical number of uncertain pieces that share the error of an integral."""
+MAX_ADDED = 720
+"""Pieces of a turn that halving adds to a design at most."""
 
 
 class Pieces(NamedTuple):
-    """The period of designs in pieces.
+    """The period of many designs, each split into pieces.
 
     Attributes
     ----------
     start, width : array (designs, P)
-        Where each piece begins, and how wide it is, rad; empty ones come last.
+        Start and width of each piece, rad; empty ones come last.
     joined : array (designs, P) of bool
-        Whether nothing jumps where a piece begins, so that values go on there from the piece before, or the last.
+        Whether values are continuous at the start of a piece, from the piece before, or from the last one.
     period : float
     """
 
@@ -53,35 +60,35 @@ class Pieces(NamedTuple):
     period: float
 
     @classmethod
-    def of(cls, bends, period, angles, order=0, jumps=True):
-        """Pieces of designs, parted at bends and evenly.
+    def of(cls, kinks, period, angles, order=0, jumps=True):
+        """Pieces of designs, split at kinks and evenly.
 
         Parameters
         ----------
-        bends : array (designs, K)
+        kinks : array (designs, K)
             Crank angles, NaN where a design has fewer.
         period : float
         angles : int
-            Crank angles over the period that are to do where nothing bends.
+            Crank angles over the period that suffice without kinks.
         order : int
-            Highest order of a harmonic of the crank angle that is asked for.
+            Highest harmonic of the crank angle among the outputs.
         jumps : bool or array (1 or designs, K) of bool
-            Whether quantities may jump at these bends, or go on with a kink.
+            Whether quantities may jump at these kinks.
         """
         count = max(round(period / TURN) * 2 * order, -(-angles // NODES.size))
-        even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(bends), count + 1))
-        edges = np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)])
-        bent = np.column_stack([np.zeros(even.shape, dtype=int), ~np.isnan(bends) & jumps])
+        even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(kinks), count + 1))
+        edges = np.column_stack([even, np.where(np.isnan(kinks), 0.0, kinks)])
+        jumping = np.column_stack([np.zeros(even.shape, dtype=int), ~np.isnan(kinks) & jumps])
         rising = edges.argsort(axis=1, kind="stable")
-        edges, bent = (np.take_along_axis(part, rising, axis=1) for part in (edges, bent))
+        edges, jumping = (np.take_along_axis(part, rising, axis=1) for part in (edges, jumping))
         width = np.diff(edges)
         widest = width.argmax(axis=1)[:, None]
         inside = np.take_along_axis(edges[:, :-1] + 0.5 * width, widest, axis=1)
-        real = width >= NARROW
-        last = np.cumsum(bent, axis=1)
+        real = width >= EMPTY_WIDTH
+        last = np.cumsum(jumping, axis=1)
         before = np.maximum.accumulate(np.where(real, np.arange(1, width.shape[1] + 1), 0), axis=1)  # ends of pieces
-        before = np.column_stack([np.zeros(len(bends), dtype=int), before])
-        passed = np.take_along_axis(last - bent, before, axis=1)  # bends before the end of the piece before
+        before = np.column_stack([np.zeros(len(kinks), dtype=int), before])
+        passed = np.take_along_axis(last - jumping, before, axis=1)  # jumps before the end of the piece before
         wrapped = last[:, -1:] - passed[:, -1:]
         joined = last[:, :-1] == np.where(before[:, :-1] > 0, passed[:, :-1], -wrapped)
         first = (~real).argsort(axis=1, kind="stable")
@@ -90,63 +97,57 @@ class Pieces(NamedTuple):
         return cls(start, width, joined, period)
 
     def some(self, designs):
-        """Those of some designs."""
+        """Pieces of some designs."""
         return Pieces(self.start[designs], self.width[designs], self.joined[designs], self.period)
 
     @property
     def angle(self):
-        """Crank angles (designs, N) to take values at."""
+        """Crank angles (designs, N) of the values."""
         return (self.start[..., None] + self.width[..., None] * NODES).reshape(len(self.start), -1)
 
     def estimated(self, output, values, vector=False):
-        """Numbers (designs,) of an `Output` from values (designs, N), and whether these do not tell them."""
-        values = self._by_node(values)
+        """Numbers (designs,) of an `Output` from values (designs, N), and whether they are uncertain."""
+        by_node = self._by_node(values)
         if output.reduction in PEAKS:
-            found, height = self._peaks(output.reduction, values, vector)
-            error, size = (
-                self._of_peaks(values, signs(output.reduction), vector).max(axis=1),
-                np.ptp(values, axis=(0, 2)),
-            )
-            told = replace(output, reduction=output.reduction.removesuffix("_at"))
-            return found, is_rough(told, height, error, lambda rough: size[rough])
+            found, height = self._peaks(output.reduction, by_node, vector)
+            error = self.of_peaks(values, signs(output.reduction), vector).max(axis=1)
+            size = np.ptp(by_node, axis=(0, 2))
+            output = replace(output, reduction=output.reduction.removesuffix("_at"))
+            return found, is_rough(output, height, error, lambda rough: size[rough])
         swing = output.reduction == "swing"
-        found = self._swing(values) if swing else self._mean(output, values, vector)
-        size = found if swing else np.abs(values).max(axis=(0, 2))
-        error = self._of_integrals(values).sum(axis=1) * (2.0 * self.period if swing else 2.0 if output.order else 1.0)
+        found = self._swing(by_node) if swing else self._mean(output, by_node, vector)
+        size = found if swing else np.abs(by_node).max(axis=(0, 2))
+        error = self.of_integrals(values).sum(axis=1) * (2.0 * self.period if swing else 2.0 if output.order else 1.0)
         return found, is_rough(output, found, error, lambda rough: size[rough])
 
     def of_peaks(self, values, signs, vector):
-        """About how wrong each piece (designs, P) may make the highest values, and the lowest, if -1.0 is a sign.
+        """Error estimate (designs, P) that each piece adds to the highest values, and to the lowest with sign -1.0.
 
-        Zero where neither may lie. What is the magnitude of a vector has corners where the vector is zero, but its
-        square has none.
+        Zero where neither may lie. The magnitude of a vector has corners at zero, but its square has none.
         """
-        return self._of_peaks(self._by_node(values), signs, vector)
-
-    def of_integrals(self, values):
-        """About how wrong each piece (designs, P) may make the mean."""
-        return self._of_integrals(self._by_node(values))
-
-    def _of_peaks(self, values, signs, vector):
+        values = self._by_node(values)
         values = values * values if vector else values
-        series, doubt = self._series(values), self._doubts(values)
+        series, error = self._series(values), self._errors(values)
         samples = np.stack([_at(series, place) for place in PLACES])
-        room = doubt + STEP**2 / 8.0 * sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
-        found = np.zeros(doubt.shape)
+        room = error + STEP**2 / 8.0 * sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
+        found = np.zeros(error.shape)
         for sign in signs:
             top = (sign * samples).max(axis=0)
-            rival = top + room >= (top - doubt).max(axis=1, keepdims=True)
-            found = np.maximum(found, np.where(rival, _rooted(sign * top, doubt) if vector else doubt, 0.0))
+            rival, own = top + room >= (top - error).max(axis=1, keepdims=True), error
+            if vector:
+                own = error / np.sqrt(np.maximum(np.maximum(sign * top, error), np.finfo(float).tiny))
+            found = np.maximum(found, np.where(rival, own, 0.0))
         return found
 
-    def _of_integrals(self, values):
-        return self._doubts(values) * self.width / self.period
+    def of_integrals(self, values):
+        """Error estimate (designs, P) that each piece adds to the mean."""
+        return self._errors(self._by_node(values)) * self.width / self.period
 
     def _by_node(self, values):
         return np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
 
     def _series(self, values):
-        """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes."""
+        """`_series` of each piece; on pieces below `NARROWEST` a line from the smallest to the largest value."""
         series = _series(values)
         narrow = (self.width > 0.0) & (self.width < NARROWEST)
         if narrow.any():
@@ -155,8 +156,12 @@ class Pieces(NamedTuple):
             series[0, narrow], series[1, narrow] = 0.5 * (low + high), 0.5 * (high - low)
         return series
 
-    def _doubts(self, values):
-        """About how much the polynomial of each piece may be off (designs, P): by its series, and by its neighbours."""
+    def _errors(self, values):
+        """Error estimate of the polynomial of each piece (designs, P): missing terms, and gaps to its neighbours.
+
+        The missing terms go on decreasing as the last ones do. Those count in pairs, one even and one odd: where a kink
+        lies so that one vanishes, the other does not.
+        """
         series = _series(values)
         even, odd = sum(series[2::2], series[0]), sum(series[3::2], series[1])
         first, last = even - odd, even + odd
@@ -165,28 +170,27 @@ class Pieces(NamedTuple):
         gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
-        return np.where(self.width < NARROWEST, 0.0, np.maximum(_rest(values), np.maximum(gap, after)))
+        terms = [_weighted(weights, values) for weights in LAST]
+        former, latter = np.hypot(*terms[:2]), np.hypot(*terms[2:])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rest = MAX_REST * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_REST, 1.0)
+        return np.where(self.width < NARROWEST, 0.0, np.maximum(rest, np.maximum(gap, after)))
 
     def _peaks(self, reduction, values, vector):
-        """Number of each design, and the height of the peak that it is of."""
+        """Number of each design, and the height of its peak."""
         series = self._series(values * values if vector else values)
-        heights, places = zip(*(self._end(series, sign, vector) for sign in signs(reduction)), strict=True)
+        heights, angles = [], []
+        for sign in signs(reduction):
+            height, piece, place = _highest(sign * series)
+            design = np.arange(len(piece))
+            angle = self.start[design, piece] + self.width[design, piece] * (0.5 + 0.5 * place)
+            height = sign * height
+            heights.append(np.sqrt(np.maximum(height, 0.0)) if vector else height)
+            angles.append(np.where(np.isnan(heights[-1]), np.nan, np.mod(angle, self.period)))
         if reduction in OVER_THE_ANGLE:
-            return places[0], heights[0]
-        if reduction == "range":
-            found = heights[0] - heights[1]
-        else:
-            found = np.maximum(heights[0], -heights[-1]) if reduction == "largest_absolute" else heights[0]
+            return angles[0], heights[0]
+        found = combined_peaks(reduction, heights)
         return found, found
-
-    def _end(self, series, sign, vector):
-        """Largest or smallest value of each design, and where it is."""
-        height, piece, place = _highest(sign * series)
-        design = np.arange(len(piece))
-        height, angle = sign * height, self.start[design, piece] + self.width[design, piece] * (0.5 + 0.5 * place)
-        if vector:
-            height = np.sqrt(np.maximum(height, 0.0))
-        return height, np.where(np.isnan(height), np.nan, np.mod(angle, self.period))
 
     def _mean(self, output, values, vector):
         kind, order = output.reduction, output.order
@@ -196,15 +200,15 @@ class Pieces(NamedTuple):
             return np.hypot(*parts) * (1.0 if order == 0 else 2.0)
         if kind == "rms":
             return np.sqrt(self._sum(values * values))
-        return self._sum(values if kind == "mean" or vector else _sizes(values))
+        return self._sum(values if kind == "mean" or vector else _mean_sizes(values))
 
     def _sum(self, values):
-        """Mean over the period of values at the nodes, or of one value for each piece; the same with empty pieces."""
-        parts = _means(values) if len(values) == NODES.size else values[0]
+        """Mean over the period of values at the nodes, or of one value per piece; empty pieces add nothing."""
+        parts = _weighted(WEIGHTS, values) if len(values) == NODES.size else values[0]
         return np.cumsum(self.width * parts, axis=1)[:, -1] / self.period
 
     def _swing(self, values):
-        """Range of the integral of values less their mean, J of a torque."""
+        """Range of the integral of values less their mean; J for a torque."""
         series = _series(values)
         series[0] -= self._sum(values)[:, None]
         inner = _integral(series) * (0.5 * self.width)
@@ -213,31 +217,13 @@ class Pieces(NamedTuple):
         return _highest(inner)[0] + _highest(-inner)[0]
 
 
-def signs(reduction):
-    """Signs with which a peak is the highest value."""
-    return {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
-
-
-def _rooted(square, doubt):
-    """By how much roots of squares may be wrong, which may be wrong by so much."""
-    root = np.sqrt(np.maximum(np.maximum(square, doubt), np.finfo(float).tiny))
-    return doubt / root
+def _weighted(weights, values):
+    return sum(weight * row for weight, row in zip(weights, values, strict=True))
 
 
 def _series(values):
     """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes (nodes, ...)."""
-    return np.stack([sum(weight * row for weight, row in zip(weights, values, strict=True)) for weights in SERIES])
-
-
-def _rest(values):
-    """About how much polynomials may be off: the terms left out, as those that are there decrease.
-
-    Two terms go together, one even and one odd: where what is not smooth lies so that one vanishes, the other does not.
-    """
-    first, second, third, fourth = (sum(w * row for w, row in zip(weights, values, strict=True)) for weights in LAST)
-    before, last = np.hypot(first, second), np.hypot(third, fourth)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return AHEAD * last * np.clip(np.nan_to_num(last / before, nan=1.0), SLOWEST, 1.0)
+    return np.stack([_weighted(weights, values) for weights in SERIES])
 
 
 def _integral(series):
@@ -250,16 +236,16 @@ def _slope(series):
 
 
 def _at(series, place):
-    """Values of polynomials at a place of each."""
+    """Values of polynomials, each at its place."""
     value = series[-1]
     for row in series[-2::-1]:
         value = row + value * place
     return value
 
 
-def _approached(function, slope, place, low, high):
-    """Zero of a polynomial near a place, between two others."""
-    for _ in range(APPROACHES):
+def _newton(function, slope, place, low, high):
+    """Zero of a polynomial near a place, between `low` and `high`."""
+    for _ in range(NEWTON_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
             step = place - _at(function, place) / _at(slope, place)
         place = np.where(np.isnan(step), place, np.clip(step, low, high))
@@ -267,9 +253,9 @@ def _approached(function, slope, place, low, high):
 
 
 def _highest(series):
-    """Largest value of the polynomials (terms, designs, pieces) of each design, on which piece, and where.
+    """Largest value of the polynomials (terms, designs, pieces) of each design, its piece, and its place there.
 
-    Those pieces are looked at on which a value may be above those at the places.
+    Only pieces on which a value may exceed those at `PLACES` are refined.
     """
     samples = np.stack([_at(series, place) for place in PLACES])
     top = samples.max(axis=0)
@@ -277,7 +263,7 @@ def _highest(series):
     design, piece = np.nonzero(top + STEP**2 / 8.0 * bend >= top.max(axis=1, keepdims=True))
     own, first = series[:, design, piece], PLACES[samples[:, design, piece].argmax(axis=0)]
     slope = _slope(own)
-    place = _approached(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
+    place = _newton(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
     height = _at(own, place)
     place = np.where(height >= top[design, piece], place, first)
     height = np.maximum(height, top[design, piece])
@@ -292,13 +278,9 @@ def _highest(series):
     return found[0], pieces, found[1]
 
 
-def _means(values):
-    return sum(weight * row for weight, row in zip(WEIGHTS, values, strict=True))
-
-
-def _sizes(values):
-    """Mean magnitude of each piece (1, designs, pieces), also where the sign changes on it."""
-    found, series = np.abs(_means(values)), _series(values)
+def _mean_sizes(values):
+    """Mean magnitude on each piece (1, designs, pieces), also where the sign changes on it."""
+    found, series = np.abs(_weighted(WEIGHTS, values)), _series(values)
     samples = np.stack([_at(series, place) for place in PLACES])
     design, piece = np.nonzero(np.signbit(samples).any(axis=0) & ~np.signbit(samples).all(axis=0))
     own = series[:, design, piece]
@@ -310,7 +292,82 @@ def _sizes(values):
         changes = np.signbit(one) != np.signbit(other)
         with np.errstate(divide="ignore", invalid="ignore"):
             line = np.where(changes, low + STEP * one / (one - other), low)
-        zero = np.where(changes, _approached(own, slope, line, low, high), low)
+        zero = np.where(changes, _newton(own, slope, line, low, high), low)
         total += np.abs(_at(integral, zero) - _at(integral, low)) + np.abs(_at(integral, high) - _at(integral, zero))
     found[design, piece] = 0.5 * total
     return found[None]
+
+
+def refined(pieces, values, outputs, evaluate, goal=GOAL):
+    """Yield parts of the designs: which, their pieces, and values by quantity, halved until the outputs are certain.
+
+    A design that would need more than `MAX_ADDED` further pieces is given up.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    values : dict of str to array (designs, N)
+    outputs : sequence of (Output, bool)
+        Each with whether its quantity is a vector.
+    evaluate : function
+        From indices of designs (D,) and crank angles (D, N) to values (D, N) by quantity.
+    goal : float
+        Largest error of an output relative to the largest value of its quantity.
+    """
+    designs, first = np.arange(len(pieces.start)), (pieces.width > 0.0).sum(axis=1)
+    most = first + MAX_ADDED * round(pieces.period / TURN)
+    values = {name: rows.reshape(*pieces.start.shape, NODES.size) for name, rows in values.items()}
+    vectors = {output.quantity: vector for output, vector in outputs}
+    peaks: dict[str, set[float]] = {name: set() for name in vectors}
+    for output, _ in outputs:
+        peaks[output.quantity].update(signs(output.reduction) if output.reduction in PEAKS else ())
+    integrals = {output.quantity for output, _ in outputs if output.reduction not in PEAKS}
+    while designs.size:
+        halved = np.zeros(pieces.start.shape, dtype=bool)
+        for name, vector in vectors.items():
+            size = np.abs(values[name]).max(axis=(1, 2))[:, None]
+            with np.errstate(invalid="ignore"):
+                if peaks[name]:
+                    halved |= pieces.of_peaks(values[name], peaks[name], vector) > goal * size
+                if name in integrals:
+                    halved |= pieces.of_integrals(values[name]) > goal / EXPECTED_ROUGH * size
+        halved &= pieces.width >= NARROWEST
+        count = (pieces.width > 0.0).sum(axis=1) + halved.sum(axis=1)
+        going = halved.any(axis=1) & (count <= most[designs])
+        if not going.all():
+            yield designs[~going], pieces.some(~going), {name: rows[~going] for name, rows in values.items()}
+        designs, pieces, halved = designs[going], pieces.some(going), halved[going]
+        values = {name: rows[going] for name, rows in values.items()}
+        if designs.size:
+            pieces, values = _halved(pieces, values, halved, lambda angle, own=designs: evaluate(own, angle))
+
+
+def _halved(pieces, values, halved, evaluate):
+    """Pieces with those marked in `halved` halved, and values; each design has some. Halves are evaluated."""
+    design, piece = np.nonzero(pieces.width > 0.0)
+    parts = 1 + halved[design, piece]
+    second = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts) == 1
+    design, piece, parts = (np.repeat(part, parts) for part in (design, piece, parts))
+    width = pieces.width[design, piece] / parts
+    start = pieces.start[design, piece] + second * width
+    joined = second | pieces.joined[design, piece]
+    count = np.bincount(design, minlength=len(halved))
+    column = np.arange(design.size) - (np.cumsum(count) - count)[design]
+    shape = len(halved), count.max()
+    found = type(pieces)(
+        np.broadcast_to(pieces.start[:, :1], shape).copy(), np.zeros(shape), np.ones(shape, dtype=bool), pieces.period
+    )
+    for whole, part in zip(found, (start, width, joined), strict=False):
+        whole[design, column] = part
+    new = parts == 2
+    many = 2 * halved.sum(axis=1)
+    place = np.arange(new.sum()) - (np.cumsum(many) - many)[design[new]]
+    angle = np.repeat(pieces.angle[:, None, : NODES.size], many.max(), axis=1)
+    angle[design[new], place] = start[new, None] + width[new, None] * NODES
+    evaluated = evaluate(angle.reshape(len(angle), -1))
+    filled = {}
+    for name, old in values.items():
+        filled[name] = np.broadcast_to(old[:, :1], (*shape, NODES.size)).copy()
+        filled[name][design[~new], column[~new]] = old[design[~new], piece[~new]]
+        filled[name][design[new], column[new]] = evaluated[name].reshape(angle.shape)[design[new], place]
+    return found, filled

@@ -1,15 +1,16 @@
-"""Reductions over the turn: one number for each design from the values of a quantity at evenly spaced crank angles.
+"""Reductions: one number for each design from the values of a quantity at evenly spaced crank angles of the turn.
 
-Written as text, the reduction before the quantity: "largest O", "mean_absolute balancing_torque",
+As text the reduction precedes the quantity: "largest O", "mean_absolute balancing_torque",
 "harmonic_2 balancing_torque", "ratio mean_absolute balancing_torque".
 
-"swing balancing_torque" is the energy, J, that a flywheel takes up and gives back while the crank gets the mean of the
-torque: the range of the integral of torque less mean over the crank angle. For a coefficient of fluctuation delta the
-flywheel is nearly swing / (delta omega^2), as textbooks have it (`drive.flywheel`).
+"swing balancing_torque" is the energy, J, that a flywheel stores and returns while the crank gets the mean torque: the
+range of the integral of torque less mean over the crank angle. For a coefficient of fluctuation delta, the flywheel of
+textbooks is nearly swing / (delta omega^2) (`drive.flywheel`).
 """
 
 import re
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -17,35 +18,59 @@ from ..errors import ParameterError
 from ..mechanics.quantities import quantity
 from ..numbers import checks
 from ..numbers.formatting import heading
-from .peaks import peak, pieces, scratch
+from .peaks import blocks, peak, scratch
 
-PEAK = 1e-4
-"""Error of a peak, relative to it, from which so many samples do not tell it; or a hundredth of that of the range."""
-MEAN = 1e-2
-"""Error of a mean, relative to it, from which so many samples do not tell it; and a tenth of that of the peak."""
+PEAK_TOLERANCE = 1e-4
+"""Error of a peak, relative to it, above which the samples are too few; a hundredth of that relative to the range."""
+MEAN_TOLERANCE = 1e-2
+"""Error of a mean, relative to it, above which the samples are too few; a tenth of that relative to the peak."""
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 OVER_THE_ANGLE = ("largest_at", "smallest_at", "swing")
-"""Reductions that are as many times as large where the same values come over several turns."""
+"""Reductions in proportion to the number of turns over which the same values come."""
 
 
-def _mean(values):
-    """Mean of each design, and how far that of every other sample is from it."""
-    found = values.mean(axis=-1)
-    return found, np.abs(values[:, ::2].mean(axis=-1) - found) * (values.shape[-1] % 2 == 0)
+def signs(reduction):
+    """Signs with which a peak is the highest value."""
+    return {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
+
+
+def combined_peaks(reduction, heights):
+    """Number of a reduction from the peaks of `signs(reduction)`."""
+    if reduction == "range":
+        return heights[0] - heights[1]
+    return np.maximum(heights[0], -heights[-1]) if reduction == "largest_absolute" else heights[0]
+
+
+def _peaks(reduction, values):
+    heights, where, errors = zip(*(peak(values, sign) for sign in signs(reduction)), strict=True)
+    error = np.max(errors, axis=0)
+    if reduction in OVER_THE_ANGLE:
+        return 2 * np.pi * where[0], np.where(error > PEAK_TOLERANCE * np.abs(heights[0]), np.inf, 0.0)
+    signed = [sign * height for sign, height in zip(signs(reduction), heights, strict=True)]
+    return combined_peaks(reduction, signed), error
+
+
+def _with_error(reduction):
+    """Reduction of values (designs, N), and its difference from that of every other value; 0 for odd N."""
+
+    def estimated(values):
+        found = reduction(values)
+        return found, np.abs(reduction(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
+
+    return estimated
 
 
 def _mean_absolute(values):
-    """Mean of magnitudes of each design, and how far that of every other sample is from it."""
     found, error = np.empty((2, len(values)))
-    for first, some in pieces(values, 8):
+    for first, some in blocks(values, 8):
         size, designs = np.abs(some, out=scratch(float, *some.shape)), slice(first, first + len(some))
-        found[designs] = size.mean(axis=-1) - _kinks(some)
-        error[designs] = size[:, ::2].mean(axis=-1) - _kinks(some[:, ::2]) - found[designs]
+        found[designs] = size.mean(axis=-1) - _kink_excess(some)
+        error[designs] = size[:, ::2].mean(axis=-1) - _kink_excess(some[:, ::2]) - found[designs]
     return found, np.abs(error) * (values.shape[-1] % 2 == 0)
 
 
-def _kinks(values):
-    """What the mean magnitude of samples is too large by, as the magnitude has a kink where the sign changes.
+def _kink_excess(values):
+    """Excess of the mean magnitude of samples over the integral mean, from its kinks where the sign changes.
 
     By the Euler-Maclaurin formula, with a straight line between the samples on both sides of each change.
     """
@@ -59,95 +84,42 @@ def _kinks(values):
     return np.bincount(design, here * there / both - both / 6.0, len(values)) / values.shape[-1]
 
 
-def _harmonic(order):
+def _harmonic(order, values):
     def amplitude(values):
         angle = 2 * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1]
         parts = (np.einsum("dn,n->d", values, wave(angle)) for wave in (np.cos, np.sin))
         return np.hypot(*parts) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
 
-    return lambda values: (amplitude(values), np.abs(amplitude(values[:, ::2]) - amplitude(values)))
-
-
-def _rms(values):
-    def size(some):
-        return np.sqrt(np.einsum("dn,dn->d", some, some) / some.shape[-1])
-
-    found = size(values)
-    return found, np.abs(size(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
+    return amplitude(values), np.abs(amplitude(values[:, ::2]) - amplitude(values))
 
 
 def gained(values):
-    """Integral over the crank angle, in rad over one turn, of values less their mean, at the same angles.
+    """Integral over the crank angle, rad, of values less their mean, at the same angles of one turn.
 
-    By their Fourier series: exact for what so many values tell, linear in them.
+    By their Fourier series: exact for the harmonics that the samples resolve, linear in the values.
     """
     count = values.shape[-1]
     series = np.fft.rfft(values)
     orders = np.arange(series.shape[-1])
     orders[0] = 1
     series = series / (1j * orders)
-    series[..., :: count // 2 if count % 2 == 0 else count] = 0.0  # the mean, and what is told of by its sign alone
+    series[..., :: count // 2 if count % 2 == 0 else count] = 0.0  # mean, and harmonic of which only the sign is known
     return np.fft.irfft(series, count)
 
 
 def _swing(values):
-    """Range of the integral of values less their mean, and how far that of every other value is from it."""
-
-    def swing(some):
-        integral = gained(some)
-        return peak(integral)[0] + peak(integral, -1.0)[0]
-
-    found = swing(values)
-    return found, np.abs(swing(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
+    integral = gained(values)
+    return peak(integral)[0] + peak(integral, -1.0)[0]
 
 
-def _highest_at(sign):
-    def place(values):
-        highest, where, error = peak(values, sign)
-        return 2 * np.pi * where, np.where(error > PEAK * np.abs(highest), np.inf, 0.0)
-
-    return place
-
-
-def _largest(values):
-    highest, _, error = peak(values)
-    return highest, error
-
-
-def _smallest(values):
-    lowest, _, error = peak(values, -1.0)
-    return -lowest, error
-
-
-def _both(joined):
-    def found(values):
-        (high, above), (low, below) = _largest(values), _smallest(values)
-        return joined(high, low), np.maximum(above, below)
-
-    return found
-
-
-FOUND = {
-    "largest": _largest,
-    "largest_at": _highest_at(1.0),
-    "smallest": _smallest,
-    "smallest_at": _highest_at(-1.0),
-    "largest_absolute": _both(lambda high, low: np.maximum(high, -low)),
-    "range": _both(np.subtract),
-    "mean": _mean,
+REDUCTIONS = {
+    **{name: partial(_peaks, name) for name in PEAKS},
+    "mean": _with_error(lambda values: values.mean(axis=-1)),
     "mean_absolute": _mean_absolute,
-    "rms": _rms,
-    "swing": _swing,
+    "rms": _with_error(lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1])),
+    "swing": _with_error(_swing),
 }
-"""By name: function of values (designs, N) evenly over the period to numbers and about how much they may be wrong."""
-
-
-def _alone(estimated):
-    return lambda values: estimated(values)[0]
-
-
-REDUCTIONS = {name: _alone(estimated) for name, estimated in FOUND.items()}
-"""By name: function of values (designs, N) evenly over a turn; extremes are found between them, places in turns."""
+"""By name: function of values (designs, N) evenly over the period to numbers and estimates of their errors."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +135,7 @@ class Output:
     ratio : bool
         Whether the reference mechanism's value is divided by the design's: a dynamic coefficient.
     unit : str
-        SI unit of the number; empty until it is told of a mechanism, by `of`.
+        SI unit of the number; empty before `of`.
     """
 
     quantity: str
@@ -175,15 +147,15 @@ class Output:
         return f"{'ratio ' * self.ratio}{self.reduction} {self.quantity}"
 
     def of(self, scene) -> "Output":
-        """The output with the unit that its quantity has in a scene, or whatever has a mechanism.
+        """The output with the unit of its quantity in a scene, or another object with a mechanism.
 
         Raises
         ------
         QuantityError
             The mechanism has no such quantity; the message lists those it has.
         ParameterError
-            It is of a force that grows without bound at change points that the mechanism passes; or the swing of
-            something else than a torque.
+            The quantity is a force that grows without bound at change points that the mechanism passes; or the swing
+            is not of a torque.
         """
         unit, mechanism = quantity(scene, self.quantity).unit, scene.mechanism
         if self.reduction == "swing":
@@ -208,7 +180,7 @@ class Output:
         return heading(self, measure) if measure else str(self)
 
     def label(self, scene):
-        """What an axis calls it, in a scene or whatever has a mechanism."""
+        """Label of an axis, for a scene or another object with a mechanism."""
         return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {quantity(scene, self.quantity).label}"
 
     @property
@@ -222,8 +194,9 @@ class Output:
         return self.estimated(values)[0]
 
     def estimated(self, values, turns=1):
-        """Numbers (designs,) from values (designs, N) evenly over some turns, and whether so many do not tell them."""
-        found, error = FOUND[self.reduction](values) if self.order is None else _harmonic(self.order * turns)(values)
+        """Numbers (designs,) from values (designs, N) evenly over some turns, and whether the samples are too few."""
+        order = self.order
+        found, error = REDUCTIONS[self.reduction](values) if order is None else _harmonic(order * turns, values)
         mean = self.reduction not in PEAKS
 
         def size(rough):
@@ -234,11 +207,12 @@ class Output:
 
 
 def is_rough(output, found, error, size):
-    """Whether an output may be wrong by more than `PEAK` or `MEAN` allows, of each design.
+    """Whether the error of an output exceeds `PEAK_TOLERANCE` or `MEAN_TOLERANCE`, of each design.
 
-    ``size(rough)`` gives by how much values of those designs differ, or of a mean how large they are.
+    ``size(rough)`` returns the range of the values of those designs for a peak, their largest size for a mean.
     """
-    share, least = (PEAK, PEAK / 100) if output.reduction in PEAKS else (MEAN, MEAN / 10)
+    is_peak = output.reduction in PEAKS
+    share, least = (PEAK_TOLERANCE, PEAK_TOLERANCE / 100) if is_peak else (MEAN_TOLERANCE, MEAN_TOLERANCE / 10)
     with np.errstate(invalid="ignore"):
         rough = error > share * np.abs(found)
     if rough.any():
@@ -260,10 +234,10 @@ def parsed(text) -> Output:
     ratio = words[:1] == ["ratio"]
     reduction, *quantity = words[ratio:] or [""]
     found = Output(" ".join(quantity), reduction, ratio)
-    if quantity and (reduction in FOUND or found.order is not None):
+    if quantity and (reduction in REDUCTIONS or found.order is not None):
         return found
-    names = ", ".join((*FOUND, "harmonic_1", "harmonic_2 ..."))
-    meant = None if reduction in FOUND else checks.nearest(reduction, FOUND)
+    names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))
+    meant = None if reduction in REDUCTIONS else checks.nearest(reduction, REDUCTIONS)
     advice = f"; did you mean {' '.join([*words[:ratio], meant, *quantity])!r}?" if meant else ""
     raise ParameterError(
         f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '

@@ -1,7 +1,7 @@
-"""The turn that results are reduced over: where it is sampled, and what has no correct digit there.
+"""The period over which results are reduced: samples, kinks, gaps, limit positions, and limits of a quantity there.
 
-Near a limit position rates and forces change within a distance as small as they like, so samples grow denser there;
-where nothing of them is right they are left out, and what the quantity tends to on both sides stands in their place.
+Rates and forces change ever faster toward a limit position, so samples get denser there. Samples without a correct
+digit are left out; the limits of the quantity from both sides replace them.
 """
 
 from dataclasses import dataclass, field
@@ -10,62 +10,62 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, has_no_user_code, kink_sources, kinks_of, period_of, period_on, refusals
+from ..machine.loads import TURN, has_no_user_code, period_of, refusals
 from ..mechanics import assembly, energy_contact
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .changes import sign_changes
+from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
 
 SAMPLES = 1440
-"""Samples a turn that bracket extrema, beside those at and between kinks: two nearer than these may pass unseen."""
-FINER = 5
-"""How many times as many there are where a load is a function, which may have narrow pulses."""
+"""Samples of a turn, besides those at and between kinks; two extrema nearer than these may be missed."""
+FUNCTION_FACTOR = 5
+"""Factor on the samples where a load is a function, which may have narrow pulses."""
 NEAR = 0.01
-"""Closure margin below which samples grow denser: peaks there are narrower than a few degrees."""
-USABLE = 1e14
-"""Condition from which a value has less than two correct digits, and is left out."""
-TRUSTED = 1e12
-"""Condition up to which values tell what a quantity tends to."""
-LADDER = 0.02 * 2.0 ** -np.arange(40)
-"""Distances from a limit position, rad, at which samples are added on both sides."""
-APPROACH = 0.1 * 2.0 ** (-np.arange(120) / 3)
-"""Distances from a limit position, rad, by which it is approached; every third is half as far."""
-GROWING = 1.15
-"""How much more a quantity must change each time the distance is halved to grow without bound."""
-BETWEEN = (2.0**-20, 0.5, 1.0 - 2.0**-20)
-"""Shares of the way from one kink to the next at which samples stand: they tell how a curve leaves and nears each."""
-BESIDE = (-(2.0**-44), 2.0**-44)
-"""Distances from a jump, rad, at which samples stand on both sides of it."""
-SAME = 1e-9
-"""Crank angles this near, rad, are the same."""
-LONGEST = 6
-"""Periods after which a function is looked at that does not repeat after one."""
-SMALLEST = 2.0**-50
-"""Step of a crank angle that changes it, rad."""
-ALIKE = 1e-6
-"""Share of its largest value by which a force may differ after a period: rounding, at most."""
+"""Closure margin below which samples get denser: peaks there are narrower than a few degrees."""
+MAX_CONDITION = 1e14
+"""Condition from which a value has less than two correct digits and is left out."""
+MAX_LIMIT_CONDITION = 1e12
+"""Condition up to which values are used to extrapolate to a limit."""
+DENSE_DISTANCES = 0.02 * 2.0 ** -np.arange(40)
+"""Distances of added samples from a limit position, rad, on both sides."""
+LIMIT_DISTANCES = 0.1 * 2.0 ** (-np.arange(120) / 3)
+"""Distances of the samples for a limit from its limit position, rad; every third is half as far."""
+MIN_GROWTH = 1.15
+"""Growth of the change per halved distance above which a quantity grows without bound."""
+BETWEEN_KINKS = (2.0**-20, 0.5, 1.0 - 2.0**-20)
+"""Places of samples between two kinks, relative to their distance: the slope beside each kink becomes visible."""
+JUMP_OFFSETS = (-(2.0**-44), 2.0**-44)
+"""Distances of the samples on both sides of a jump from it, rad."""
+MAX_PERIODS = 6
+"""Periods after which a function is tested for repetition if it does not repeat after one."""
+MIN_ANGLE_STEP = 2.0**-50
+"""Smallest change of a crank angle, rad."""
+REPEAT_TOLERANCE = 1e-6
+"""Difference of a force after a period, relative to its largest value, that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Turn:
-    """One design over its period, sampled; made by `Turn.of`.
+    """Samples of one design over its period; made by `Turn.of`.
 
     Attributes
     ----------
     at : Solution
-        At `angle`, rising from 0, evenly but for the neighbourhood of limit positions.
+        At `angle`, rising from 0, even but for the neighbourhood of limit positions.
     period : float
     gaps : tuple of (float, float)
         Crank angles between which the mechanism does not close.
     limits : array
-        Crank angles at which a group stands in a limit position, or nearly so, ends of gaps among them.
+        Crank angles at which a group is in a limit position, or nearly so, ends of gaps included.
     kinks : array
         Crank angles at which friction, a load or the law of a cam has a kink, or may jump.
     passed : array
-        Those of `limits` that are change points passed, where forces grow; empty where no forces are asked for.
+        The change points among `limits` that the mechanism passes, where forces grow; empty unless made for `forces`.
     jumps : array
-        Those of `kinks` at which something may jump: samples stand on both sides, `BESIDE` them.
+        The `kinks` that may be jumps: samples stand on both sides, at `JUMP_OFFSETS`.
+    extrema : dict
+        Extrema by quantity, cached.
     """
 
     at: Any
@@ -75,10 +75,13 @@ class Turn:
     kinks: np.ndarray
     passed: np.ndarray = field(default_factory=lambda: np.empty(0))
     jumps: np.ndarray = field(default_factory=lambda: np.empty(0))
+    extrema: dict[str, Any] = field(default_factory=dict, init=False)
+    _beside_limits: dict[tuple[float, int], Any] = field(default_factory=dict, init=False)
+    """Solutions beside limit positions, by the crank angle of the position and the side."""
 
     @classmethod
     def of(cls, solution, forces=False):
-        """Turn of a solution, whatever its own crank angles; of its `forces` where it passes change points.
+        """Turn of a solution, whatever its own crank angles; `forces` adds the change points that it passes.
 
         Raises
         ------
@@ -86,29 +89,30 @@ class Turn:
             The solution depends on a table over its own crank angles, or a load does not repeat after its period.
         """
         turns = round(solution.period / TURN)
-        count = SAMPLES * turns * (1 if all(map(has_no_user_code, solution.loads)) else FINER)
+        count = SAMPLES * turns * (1 if all(map(has_no_user_code, solution.loads)) else FUNCTION_FACTOR)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
-        kinks, jumps = _kinks(solution)
+        kinks, jumps = kinks_and_jumps(solution, SAMPLES)
         if kinks.size:
-            between = kinks[:, None] + np.diff(kinks, append=kinks[0] + solution.period)[:, None] * BETWEEN
-            more = np.concatenate([kinks, between.ravel(), np.ravel(jumps[:, None] + BESIDE)])
+            between = kinks[:, None] + np.diff(kinks, append=kinks[0] + solution.period)[:, None] * BETWEEN_KINKS
+            more = np.concatenate([kinks, between.ravel(), np.ravel(jumps[:, None] + JUMP_OFFSETS)])
             grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
         first = solution.at(grid)
-        require_repeating(solution)
+        if problem := repeating_problem(solution):
+            raise ParameterError(problem)
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
         near = assembly.limit_angles(solution.mechanism, NEAR)
         gaps = assembly.gap_intervals(solution.mechanism) if near.size else ()
         own = TURN * solution.mechanism.turns
         near = np.concatenate([near, *gaps])
-        near = np.unique(np.mod(near + SAME, own) - SAME)
-        near = near[np.diff(near, prepend=-1.0) > 2 * SAME]
+        near = np.unique(np.mod(near + ANGLE_TOLERANCE, own) - ANGLE_TOLERANCE)
+        near = near[np.diff(near, prepend=-1.0) > 2 * ANGLE_TOLERANCE]
         limits = np.ravel(near + own * np.arange(round(solution.period / own))[:, None])
         passed = np.array(solution.mechanism.change_points if forces else ())
         passed = np.ravel(passed + TURN * np.arange(turns)[:, None])
         limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
         if not limits.size:
             return cls(first, solution.period, (), limits, kinks, jumps=jumps)
-        dense = limits[:, None] + np.concatenate([-LADDER, [0.0], LADDER])
+        dense = limits[:, None] + np.concatenate([-DENSE_DISTANCES, [0.0], DENSE_DISTANCES])
         angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
         starts = own * np.arange(round(solution.period / own))
         repeated = tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps)
@@ -119,18 +123,8 @@ class Turn:
         return self.at.crank_angle
 
     @cached_property
-    def extrema(self):
-        """Extrema by quantity, kept when they are first computed."""
-        return {}
-
-    @property
-    def panels(self):
-        """Number of panels from which a quadrature starts: two samples wide."""
-        return round(self.period / np.diff(self.angle).max() / 2)
-
-    @cached_property
     def condition(self):
-        """Condition at each angle, not looked at where no limit position is near."""
+        """Condition at each angle; ones without computing it where no limit position is near."""
         return self._condition(self.at) if self.limits.size else np.ones(self.angle.size)
 
     def _condition(self, solution):
@@ -145,7 +139,7 @@ class Turn:
     def usable(self):
         """Whether rates and forces have correct digits, at each angle."""
         with np.errstate(invalid="ignore"):
-            return self.condition < USABLE
+            return self.condition < MAX_CONDITION
 
     @cached_property
     def lost(self):
@@ -166,7 +160,7 @@ class Turn:
 
     @property
     def unclosed(self):
-        """What is to be said of the gaps, if there are any."""
+        """Text of the gaps for messages, empty without gaps."""
         where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in self.gaps)
         return where and f"does not close for crank angles {where} deg"
 
@@ -174,31 +168,20 @@ class Turn:
         """Values of a function of a solution at any crank angles."""
         return function(self.at.at(np.mod(angle, self.period)))
 
-    def from_zero(self, angle, jumps):
-        """Angles from 0 on, 0 where they are that but for rounding, unless what is looked at `jumps` from there."""
-        found, whole = np.maximum(np.mod(angle + SAME, self.period) - SAME, 0.0), np.mod(angle, self.period)
-        last = found < whole - SAME
-        return np.where(last & jumps(found, whole), whole, found) if last.any() else found
-
-    @cached_property
-    def _approached(self):
-        """Solutions beside limit positions, by the crank angle of these and the side."""
-        return {}
-
     def limit(self, function, angle, side, size=0.0):
-        """What a function of a solution tends to at a limit position from one side (+1: from greater crank angles).
+        """Limit of a function of a solution at a limit position, from one side (+1: from greater crank angles).
 
-        `size` is how large it is elsewhere. Infinite if it grows without bound, NaN if no correct digits are near
-        enough to tell.
+        `size` is the size of the function elsewhere. Infinite if it grows without bound, NaN if no values with correct
+        digits are near enough.
         """
-        angle, distance = float(angle % self.period), APPROACH
-        if (angle, side) not in self._approached:
-            self._approached[angle, side] = self.at.at(np.mod(angle + side * distance, self.period))
-        near = self._approached[angle, side]
+        angle, distance = float(angle % self.period), LIMIT_DISTANCES
+        if (angle, side) not in self._beside_limits:
+            self._beside_limits[angle, side] = self.at.at(np.mod(angle + side * distance, self.period))
+        near = self._beside_limits[angle, side]
         values = np.asarray(function(near), dtype=float)
         with np.errstate(invalid="ignore"):
             condition = self._condition(near)
-            trusted = np.isfinite(values) & (condition < TRUSTED)
+            trusted = np.isfinite(values) & (condition < MAX_LIMIT_CONDITION)
         count = trusted.size if trusted.all() else int(np.argmin(trusted))
         if count < 10:
             return np.nan
@@ -206,26 +189,24 @@ class Turn:
         size = max(size, np.abs(values).max())
         change = np.diff(values[(count - 1) % 3 :: 3])
         steps = np.abs(change[-3:])
-        if steps[-1] > 1e-3 * size and np.all(steps[1:] > GROWING * steps[:-1]):
+        if steps[-1] > 1e-3 * size and np.all(steps[1:] > MIN_GROWTH * steps[:-1]):
             return np.copysign(np.inf, change[-1])
-        edge = np.isclose(angle, self.edges, rtol=0, atol=SAME).any()
-        place = np.sqrt(distance) if edge else distance  # by the root of the distance rates change at the end of a gap
+        edge = np.isclose(angle, self.edges, rtol=0, atol=ANGLE_TOLERANCE).any()
+        place = np.sqrt(distance) if edge else distance  # at the end of a gap rates change with its root
         weight = 1.0 / (1e-10 + 1e-16 * condition[:count])
         fit = np.polynomial.Polynomial.fit(place, values, min(6, count - 3), domain=[0.0, place[0]], w=weight)(0.0)
-        there = self._outermost(angle, side) if edge else angle
+        there = angle
+        if edge:  # the last crank angle at which the mechanism closes to rounding, where positions lose no digits
+            ends = angle - side * np.append(0.0, MIN_ANGLE_STEP * 2.0 ** np.arange(30))
+            closed = self.evaluate(lambda at: at.dynamics.closed, ends)
+            there = ends[np.flatnonzero(closed)[-1]] if closed.any() else angle
         direct = float(self.evaluate(function, np.array([there]))[0])
         if abs(direct - fit) <= 1e-3 * size and (edge or abs(direct - values[-1]) <= 2 * steps[-1]):
             return direct
         return float(np.clip(fit, *np.sort([values[-1] - 4 * change[-1], values[-1] + 4 * change[-1]])))
 
-    def _outermost(self, end, side):
-        """Last crank angle at which the mechanism closes to rounding, where positions lose nothing."""
-        angle = end - side * np.append(0.0, SMALLEST * 2.0 ** np.arange(30))
-        closed = self.evaluate(lambda at: at.dynamics.closed, angle)
-        return angle[np.flatnonzero(closed)[-1]] if closed.any() else end
-
     def clear(self, angle):
-        """The crank angles, those where rates and forces have no correct digit moved to the nearest where they have."""
+        """Crank angles; those where rates and forces have no correct digit become the nearest usable sample."""
         if self.usable.all():
             return angle
         right = np.flatnonzero(self.usable)
@@ -238,45 +219,13 @@ class Turn:
         return np.where(inside, np.where(angle - low < high - angle, low, high), angle)
 
 
-def _kinks(solution):
-    """Crank angles of kinks and jumps of friction, of loads and of cams' laws, over the period."""
-    rubbing = _friction_changes(solution)
-    law = of_laws(solution, jumps=True)
-    found: list[Any] = [(rubbing, rubbing), (law, law)]
-    for part in kink_sources(solution.loads):
-        again = beginnings(part, solution)[:, None]
-        kinks, jumps = kinks_of(part, solution)
-        found.append((np.ravel(np.concatenate([kinks, jumps]) + again), np.ravel(jumps + again)))
-    return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
-
-
-def beginnings(part, solution):
-    """Crank angles at which what declares kinks begins anew over the period of a solution."""
-    return np.arange(0.0, solution.period - SAME, period_on(part, solution.mechanism))
-
-
-def of_laws(solution, jumps=False):
-    """Crank angles over the period at which laws of cams bend or jump, or jump only."""
-    found = [knot.angle for group in solution.mechanism.groups for knot in group.knots if knot.jumps or not jumps]
-    again = np.arange(0.0, solution.period - SAME, TURN)[:, None]
-    return np.ravel(np.mod(np.array(found, dtype=float), TURN) + again)
-
-
-def _friction_changes(solution):
-    """Crank angles at which friction jumps, as a rate changes its sign, or has a kink, as a force does."""
-    if not solution.friction.acting:
-        return np.empty(0)
-    _, angles = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, SAMPLES)
-    return np.unique(angles)
-
-
 def _beside(angle, others):
-    """Whether crank angles are among others, but for rounding."""
-    return np.isclose(np.asarray(angle)[..., None], others, rtol=0, atol=SAME).any(axis=-1)
+    """Whether crank angles equal one of others within `ANGLE_TOLERANCE`."""
+    return np.isclose(np.asarray(angle)[..., None], others, rtol=0, atol=ANGLE_TOLERANCE).any(axis=-1)
 
 
 def runs(marked):
-    """Places of samples around the turn that are marked, by runs without a break, the first after one that is not."""
+    """Indices of marked samples around the turn, one array for each unbroken run, from the first unmarked sample on."""
     order = np.roll(np.arange(marked.size), -int(np.argmin(marked)))
     edges = np.flatnonzero(np.diff(np.concatenate([[0], marked[order].astype(int), [0]])))
     return [order[start:stop] for start, stop in zip(edges[::2], edges[1::2], strict=True)]
@@ -292,15 +241,8 @@ def require_single(solution, owner, name):
         )
 
 
-def require_repeating(solution):
-    """Raise `ParameterError` if a load that is a function gives other forces after its period."""
-    problem = repeating_problem(solution)
-    if problem:
-        raise ParameterError(problem)
-
-
 def repeating_problem(solution):
-    """What is wrong with the period of the loads that are functions of one design, or None."""
+    """Sentence on a load function of one design that differs after its period, or None."""
     for item in solution.loads:
         if has_no_user_code(item):
             continue
@@ -311,7 +253,7 @@ def repeating_problem(solution):
             return np.broadcast_to(user_value(item, solution.at(angle + turns * period)), angle.shape)
 
         first, other = push(0), push(1)
-        if _alike(first, other):
+        if _repeats(first, other):
             continue
         place = int(np.nanargmax(np.abs(other - first)))
         unit = getattr(item, "UNIT", "N")
@@ -320,7 +262,7 @@ def repeating_problem(solution):
             f"{title_of(item)}: its function gives {first[place]:.6g} {unit} at crank angle {here}, "
             f"but {other[place]:.6g} {unit} at {there}"
         )
-        turns = next((turns for turns in range(2, LONGEST + 1) if _alike(first, push(turns))), None)
+        turns = next((turns for turns in range(2, MAX_PERIODS + 1) if _repeats(first, push(turns))), None)
         if turns is None:
             return (
                 f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
@@ -334,6 +276,6 @@ def repeating_problem(solution):
     return None
 
 
-def _alike(first, other):
+def _repeats(first, other):
     with np.errstate(invalid="ignore"):
-        return not np.any(np.abs(first - other) > ALIKE * np.fmax.reduce(np.abs(first), initial=0.0))
+        return not np.any(np.abs(first - other) > REPEAT_TOLERANCE * np.fmax.reduce(np.abs(first), initial=0.0))

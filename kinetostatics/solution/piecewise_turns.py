@@ -15,9 +15,8 @@ from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
-from ..results.bends import bends
-from ..results.pieces import Pieces
-from ..results.refining import GOAL, refined
+from ..results.kinks import design_kinks
+from ..results.pieces import GOAL, Pieces, refined
 from .scene import unchecked_solution
 
 START_ANGLES = 192
@@ -63,7 +62,7 @@ class PiecewiseTurns(NamedTuple):
         """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
-        found, jumps, rest = bends(solution, straight)
+        found, jumps, rest = design_kinks(solution, straight)
         found = np.broadcast_to(found, (count, found.shape[1]))
         return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
 

@@ -8,16 +8,16 @@ import numpy as np
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
 from ..numbers.formatting import number, round_uncertainty_up
-from ..results.bends import SMOOTH
 from ..results.extremes import extrema
-from ..results.rounding import AT_JUMP, Known
+from ..results.kinks import LOAD_FREE_KINDS
+from ..results.rounding import AT_JUMP, BoundedExtremes
 from .certainty import Doubt, doubt_text
 from .scene import Scene
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 TABLE_KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
 """Kinds of quantities in the table."""
-SMOOTH_KINDS = (*SMOOTH, "whole")
+SMOOTH_KINDS = (*LOAD_FREE_KINDS, "whole")
 """Kinds without kinks from loads or friction: motion, and the inertia forces of the whole machine."""
 SECOND_TORQUE = "balancing_torque_by_power"
 """Equal to the torque, so left out."""
@@ -59,7 +59,7 @@ def largest_with_uncertainty(solution, inputs):
     quantities = {
         name: item for name, item in of_scene(solution).items() if item.kind in TABLE_KINDS and name != SECOND_TORQUE
     }
-    known = Known(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
+    known = BoundedExtremes(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
     moved, rows, doubts = _ShiftedScenes(solution, inputs), [], []
     for name in known.found:
         row, doubt = _row(known, name, quantities[name], moved)

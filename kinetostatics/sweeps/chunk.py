@@ -24,8 +24,8 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import component_sizes, components, largest_term, quantity
 from ..numbers import checks
 from ..numbers.arithmetic import SQUARE_TOLERANCE
-from ..results.bends import bent
-from ..results.passes import Passes
+from ..results.compiled_reductions import CompiledReductions
+from ..results.kinks import has_kinks
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.rounding import FLOOR
@@ -67,7 +67,7 @@ def compute_batch(scene, job, count, outputs):
         )
     if count == solution.shape[-1] > 1 and tables_over_angles(scene):  # ambiguous; the caller tries fewer designs
         raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
-    parted = np.array([bent(solution, item.quantity, job.kink_tolerance) for item in outputs])
+    parted = np.array([has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs])
     even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
     numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
@@ -105,13 +105,13 @@ def _compiled_filler(solution, outputs, count, found, threads):
     given = angle, *numba_backend.compiled_sines(angle), parameters, tables
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
-    passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
+    reduce_block = CompiledReductions(outputs, rows, first[len(names)], round(solution.period / TURN))
     size = len(program.outputs), angle.shape[1]
     block = max(1, MAX_LOOP_VALUES // math.prod(size))
     step = max(block, -(-count // (PARTS_PER_THREAD * threads)))
 
     def fill(start):
-        passes(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
+        reduce_block(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
 
     return fill, step
 
@@ -151,7 +151,7 @@ def _split_turn(scene, job, outputs):
 def rounding_noise(scene, job, outputs):
     """Whether the quantities of outputs are constant over the turn but for rounding, (outputs, designs or 1)."""
     solution = unchecked_turn(scene, job.angles)
-    if any(bent(solution, item.quantity, job.kink_tolerance) for item in outputs):
+    if any(has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs):
         solution = unchecked_turn(scene, _split_turn(scene, job, outputs).pieces.angle)
     with np.errstate(all="ignore"):
         found = [_is_noise(solution, item.quantity) for item in outputs]
@@ -270,7 +270,7 @@ def dry_run(job, designs, engines):
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _first_engine(job, solutions, engines)
         streams = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
-        parted = any(bent(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
+        parted = any(has_kinks(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
         angles = max(job.angles, (START_ANGLES if parted else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
         return replace(job, engine=engine, outputs=outputs, streams=streams, kinked=parted, angles=angles, hints=hints)
     return None

@@ -150,7 +150,7 @@ def test_declared_kinks_may_depend_on_speed():
 def test_standstill_names_angle_and_missing_torque():
     machine = driven(DISC, ks.Torque(-1e3, on="crank"))
     with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
-        settle_by_integration(machine, resolved(machine, 10.0), 10.0)
+        settle_by_integration(machine, resolved(machine, 10.0)[0], 10.0)
     assert caught.value.missing == pytest.approx(1e3 - float(machine.motor_torque(0.0)), rel=1e-6)
 
 
@@ -161,5 +161,5 @@ def test_vanishing_inertia_is_refused_with_its_angle():
     motor = ks.drive.Motor.linear(100.0, 50.0)
     machine = driven(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), motor=motor, flywheel=0.0)
     with pytest.raises(ks.errors.DriveError, match="all inertia vanishes at crank angle"):
-        require_inertia(machine, resolved(machine, 3.0))
-    require_inertia(driven(), resolved(driven(), 3.0))
+        require_inertia(machine, resolved(machine, 3.0)[0])
+    require_inertia(driven(), resolved(driven(), 3.0)[0])

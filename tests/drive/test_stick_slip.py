@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive.one_dof import driven_machine
+from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
@@ -112,12 +112,12 @@ def test_start_from_an_unloaded_dead_centre_goes_on():
 
 def test_steep_machines_start_and_flat_ones_stay():
     """Gravity has an arm of 0.15 m on the crank of 2 kg, friction one of 0.1 times 0.05 m."""
-    hung = driven_machine("test", PENDULUM, None, 0.06)
+    hung = DrivenMachine("test", PENDULUM, None, 0.06)
     assert [sense_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
 
 
 def test_motion_ends_at_its_target_speed():
-    hung = driven_machine("test", PENDULUM, None, 0.06)
+    hung = DrivenMachine("test", PENDULUM, None, 0.06)
     found = integrate_motion(hung, -1.0, 0.0, 5.0, target=-0.5)
     assert found.end == "ready"
     assert found.rows[1, -1] == pytest.approx(-0.5, rel=1e-12)
@@ -244,7 +244,7 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))
     press = ks.crank_slider(0.06, 0.26, slider=ks.Link(22.0))
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
-    driven = driven_machine("start", scene, SMALL, 3.0)
+    driven = DrivenMachine("start", scene, SMALL, 3.0)
     senses = {"sense": 1.0, "friction.O.sense": 1.0}
     one = driven.friction_outputs(1.0, 12.0, 0.0, senses)
     several = driven.friction_outputs(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)

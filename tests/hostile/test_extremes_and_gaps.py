@@ -10,7 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.mechanics import assembly, quantities
 from kinetostatics.results.comparison import mean_absolute_torque
-from kinetostatics.results.tables import extremes_frame
+from kinetostatics.results.extremes import extremes_frame
 from support.every import every
 
 GRAVITY = (ks.Gravity(),)

@@ -29,7 +29,7 @@ from kinetostatics.numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from kinetostatics.results.tables import extremes_frame
+from kinetostatics.results.extremes import extremes_frame
 from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods.global_system import newton

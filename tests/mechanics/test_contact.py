@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.mechanics.dynamics import Dynamics
-from kinetostatics.results.tables import extremes_frame
+from kinetostatics.results.extremes import extremes_frame
 from support.cam_contacts import CAM, LOADS, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 

@@ -7,7 +7,7 @@ from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import of_mechanism
-from kinetostatics.results.tables import extremes_frame
+from kinetostatics.results.extremes import extremes_frame
 from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)

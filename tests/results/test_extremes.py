@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
-from kinetostatics.results.tables import extremes_by_name, extremes_frame, frames
+from kinetostatics.results.extremes import extremes_by_name, extremes_frame, frames
 from kinetostatics.results.turn import Turn
 from support import sweeping as spikes
 from support.every import every

@@ -16,7 +16,7 @@ from kinetostatics.results.means import (
     mean_absolute_torque_errors,
     means,
 )
-from kinetostatics.results.rounding import Known, without_rounding
+from kinetostatics.results.rounding import BoundedExtremes, without_rounding
 
 TURN = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=3.0).sampled
 WHOLE = 2 * np.pi
@@ -34,7 +34,7 @@ FUNCTIONS = {
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_the_mean_is_that_of_calculus(name):
     function, expected = FUNCTIONS[name]
-    found, error = means(lambda x: function(x)[None], TURN, 1e-14)
+    found, error, _ = means(lambda x: function(x)[None], TURN, 1e-14)
     assert found[0] == pytest.approx(expected, rel=1e-11, abs=1e-14)
     assert error[0] < 1e-10
 
@@ -108,7 +108,7 @@ SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(
 
 
 def known(solution, *names):
-    return Known(solution, {name: ks.extremes(solution, name) for name in names})
+    return BoundedExtremes(solution, {name: ks.extremes(solution, name) for name in names})
 
 
 @pytest.mark.parametrize("speed", [10.0, 1e-6])

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.bends import bends, bent
-from kinetostatics.results.changes import sign_changes
-from kinetostatics.results.pieces import Pieces
+from kinetostatics.results.kinks import design_kinks, has_kinks, sign_changes
+from kinetostatics.results.pieces import GOAL, MAX_ADDED, Pieces, refined
 from kinetostatics.results.reductions import parsed
-from kinetostatics.results.refining import GOAL, MOST, refined
 from support.every import every
 
 TURN = 2 * np.pi
@@ -198,7 +196,7 @@ def test_where_everything_bends_it_is_said():
     _, peak, _ = run("largest O", rough_one)
     assert rough.all()
     assert peak.all()
-    assert pieces.max() <= 24 + MOST
+    assert pieces.max() <= 24 + MAX_ADDED
 
 
 # Where loads and friction of designs bend
@@ -212,17 +210,17 @@ def solved(loads=(), friction=None, crank=0.05, offset=0.01):
 def test_smooth_rows_bend_only_at_fine_tolerance():
     x = np.linspace(0.1, 0.3, 1100)
     one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
-    assert not bent(solved([one]), "O")
-    assert bent(solved([one]), "O", 1e-9)
-    assert bends(solved([one]), 1e-9).angle.shape[1] > 500
-    assert bends(solved([one, other])).angle.shape[1] == 2  # where strokes that differ may jump
+    assert not has_kinks(solved([one]), "O")
+    assert has_kinks(solved([one]), "O", 1e-9)
+    assert design_kinks(solved([one]), 1e-9)[0].shape[1] > 500
+    assert design_kinks(solved([one, other]))[0].shape[1] == 2  # where strokes that differ may jump
 
 
 def test_angle_table_bends_in_every_turn():
     x = np.arange(0.0, 6.1, 0.5)
     twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
     four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
-    at = np.unique(bends(solved([twice, four])).angle)
+    at = np.unique(design_kinks(solved([twice, four]))[0])
     assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
 
 
@@ -230,16 +228,16 @@ def test_no_bend_lies_beyond_thirteen_turns():
     once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
     long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
     s = solved([once, long])
-    at = bends(s).angle
+    at = design_kinks(s)[0]
     assert np.nanmax(at) < s.period
     assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
 
 
 def test_friction_of_designs_bends_as_alone():
     friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
-    both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
+    both = np.sort(design_kinks(solved((), friction, crank))[0], axis=1)
     for row, length in zip(both, crank[:, 0], strict=True):
-        alone = np.sort(bends(solved((), friction, float(length))).angle[0])
+        alone = np.sort(design_kinks(solved((), friction, float(length)))[0][0])
         np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
 
 

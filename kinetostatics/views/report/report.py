@@ -15,7 +15,7 @@ from ...machine.loads import period_of
 from ...numbers import checks, files
 from ...numbers.lazy import cached_property
 from ...results.comparison import Comparison
-from ...results.tables import extremes_by_name
+from ...results.extremes import extremes_by_name
 from ...solution.scene import Scene
 from ..canvas import angles_between
 from . import figures, html

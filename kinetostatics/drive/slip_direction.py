@@ -1,4 +1,4 @@
-"""Which way each joint that rubs moves, over the crank angle: friction jumps where that changes."""
+"""Senses of motion of joints with friction over the crank angle; friction jumps where one changes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,16 +8,16 @@ import numpy as np
 
 from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
-from ..results.changes import sign_changes
+from ..results.kinks import sign_changes
 from ..results.turn import SAMPLES
 
-SAME = 1e-12
-"""Crank angles this near to the ends of the period, rad, are there."""
+ANGLE_TOLERANCE = 1e-12
+"""Crank angles nearer than this to an end of the period, rad, count as 0."""
 
 
 @dataclass(frozen=True, eq=False)
-class Senses:
-    """Sign of the motion of each joint that rubs as the crank turns forward.
+class SlipDirections:
+    """Sign of the sliding speed of each joint with friction as the crank turns forward.
 
     Attributes
     ----------
@@ -25,9 +25,9 @@ class Senses:
     edges : dict of joint to array
         Crank angles in [0, period) at which the sign changes, rising.
     signs : dict of joint to array
-        Before the first of these, between each two, and behind the last.
+        Signs before the first of these, between each two, and after the last.
     rates : function
-        Rates by the crank angle of the joints in `edges`, in order, at crank angles; none of rollers.
+        From crank angles to the rates, by the crank angle, of the joints in `edges` that do not roll, in order.
     """
 
     period: float
@@ -37,7 +37,7 @@ class Senses:
 
     @classmethod
     def of(cls, scene):
-        """Of a scene with friction."""
+        """Slip directions of a scene with friction."""
         mechanism, period = scene.mechanism, scene.period
         acting, parts = scene.friction.acting, (*mechanism.groups, mechanism.crank)
         moving = [
@@ -53,7 +53,7 @@ class Senses:
             return [1.0 if rate is None else rate for rate in found]
 
         row, angle = (part[0] for part in sign_changes(rates, period, SAMPLES))
-        angle = np.where((angle < SAME) | (angle > period - SAME), 0.0, angle)
+        angle = np.where((angle < ANGLE_TOLERANCE) | (angle > period - ANGLE_TOLERANCE), 0.0, angle)
         edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
         signs = {}
         for place, (name, own) in enumerate(edges.items()):
@@ -72,7 +72,7 @@ class Senses:
     def at(self, angle, direction):
         """Signs of the motion at crank angles, the crank turning forward (+1) or backward (-1).
 
-        They are named as the program of a scene calls them: "sense" of the crank, "friction.JOINT.sense".
+        By the parameter names of a scene's program: "sense" of the crank, "friction.JOINT.sense".
         """
         inside = np.mod(angle, self.period)
         found = {
@@ -82,21 +82,21 @@ class Senses:
         own = np.append(self.all_edges, self.period)
         place = np.searchsorted(own, inside)
         close = np.minimum(np.abs(inside - own[np.minimum(place, own.size - 1)]), np.abs(inside - own[place - 1]))
-        if np.any(close < SAME) and self.all_edges.size:
+        if np.any(close < ANGLE_TOLERANCE) and self.all_edges.size:
             for name, rate in zip(found, self.rates(angle), strict=False):
-                found[name] = np.where(close < SAME, direction * np.copysign(1.0, rate), found[name])
+                found[name] = np.where(close < ANGLE_TOLERANCE, direction * np.copysign(1.0, rate), found[name])
         return found | {"sense": np.broadcast_to(direction, inside.shape)}
 
-    def stretch(self, angle, direction):
-        """The same signs just ahead of a crank angle in [0, period], and the next angle at which one changes."""
+    def ahead(self, angle, direction):
+        """Signs as of `at` just ahead of a crank angle in [0, period], and the next angle at which one changes."""
         own = self.all_edges
         if not own.size:
             ahead = angle + direction * self.period
             return {name: float(sign) for name, sign in self.at(np.array(angle), direction).items()}, ahead
         around = np.concatenate([own - self.period, own, own + self.period])
         if direction > 0.0:
-            end = float(around[np.searchsorted(around, angle + SAME, side="right")])
+            end = float(around[np.searchsorted(around, angle + ANGLE_TOLERANCE, side="right")])
         else:
-            end = float(around[np.searchsorted(around, angle - SAME, side="left") - 1])
+            end = float(around[np.searchsorted(around, angle - ANGLE_TOLERANCE, side="left") - 1])
         inside = np.array(0.5 * (angle + end))
         return {name: float(sign) for name, sign in self.at(inside, direction).items()}, end

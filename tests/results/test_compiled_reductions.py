@@ -7,7 +7,7 @@ import pytest
 
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.codegen import ARGUMENTS
-from kinetostatics.results.passes import KINDS, Passes
+from kinetostatics.results.compiled_reductions import KINDS, CompiledReductions
 from kinetostatics.results.reductions import parsed
 
 pytestmark = [
@@ -65,14 +65,14 @@ def loop(angle, sine, cosine, parameters, tables, results):
 
 
 def reduced(loop, values, closure=None, turns=1, block=7):
-    """What `Passes` finds of values (designs, N), and of closure, block by block."""
+    """What `CompiledReductions` finds of values (designs, N), and of closure, block by block."""
     closure = np.ones_like(values) if closure is None else closure
     designs, count = values.shape
     shape = len(OUTPUTS), designs
     found = np.empty(shape), np.zeros(shape, dtype=bool), np.zeros(designs, dtype=int), np.full(designs, np.nan)
     angle = np.linspace(0, 6, count)[None]
     given = angle, np.sin(angle), np.cos(angle), np.zeros((designs, 1)), np.array([values, closure])
-    passes = Passes(OUTPUTS, [0] * len(OUTPUTS), 1, turns)
+    passes = CompiledReductions(OUTPUTS, [0] * len(OUTPUTS), 1, turns)
     half = designs // 2
     for start, stop in ((0, half), (half, designs)):
         passes(loop, given, np.empty((block, 2, count)), found, start, stop)

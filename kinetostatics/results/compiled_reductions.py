@@ -1,10 +1,8 @@
-"""Values of many designs computed and reduced as machine code by numba: the same numbers as `reductions` to rounding.
+"""Reductions of many designs as machine code by numba: the numbers of `reductions` to rounding.
 
-A program's loop leaves the values of a block of designs in the cache; here they are reduced before they leave it, and
-nothing of Python comes between. It does not matter which designs come together.
+A program's compiled loop leaves the values of a block of designs in the cache, and this code reduces them there.
+The designs of a block do not influence each other.
 """
-
-from functools import cache
 
 import numpy as np
 
@@ -14,18 +12,16 @@ from ..engines.simd_reductions import COLUMNS, edition
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from . import peaks
 from .peaks import REACH
-from .reductions import MEAN, PEAK
+from .reductions import MEAN_TOLERANCE, PEAK_TOLERANCE
 from .turn import NEAR
 
 EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")
-"""Reductions that are there, by their number; harmonics and the swing are not."""
+"""Compiled reductions, by number; harmonics and the swing are none."""
 AROUND = 2 * REACH + 1
-"""Samples that tell how high a peak is."""
-
-
+"""Samples that interpolate a peak."""
 LOOP = f"FunctionType({ARGUMENTS})"
-"""Type of a program's loop, which is handed in."""
+"""Type of a program's loop, an argument."""
 SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import inf, nan, pi, sqrt
@@ -36,7 +32,7 @@ from kinetostatics.results.peaks import between
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
-inner = dict(options, _nrt=False)  # nothing in here gets memory, so nobody need count who holds it
+inner = dict(options, _nrt=False)  # no memory is allocated, so no reference is counted
 steps = simd_reductions.bits_of_steps(simd_reductions.rising, simd_reductions.falling)
 signs = simd_reductions.bits_of_steps(simd_reductions.negative)
 lowest = simd_reductions.lowest_bit()
@@ -49,7 +45,7 @@ ONE, SIXTY_THREE = np.uint64(1), np.uint64(63)
 
 @njit(**inner)
 def value(results, design, row, i):
-    """Value at a place that may lie a little beyond either end of the turn."""
+    """Value at an index that may lie a little beyond either end of the turn."""
     count = results.shape[2]
     return results[design, row, i + count if i < 0 else i - count if i >= count else i]
 
@@ -62,7 +58,7 @@ def bend(results, design, row, i):
 
 @njit(**inner)
 def after(words, k, count):
-    """Bits of a word moved by one, so that each place has that of the next; the first comes after the last."""
+    """Bits of word k, each replaced by the next bit; the first bit of all follows the last."""
     last = (count - 1) // 64
     following = words[k + 1] << SIXTY_THREE if k < last else (words[0] & ONE) << np.uint64((count - 1) % 64)
     return words[k] >> ONE | following
@@ -70,7 +66,7 @@ def after(words, k, count):
 
 @njit(**inner)
 def tops(words, count, places, found):
-    """Fill in, from a place on, where values stop rising, or falling, that did; how many are found then."""
+    """Write into `places`, from index `found` on, where a rise (or fall) ends; returns the new number of places."""
     for k in range((count + 63) // 64):
         word = words[k] & ~after(words, k, count)
         while word:
@@ -83,13 +79,13 @@ def tops(words, count, places, found):
 
 @njit(**inner)
 def rivals(results, design, row, side, words, places, found):
-    """Fill in, from a place on, where peaks of values, or of them with the sign turned, are that may be the highest.
+    """Write into `places`, from index `found` on, the peaks that may be the highest; returns the new number of places.
 
-    How many are found then.
+    Side 1 is for the values with the opposite sign.
     """
     sign, last, first = 1.0 - 2.0 * side, results.shape[2] - 1, found
     found = tops(words[side], last + 1, places, found)
-    if found == first:  # of what is constant the first
+    if found == first:  # constant values: the first
         places[found] = 0
         found += 1
     best, bound = -inf, -inf
@@ -97,7 +93,7 @@ def rivals(results, design, row, side, words, places, found):
         here = sign * results[design, row, places[k]]
         best, bound = max(best, here), max(bound, here - bend(results, design, row, places[k]))
     if sign * results[design, row, 0] == best and sign * results[design, row, last] == best:
-        places[found] = 0  # a plateau goes on across the end of the turn, and its first sample counts too
+        places[found] = 0  # a plateau continues across the end of the turn: its first sample is a peak too
         found += 1
         bound = max(bound, best - bend(results, design, row, 0))
     kept = first
@@ -110,10 +106,10 @@ def rivals(results, design, row, side, words, places, found):
 
 @njit(**inner)
 def peaks(results, row, sides, memory):
-    """Fill in (2, designs): highest peaks of values, and of them with the sign turned, where, in samples, and about how
-    far off; NaN where a value is no number. Sides are the first to be found and the one behind the last.
+    """Highest peaks (2, designs) of values and of the negative values, their places in samples, and error estimates.
 
-    All designs' peaks that may be the highest come first, and then how high they are between samples, at once.
+    Written into `memory`; NaN where a value is NaN. `sides` is the range of sides. All candidates of all designs are
+    collected first, then interpolated together.
     """
     near, owners, places, words, high, where, error = memory
     designs, count, found = results.shape[0], results.shape[2], 0
@@ -150,7 +146,7 @@ def peaks(results, row, sides, memory):
 
 @njit(**inner)
 def kink(results, design, row, i, j):
-    """What the sum of sizes is too large by if the sign changes from one sample to another (`reductions._kinks`)."""
+    """Excess of the sum of magnitudes if the sign changes between two samples (`reductions._kink_excess`)."""
     one, other = value(results, design, row, i), value(results, design, row, j)
     if (one < 0.0) == (other < 0.0):
         return 0.0
@@ -160,7 +156,7 @@ def kink(results, design, row, i, j):
 
 @njit(**inner)
 def kinks(results, design, row, words):
-    """The same of all samples, and of every other."""
+    """Sum of `kink` over all samples, and over every other."""
     signs(results, design, row, words)
     count, whole, half = results.shape[2], 0.0, 0.0
     for k in range((count + 63) // 64):
@@ -175,7 +171,7 @@ def kinks(results, design, row, words):
 
 @njit(**inner)
 def averaged(results, design, row, power, words):
-    """Mean, of sizes or squares too, and how far that of every other value is from it."""
+    """Mean of values, magnitudes or squares, and its difference from that of every other value."""
     count = results.shape[2]
     if power == 0:
         even, odd = plain(results, design, row)
@@ -198,12 +194,12 @@ def means(results, row, power, memory, numbers, rough):
     words = memory[3]
     for design in range(results.shape[0]):
         found, error = averaged(results, design, row, power, words)
-        doubtful = error > {MEAN!r} * abs(found)
+        doubtful = error > {MEAN_TOLERANCE!r} * abs(found)
         if doubtful:
             size = 0.0
             for i in range(results.shape[2]):
                 size = max(size, abs(results[design, row, i]))
-            doubtful = error > {MEAN / 10!r} * size
+            doubtful = error > {MEAN_TOLERANCE / 10!r} * size
         numbers[design], rough[design] = found, doubtful
 
 
@@ -218,15 +214,15 @@ def extremes(results, row, kind, turns, memory, numbers, rough):
         if kind == 1 or kind == 3:
             size = above if kind == 1 else below
             found = where[kind // 2, design] * (2.0 * pi / results.shape[2]) * turns
-            doubtful = off > {PEAK!r} * abs(size)
+            doubtful = off > {PEAK_TOLERANCE!r} * abs(size)
         else:
             found = above if kind == 0 else below if kind == 2 else max(above, -below) if kind == 4 else above - below
-            doubtful = off > {PEAK!r} * abs(found)
+            doubtful = off > {PEAK_TOLERANCE!r} * abs(found)
             if doubtful:
                 least, most = inf, -inf
                 for i in range(results.shape[2]):
                     least, most = min(least, results[design, row, i]), max(most, results[design, row, i])
-                doubtful = off > {PEAK / 100!r} * (most - least)
+                doubtful = off > {PEAK_TOLERANCE / 100!r} * (most - least)
         numbers[design], rough[design] = found, doubtful
 
 
@@ -290,14 +286,8 @@ def passes(
 '''
 
 
-@cache
-def _source():
-    """The source with the edition of what writes it, so that machine code of another is not taken for its own."""
-    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(peaks)};", 1)
-
-
-class Passes:
-    """Outputs of many designs by one compiled loop: their values block by block, and what these are reduced to.
+class CompiledReductions:
+    """Outputs of many designs by one compiled loop, which computes and reduces block by block.
 
     Parameters
     ----------
@@ -305,36 +295,37 @@ class Passes:
     rows : sequence of int
         Row of the quantity of each.
     first : int
-        Row where closure begins, which goes on to the last.
+        First row of the closure, which extends to the last row.
     turns : int
-        As many as the crank angles go over.
+        Turns of the crank angles.
     """
 
     def __init__(self, outputs, rows, first, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._passes, self._turns = numba_backend.load_compiled(_source()).passes, turns
+        source = SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(peaks)};", 1)
+        self._run, self._turns = numba_backend.load_compiled(source).passes, turns
         self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
-    def __call__(self, loop, given, held, found, start, stop):
-        """Fill in what is found of some designs.
+    def __call__(self, loop, given, memory, found, start, stop):
+        """Write the results of some designs.
 
         Parameters
         ----------
         loop, given
-            A program's loop (`numba_backend`), and what it takes for all designs: crank angles with their sines and
+            A program's loop (`numba_backend`) and its arguments for all designs: crank angles with their sines and
             cosines, parameters, tables.
-        held : array (designs, rows, N)
-            Memory for the values of a block.
+        memory : array (designs, rows, N)
+            Buffer for the values of a block.
         found : tuple
-            Numbers (outputs, designs), whether so many angles do not tell them, at how many angles a design does not
-            close, and the angle at which it is nearest to a limit position, left as it is where it is not near.
+            Written: numbers (outputs, designs); whether the samples are too few for them; the number of angles at which
+            a design does not close; the angle nearest to a limit position, unchanged if none is near.
         start, stop : int
         """
-        step = len(held) if self._others else max(1, stop - start)
+        step = len(memory) if self._others else max(1, stop - start)
         for first in range(start, stop, step):
             last = min(first + step, stop)
-            self._passes(loop, *given, held, *self._given, *found, first, last)
+            self._run(loop, *given, memory, *self._given, *found, first, last)
             for k, item, row in self._others:
                 numbers, rough = (part[k, first:last] for part in found[:2])
-                numbers[...], rough[...] = item.estimated(held[: last - first, row], self._turns)
+                numbers[...], rough[...] = item.estimated(memory[: last - first, row], self._turns)

@@ -1,0 +1,166 @@
+"""Crank angles over the period where loads, friction and laws of cams have kinks or jumps, of one design or of many.
+
+Friction has them where a rate or a force changes its sign; `sign_changes` finds these.
+"""
+
+import numpy as np
+
+from ..machine.loads import (
+    KINK_TOLERANCE,
+    TURN,
+    has_significant_kinks,
+    kink_sources,
+    kinks_of,
+    pad_rows,
+    period_on,
+    significant_kinks,
+)
+from ..mechanics.quantities import quantity
+from ..numbers.brackets import find_roots
+
+LOAD_FREE_KINDS = ("slider", "motion", "rate")
+"""Kinds of quantities that do not depend on loads."""
+SAMPLES = 720
+"""Crank angles of a turn between which a rate or force of friction is expected to change its sign once."""
+SAMPLE_OFFSET = 1e-3
+"""Crank angle of the first sample, rad: no sample stands at a dead centre."""
+MAX_VERTEX = 0.1
+"""Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
+ANGLE_TOLERANCE = 1e-9
+"""Crank angles nearer than this, rad, count as one."""
+
+
+def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
+    """Whether friction, a cam's law, or a load with kinks above `tolerance` may put a kink into a quantity."""
+    if law_kinks(solution).size:
+        return True
+    loads = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
+    return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in LOAD_FREE_KINDS
+
+
+def design_kinks(solution, tolerance=KINK_TOLERANCE):
+    """Kinks of all designs of a solution, of loads those larger than `tolerance` times the load's largest value.
+
+    Returns their crank angles (1 or designs, K), NaN where a design has fewer; which of them may be jumps, the same
+    shape; and the largest kink left out, relative to its load's largest value.
+    """
+    law = law_kinks(solution)[None]
+    sources, largest_left_out = [(law, np.isin(law, law_kinks(solution, jumps=True)))], 0.0
+    if solution.friction.acting:
+        rates = len(solution.dynamics.friction_solver.rates) if solution.dynamics.friction_signs else 0
+        row, angle = _friction_sign_changes(solution, SAMPLES * round(solution.period / TURN))
+        sources.append((angle, row < rates))
+    for part in kink_sources(solution.loads):
+        angles, jumps, left_out = significant_kinks(part, solution, tolerance)
+        starts = _period_starts(part, solution)
+        angles = (angles[..., None] + starts).reshape(len(angles), -1)
+        sources.append((angles, np.repeat(jumps, starts.size)[None]))
+        largest_left_out = max(largest_left_out, left_out)
+    designs = max(len(angles) for angles, _ in sources)
+    rows = ([np.broadcast_to(part, (designs, part.shape[1])) for part in row] for row in zip(*sources, strict=True))
+    angle, jumps = map(np.column_stack, rows)
+    return angle, jumps, largest_left_out
+
+
+def kinks_and_jumps(solution, samples):
+    """Crank angles of all kinks, and of those that may be jumps, of one design over the period, rad, rising.
+
+    The signs of friction are sampled at `samples` crank angles.
+    """
+    law, friction = law_kinks(solution, jumps=True), np.empty(0)
+    if solution.friction.acting:
+        friction = np.unique(_friction_sign_changes(solution, samples)[1])
+    sources = [(friction, friction), (law, law)]
+    for part in kink_sources(solution.loads):
+        starts = _period_starts(part, solution)[:, None]
+        kinks, jumps = kinks_of(part, solution)
+        sources.append((np.ravel(np.concatenate([kinks, jumps]) + starts), np.ravel(jumps + starts)))
+    return tuple(np.unique(np.concatenate(angles)) for angles in zip(*sources, strict=True))
+
+
+def law_kinks(solution, jumps=False):
+    """Crank angles over the period at which laws of cams have kinks or jumps, or jumps only."""
+    angles = [knot.angle for group in solution.mechanism.groups for knot in group.knots if knot.jumps or not jumps]
+    starts = np.arange(0.0, solution.period - ANGLE_TOLERANCE, TURN)[:, None]
+    return np.ravel(np.mod(np.array(angles, dtype=float), TURN) + starts)
+
+
+def _period_starts(part, solution):
+    """Crank angles at which the period of a part with kinks starts again within the period of a solution."""
+    return np.arange(0.0, solution.period - ANGLE_TOLERANCE, period_on(part, solution.mechanism))
+
+
+def _friction_sign_changes(solution, samples):
+    return sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)
+
+
+def sign_changes(function, period, samples):
+    """Which of several functions change their signs, and at which crank angles, both (designs, K), else NaN.
+
+    Parameters
+    ----------
+    function : function
+        From crank angles (1 or designs, N) to a sequence of arrays that broadcast with them: one for each function.
+    period : float
+    samples : int
+        Crank angles over the period between which each function changes its sign once at most, or twice where its size
+        has a minimum.
+    """
+
+    def evaluate(angle):
+        with np.errstate(all="ignore"):
+            found = function(angle)
+        return np.stack([np.broadcast_arrays(np.atleast_2d(row), angle)[0] for row in found])
+
+    angle = (SAMPLE_OFFSET + np.linspace(0.0, period, samples + 1))[None]
+    found = function(angle)
+    if not len(found):
+        return np.empty((1, 0)), np.empty((1, 0))
+    values = np.stack(np.broadcast_arrays(*(np.atleast_2d(row) for row in found), angle)[:-1])
+    low, high, row = _sign_change_brackets(evaluate, values, angle)
+    if not low.size:
+        return row, low
+    known = np.nan_to_num(row).astype(int)
+
+    def own(angle, asked):
+        everywhere = low.copy()
+        everywhere.flat[asked] = angle
+        return np.take_along_axis(evaluate(everywhere), known[None], axis=0)[0].flat[asked]
+
+    root = find_roots(own, low, high)
+    first = own(low.ravel(), np.arange(low.size)).reshape(low.shape)
+    ends = np.where(first == 0.0, low, high)
+    return row, np.mod(np.where(np.isnan(root), ends, root), period)
+
+
+def _sign_change_brackets(evaluate, values, angle):
+    """Crank angles before and after each sign change, and which function, (designs, K); values (functions, designs, N).
+
+    Where the parabola through three samples of one sign has its vertex near zero, the function is evaluated there: it
+    may change its sign twice.
+    """
+    sign = np.signbit(values)
+    row, design, place = np.nonzero((sign[..., :-1] != sign[..., 1:]) & ~np.isnan(np.diff(values)))
+    brackets = [(design, angle[0, place], angle[0, place + 1], row)]
+    before, here, after = (np.abs(part) for part in (values[..., :-2], values[..., 1:-1], values[..., 2:]))
+    alike = (sign[..., :-2] == sign[..., 1:-1]) & (sign[..., 1:-1] == sign[..., 2:])
+    bend = before - 2.0 * here + after
+    with np.errstate(invalid="ignore", divide="ignore"):
+        least = here - (before - after) ** 2 / (8.0 * bend)
+        near = alike & (here <= before) & (here <= after) & (bend > 0.0) & (least < MAX_VERTEX * bend)
+    row, design, place = np.nonzero(near)
+    if place.size:
+        step = 0.5 * (before - after)[near] / bend[near]
+        place = place + 1
+        vertex = angle[0, place] + step * (angle[0, 1] - angle[0, 0])
+        at, known, order = pad_rows(design, values.shape[1], vertex, row, np.arange(vertex.size))
+        there = evaluate(np.where(np.isnan(at), angle[0, 0], at))
+        there = np.take_along_axis(there, np.nan_to_num(known).astype(int)[None], axis=0)[0]
+        own = np.empty(vertex.size)
+        own[order[~np.isnan(order)].astype(int)] = there[~np.isnan(order)]
+        beyond = np.signbit(own) != sign[row, design, place]
+        row, design, place, vertex = (part[beyond] for part in (row, design, place, vertex))
+        brackets += [(design, angle[0, place - 1], vertex, row), (design, vertex, angle[0, place + 1], row)]
+    design, low, high, row = (np.concatenate(parts) for parts in zip(*brackets, strict=True))
+    order = np.lexsort((low, row, design))
+    return pad_rows(design[order], values.shape[1], low[order], high[order], row[order])
