@@ -525,13 +525,12 @@ def contact(
         "load_rating": (load_rating, "N", POSITIVE),
     }
     no_roller = f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none"
-    led = any(group.led for group in solution.mechanism.groups)
+    if any(group.led for group in solution.mechanism.groups):
+        no_roller += "; give its follower a Roller or Face, then contact_pressure is an output"
     own |= {name: item for name, item in optional.items() if item[0] is not None}
     values = checks.single_numbers(
         "contact",
-        None
-        if groups
-        else no_roller + "; give its follower a Roller or Face, then contact_pressure is an output" * led,
+        None if groups else no_roller,
         *_limit_problems(limits, load_rating),
         **_contact_rules(given, groups),
         **own,
