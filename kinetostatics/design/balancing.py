@@ -7,15 +7,20 @@ Full balancing makes all static moments vanish; partial balancing, with one coun
                                    1/2: least overall, by the mower study (Kotov 2024)
 """
 
+from dataclasses import dataclass, replace
+from typing import Any
+
 import numpy as np
 
 from ..errors import ParameterError
 from ..mechanics import assembly
 from ..mechanics.principal_points import principal_points
+from ..mechanics.quantities import magnitude
 from ..numbers import checks
+from ..results.extremes import extremes
 from ..solution.scene import mechanism_problem
-from .counterweights import Balanced, Counterweight, counterweight, guide_direction
-from .least_shaking import ShakingSearch, least_shaking
+from ..solution.solution import Solution
+from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .linkage import crank_sliders, four_bar_shape
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
@@ -97,7 +102,12 @@ def partial(mechanism, ratio="overall", *, crank):
     >>> abs(s.shaking_force).round(6)  # N: none across the guide
     array([414.187807,   0.      ])
     """
-    value = _parse_ratio(ratio)
+    if isinstance(ratio, str):
+        checks.require("partial balancing", checks.choice("ratio", ratio, tuple(NAMED_RATIOS)))
+        value = NAMED_RATIOS[ratio]
+    else:
+        value = checks.single_numbers("partial balancing", ratio=(ratio, "1", {}))["ratio"]
+        checks.require("partial balancing", ratio_problem(value))
     _require_balanceable(mechanism)
     if not crank_sliders(mechanism):
         raise ParameterError(f"partial balancing by ratio is for crank-sliders, not for a {mechanism.name}")
@@ -113,7 +123,100 @@ def partial(mechanism, ratio="overall", *, crank):
 
 
 WEIGHT_RULES = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
+PEAK_NORMS = ("largest", "along", "across")
+"""Norms that are a largest value over the turn."""
 NORMS = ("largest", "mean", "along", "across", "weighted")
+
+
+@dataclass(frozen=True, eq=False)
+class _ShakingSearch:
+    """Norm of the shaking force over unbalances of counterweights, in units of `scale`, the largest static moment.
+
+    `weights` are of force and moment, 1/N and 1/(N m); `size` is 2 if an unbalance may leave its link's line, else 1;
+    `turn` holds the crank angles of the norm, rad; `reference` is the norm without counterweights, or 1.
+    """
+
+    mechanism: Any
+    norm: str
+    weights: tuple[float, float]
+    counterweights: dict[str, Counterweight]
+    size: int
+    turn: Any
+    scale: float
+    reference: float = 1.0
+
+    @property
+    def none(self):
+        """Unknowns without counterweights."""
+        return np.zeros(self.size * len(self.counterweights))
+
+    def balanced(self, unknowns):
+        """The mechanism with counterweights of these unbalances, each on either side and cut to its limits."""
+        result, unbalances = Balanced(self.mechanism, self.mechanism), (unknowns * self.scale).reshape(-1, self.size)
+        for (name, weight), part in zip(self.counterweights.items(), unbalances, strict=True):
+            unbalance = np.append(part, 0.0)[:2]
+            size = float(np.hypot(*unbalance))
+            smallest, largest = weight.unbalances()
+            kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])
+            sided = weight if weight.arm is None else replace(weight, arm=float(np.copysign(weight.arm, kept[0])))
+            step = counterweight(result.mechanism, name, kept, sided)
+            result = Balanced(self.mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
+        return result
+
+    def solved(self, unknowns):
+        """Solution of that mechanism at crank speed 1 rad/s."""
+        return Solution(self.balanced(unknowns).mechanism, self.turn, 1.0, 0.0)
+
+    def force_sizes(self, solution):
+        """Size of the shaking force, or of its component, at each crank angle, N."""
+        if self.norm in ("along", "across"):
+            return np.abs((along_guide if self.norm == "along" else across_guide)(solution))
+        return magnitude(solution.shaking_force)
+
+    def sizes(self, unknowns):
+        """Sizes under the norm at each crank angle, relative to the reference."""
+        return self.force_sizes(self.solved(unknowns)) / self.reference
+
+    def value(self, unknowns):
+        """The norm."""
+        if self.norm == "weighted":
+            solved, (by_force, by_moment) = self.solved(unknowns), self.weights
+            force, moment = by_force * magnitude(solved.shaking_force), by_moment * solved.shaking_moment
+            return np.sqrt(np.mean(force * force + moment * moment))
+        return (np.mean if self.norm == "mean" else np.max)(self.force_sizes(self.solved(unknowns)))
+
+    def objective(self, unknowns):
+        """The norm relative to the reference."""
+        return self.value(unknowns) / self.reference
+
+
+def _minimise_norm(objective, start):
+    """Minimiser by Nelder and Mead, restarted once."""
+    from scipy.optimize import minimize
+
+    def stop_at_zero(intermediate_result):
+        if intermediate_result.fun < 1e-11:
+            raise StopIteration
+
+    options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
+    for _ in range(2):
+        start = minimize(objective, start, method="Nelder-Mead", options=options, callback=stop_at_zero).x
+    return start
+
+
+def _minimise_peak(sizes, start):
+    """Minimiser of the largest of many sizes: of a level above all of them (SLSQP)."""
+    from scipy.optimize import minimize
+
+    found = minimize(
+        lambda unknowns: unknowns[-1],
+        np.append(start, np.max(sizes(start))),
+        jac=lambda unknowns: np.append(np.zeros(start.size), 1.0),
+        constraints={"type": "ineq", "fun": lambda unknowns: unknowns[-1] - sizes(unknowns[:-1])},
+        method="SLSQP",
+        options={"ftol": 1e-15, "maxiter": 200},
+    )
+    return found.x[:-1]
 
 
 def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angles=360, **counterweights):
@@ -158,6 +261,14 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     0.56
     """
     _require_masses(mechanism)
+    problems = [] if counterweights else ["give at least one counterweight, such as crank=Counterweight(arm=0.03)"]
+    for name, weight in counterweights.items():
+        problems += [checks.choice("link", name, tuple(mechanism.links)), _weight_problem(name, weight)]
+        if getattr(weight, "whole_link", False):
+            problems.append(
+                f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use "
+                "partial or counterweight for a whole link"
+            )
     paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
     found = checks.check_values(
         "optimal balancing",
@@ -165,29 +276,28 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         dict(zip(WEIGHT_RULES, weights if paired else (1.0, 0.0), strict=True)),
         checks.choice("norm", norm, NORMS),
         None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
-        *_search_problems(mechanism, counterweights),
+        *problems,
     )
     if norm in ("along", "across"):
         guide_direction(mechanism)
     assembly.require_turn(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
-    return least_shaking(
-        ShakingSearch.of(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn)
-    )
-
-
-def _search_problems(mechanism, counterweights):
-    """Sentences about wrong counterweights."""
-    if not counterweights:
-        yield "give at least one counterweight, such as crank=Counterweight(arm=0.03)"
-    for name, weight in counterweights.items():
-        yield checks.choice("link", name, tuple(mechanism.links))
-        yield _weight_problem(name, weight)
-        if getattr(weight, "whole_link", False):
-            yield (
-                f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use "
-                "partial or counterweight for a whole link"
-            )
+    scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
+    search = _ShakingSearch(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn, scale)
+    search = replace(search, reference=search.value(search.none) or 1.0)
+    # one start on each side where weights keep out of a hole
+    kept_out = any(weight.keep_out for weight in counterweights.values())
+    starts = (search.none - 0.5, search.none + 0.5) if kept_out else (search.none,)
+    best = min((_minimise_norm(search.objective, start) for start in starts), key=search.objective)
+    if norm not in PEAK_NORMS:
+        return search.balanced(best)
+    for _ in range(8):  # peaks between the angles join them
+        best = min(best, _minimise_peak(search.sizes, best), key=search.objective)
+        peaks = extremes(search.solved(best), search.force_sizes)
+        if peaks.range[1] <= search.value(best) + 1e-10 * search.reference:
+            break
+        search = replace(search, turn=np.append(search.turn, peaks.angle))
+    return search.balanced(best)
 
 
 def _weight_problem(name, weight):
@@ -195,36 +305,22 @@ def _weight_problem(name, weight):
 
 
 def _set_static_moment(mechanism, link, moment, weight):
-    """`Balanced` with the counterweight that gives a link this static moment."""
-    checks.require("balancing", _weight_problem(link, weight))
-    change = complex(*moment) - _static_moment(mechanism, link)
-    own = mechanism.links[link]
-    target = change + (complex(*own.centre) * own.mass if weight.whole_link else 0.0)
-    return counterweight(mechanism, link, (target.real, target.imag), weight)
-
-
-def _static_moment(mechanism, link):
-    """Static moment of a link, along + i across.
+    """`Balanced` with the counterweight that gives a link this static moment.
 
     In a four-bar the coupler's vector is a sum of those of rocker, crank and frame, so its static moment passes to
     crank and rocker in proportion to their lengths (Berkof and Lowen 1969).
     """
+    checks.require("balancing", _weight_problem(link, weight))
     moments = {name: complex(*pair) for name, pair in principal_points(mechanism).static_moments.items()}
     bars = four_bar_shape(mechanism)
     if bars is not None:
         share = moments[bars.coupler.link] / bars.coupler.length
         moments[bars.crank.link] -= share * bars.crank.length
         moments[bars.rocker.link] += share * bars.rocker.length
-    return moments[link]
-
-
-def _parse_ratio(ratio):
-    if isinstance(ratio, str):
-        checks.require("partial balancing", checks.choice("ratio", ratio, tuple(NAMED_RATIOS)))
-        return NAMED_RATIOS[ratio]
-    value = checks.single_numbers("partial balancing", ratio=(ratio, "1", {}))["ratio"]
-    checks.require("partial balancing", ratio_problem(value))
-    return value
+    change = complex(*moment) - moments[link]
+    own = mechanism.links[link]
+    target = change + (complex(*own.centre) * own.mass if weight.whole_link else 0.0)
+    return counterweight(mechanism, link, (target.real, target.imag), weight)
 
 
 def ratio_problem(ratio):

@@ -257,12 +257,9 @@ class Contact:
             f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
             f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
             *(f"  exceeded         {text}" for text in self.exceeded),
-            *(
-                []
-                if self.force_error is None
-                else [f"  uncertain        forces by {self.force_error:.2g} of the largest"]
-            ),
         ]
+        if self.force_error is not None:
+            lines.append(f"  uncertain        forces by {self.force_error:.2g} of the largest")
         return "\n".join(lines) + ">"
 
     @property
@@ -520,8 +517,6 @@ def contact(
     groups = solution.mechanism.led_by_ground
     given = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
     given |= {"poissons_ratio": poissons_ratio}
-    if groups:
-        given = _fill_from_roller(given, groups[0].roller)
     limits = {} if limits is None else limits
     known = limits if isinstance(limits, dict) else {}
     own = {"roller_mass": (roller_mass, "kg", NOT_NEGATIVE), "life_exponent": (life_exponent, "1", POSITIVE)}
@@ -529,12 +524,15 @@ def contact(
         "roller_inertia": (roller_inertia, "kg*m**2", NOT_NEGATIVE),
         "load_rating": (load_rating, "N", POSITIVE),
     }
+    no_roller = f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none"
+    if any(group.led for group in solution.mechanism.groups):
+        no_roller += "; give its follower a Roller or Face, then contact_pressure is an output"
     own |= {name: item for name, item in optional.items() if item[0] is not None}
     values = checks.single_numbers(
         "contact",
-        None if groups else _no_roller_problem(solution.mechanism),
+        None if groups else no_roller,
         *_limit_problems(limits, load_rating),
-        **_contact_rules(given),
+        **_contact_rules(given, groups),
         **own,
         **{f"limit {name!r}": (known[name], unit, POSITIVE) for name, unit in LIMIT_UNITS.items() if name in known},
     )
@@ -549,41 +547,25 @@ def contact(
     return found
 
 
-def _contact_rules(given):
-    """Values and rules of a contact, the material of roller and cam each."""
-    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
-        name: (given[name], "m", POSITIVE) for name in ("roller_radius", "width")
-    }
-    pairs = [
-        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
-        for value in map(given.get, MATERIAL_RULES)
-    ]
-    for part, *both in zip(PARTS, *pairs, strict=True):
-        rules |= {
-            f"{name} of the {part}": (value, *rule)
-            for (name, rule), value in zip(MATERIAL_RULES.items(), both, strict=True)
-        }
-    return rules
-
-
-def _fill_from_roller(given, roller):
-    """Given values, missing ones from the roller of the scene; refused without a roller."""
-    lacking = [name for name, value in given.items() if value is None]
-    if lacking and roller is None:
+def _contact_rules(given, groups):
+    """Values and rules of a contact, missing values from the scene's roller; the material of roller and cam each."""
+    lacking = [name for name, value in given.items() if value is None] if groups else []
+    found, scene_roller = dict(given), groups[0].roller if groups else None
+    if lacking and scene_roller is None:
         raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
-    return given | {name: _roller_and_cam_value(roller, name.removeprefix("roller_")) for name in lacking}
-
-
-def _roller_and_cam_value(roller, name):
-    """A value of the roller, paired with that of its cam if it has one."""
-    own, other = getattr(roller, name), getattr(roller, f"cam_{name}", None)
-    return own if other is None else (own, other)
-
-
-def _no_roller_problem(mechanism):
-    text = f"solution must be of a mechanism with a CamRoller, a {mechanism.name} has none"
-    follows = any(group.led for group in mechanism.groups)
-    return text + "; give its follower a Roller or Face, then contact_pressure is an output" * follows
+    for name in lacking:
+        field_name = name.removeprefix("roller_")
+        own, other = getattr(scene_roller, field_name), getattr(scene_roller, f"cam_{field_name}", None)
+        found[name] = own if other is None else (own, other)
+    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
+        name: (found[name], "m", POSITIVE) for name in ("roller_radius", "width")
+    }
+    for place, part in enumerate(PARTS):
+        for name, rule in MATERIAL_RULES.items():
+            value = found[name]
+            paired = isinstance(value, list | tuple) and len(value) == 2
+            rules[f"{name} of the {part}"] = (value[place] if paired else value, *rule)
+    return rules
 
 
 def _limit_problems(limits, load_rating):

@@ -165,26 +165,41 @@ def starting_machine(given, options) -> Start:
     replaced = Spring if options.gravity else (Spring, Gravity)
     loads = (*(item for item in given.loads if not isinstance(item, replaced)), Spring(rate, mean))
     carried = group.coupler.mass * (1.0 - share)
-    weight = carried * (_gravity_across(loads, guide) if options.gravity else 0.0)
-    vary = _default_bounds(options, half, mean, law.coupler_length, rate)
+    pulls = [item.vector for item in loads if isinstance(item, Gravity)]
+    across = sum(float(cross(guide.direction, pull)) for pull in pulls)
+    is_along = abs(across) <= SQUARE_TOLERANCE * sum(np.hypot(*pull) for pull in pulls)
+    weight = carried * (0.0 if is_along else across)
+    length, reach = law.coupler_length, LENGTH_REACH * half
+    vary = {
+        "cam.cosine.0": (half - reach, half + reach),
+        **{f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)},
+        **{f"cam.sine.{order}": (-reach, reach) for order in range(1, options.sine + 1)},
+        "coupler_length": (length - reach, length + reach),
+        "spring.stiffness": (0.0, MAX_STIFFNESS_RATIO * rate),
+        "spring.free_position": (mean - reach, mean + reach),
+    }
     first = frozenset(vary)
     if options.cubic is not None:
         vary["spring.cubic"] = options.cubic
     if options.coupler_spring is not None:
-        found = _weight_spring(weight * law.coupler_length, options.coupler_spring)
+        found = _weight_spring(weight * length, options.coupler_spring)
         loads += (found,)
         vary[SPRING_PATH] = (0.5 * found.stiffness, 1.5 * found.stiffness)
     if options.counterweight is not None:
         arm = -carried * half / options.counterweight
         links["crank"] = replace(links["crank"], mass=options.counterweight, centre=(arm, 0.0))
         first |= {OFFSET_PATH}
-        near, reach = WEIGHT_REACH * arm, LENGTH_REACH * half
+        near = WEIGHT_REACH * arm
         vary |= {
             WEIGHT_PATHS[0]: (arm + near, arm - near),
             WEIGHT_PATHS[1]: (near, -near),
             OFFSET_PATH: (-reach, reach),
         }
-    mechanism = cam_crank_slider(_starting_cam(law, group.guide, options), law.coupler_length, guide=guide, **links)
+    angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
+    series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
+    harmonics = (series[0], *2 * series[1 : options.cosine + 1])
+    cam = Harmonic(harmonics, (0.0,) * options.sine, group.guide.guide_angle)
+    mechanism = cam_crank_slider(cam, length, guide=guide, **links)
     scene = Scene(mechanism, given.crank_speed, loads=loads)
     unit = _mean_torque(half, mean, _coupler_of_length(links["coupler"], mean, share), group.slider, given.crank_speed)
     return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
@@ -219,23 +234,6 @@ def _coupler_of_length(coupler, length, share):
     return replace(coupler, centre=(share * length, coupler.centre[1]))
 
 
-def _default_bounds(options, half, mean, length, rate):
-    """Bounds of the cam, the coupler and the linear spring by path, around the start."""
-    reach = LENGTH_REACH * half
-    vary = {"cam.cosine.0": (half - reach, half + reach)}
-    vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)}
-    vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, options.sine + 1)}
-    vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, MAX_STIFFNESS_RATIO * rate)}
-    return vary | {"spring.free_position": (mean - reach, mean + reach)}
-
-
-def _starting_cam(law, guide, options):
-    """First harmonics of the cam for the cosine law."""
-    angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
-    series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
-    return Harmonic((series[0], *2 * series[1 : options.cosine + 1]), (0.0,) * options.sine, guide.guide_angle)
-
-
 def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
     """Mean torque of a plain crank-slider, N m."""
     plain = crank_slider(crank_length, coupler_length, coupler=coupler, slider=slider)
@@ -243,13 +241,6 @@ def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
     if not found:
         raise DesignError("torque-free cam: without masses or at rest the machine needs no torque to begin with")
     return found
-
-
-def _gravity_across(loads, guide):
-    """Acceleration of gravity along the guide's left normal."""
-    pulls = [item.vector for item in loads if isinstance(item, Gravity)]
-    across = sum(float(cross(guide.direction, pull)) for pull in pulls)
-    return 0.0 if abs(across) <= SQUARE_TOLERANCE * sum(np.hypot(*pull) for pull in pulls) else across
 
 
 def _weight_spring(moment, free_angle):

@@ -203,9 +203,15 @@ class Balanced:
         drive = {"crank_speed": crank_speed, "crank_acceleration": crank_acceleration, "loads": loads}
         before, after = (solve(item, angle, **drive) for item in (self.bare, self.mechanism))
         rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
+        several = " of {}" if len(self.mechanism.guides) > 1 else ""
+        guide_rows = [
+            (f"largest shaking force {way} guide{several.format(slider)}", "N", partial(component, slider=slider))
+            for slider in self.mechanism.guides or (None,)
+            for way, component in (("along", along_guide), ("across", across_guide))
+        ]
         for name, unit, quantity in [
             ("largest shaking force", "N", "shaking_force"),
-            *_guide_force_rows(self.mechanism),
+            *guide_rows,
             ("largest shaking moment", "N m", "shaking_moment"),
             *((f"largest {label_of(before, joint)}", "N", joint) for joint in before.reactions),
             ("largest balancing torque", "N m", "balancing_torque"),
@@ -303,15 +309,6 @@ def guide_direction(mechanism, slider=None):
     return directions[0]
 
 
-def _guide_force_rows(mechanism):
-    """Rows of the shaking force along and across each guide."""
-    several = len(mechanism.guides) > 1
-    for slider in mechanism.guides or (None,):
-        for way, component in (("along", along_guide), ("across", across_guide)):
-            text = f"largest shaking force {way} guide{f' of {slider}' if several else ''}"
-            yield text, "N", partial(component, slider=slider)
-
-
 def balancing_table(reference, variants, sampling=None):
     """Counterweights and shaking forces of balanced variants, a column for each balanced link.
 
@@ -333,7 +330,17 @@ def balancing_table(reference, variants, sampling=None):
     true_before = extremes(reference, "shaking_force").range[1]
     columns = {}
     for name, (balanced, solution) in variants.items():
-        forces = _sampled_forces(reference, solution, sampling) if sampling else {}
+        forces = {}
+        if sampling:
+            grid = np.arange(0.0, 2 * np.pi - 1e-9, sampling)
+            before, (x, y) = (item.at(grid).shaking_force for item in (reference, solution))
+            largest, largest_before = np.max(np.hypot(x, y)), np.max(np.hypot(*before))
+            forces = {
+                "largest F_x on the study's grid [N]": _largest_by_size(x),
+                "largest F_y on the study's grid [N]": _largest_by_size(y),
+                "largest |F| on the study's grid [N]": largest,
+                "reduction of |F| on the study's grid [%]": 100 * (1 - largest / largest_before),
+            }
         found = extremes(solution, "shaking_force")
         forces["largest |F| [N]"] = found.range[1]
         forces["at crank angle [deg]"] = np.degrees(found.angle[np.argmax(found.value)]) if len(found) else np.nan
@@ -359,15 +366,3 @@ def _largest_by_size(values):
     """Value of largest magnitude, with its sign; the first of values equal but for rounding."""
     size = np.abs(values)
     return values[np.flatnonzero(size >= (1 - 1e-12) * size.max())[0]]
-
-
-def _sampled_forces(reference, solution, sampling):
-    grid = np.arange(0.0, 2 * np.pi - 1e-9, sampling)
-    before, (x, y) = (item.at(grid).shaking_force for item in (reference, solution))
-    largest, largest_before = np.max(np.hypot(x, y)), np.max(np.hypot(*before))
-    return {
-        "largest F_x on the study's grid [N]": _largest_by_size(x),
-        "largest F_y on the study's grid [N]": _largest_by_size(y),
-        "largest |F| on the study's grid [N]": largest,
-        "reduction of |F| on the study's grid [%]": 100 * (1 - largest / largest_before),
-    }

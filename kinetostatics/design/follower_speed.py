@@ -99,20 +99,15 @@ def lift_off_speed(solution, force="cam_force"):
     if not np.all(side * rest > 0.0):
         return 0.0
     if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC_TOLERANCE * np.max(np.abs(faster)):
-        return _lift_off_by_squares(solution, force, fast)
+
+        def ratio(angle):
+            rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
+            return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
+
+        peak = highest(ratio, 0.0, solution.period).value
+        found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
+        return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
     return _lift_off_by_search(solution, force, fast, side, angle)
-
-
-def _lift_off_by_squares(solution, force, fast):
-    """Least speed at which a force F0 + F2 speed^2 vanishes at some crank angle, rad/s."""
-
-    def ratio(angle):
-        rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
-        return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
-
-    peak = highest(ratio, 0.0, solution.period).value
-    found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
-    return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
 
 
 def _lift_off_by_search(solution, force, fast, side, angle):

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 
@@ -12,9 +13,9 @@ from ..numbers import checks
 from ..results.extremes import extrema
 from .constraints import Constraint, parse_constraints, parse_output
 from .problem import SHARED_NUMBERS, Problem, choose_design, progress_bar, scene_of, true_value, without_ratio
-from .result import search_result
+from .result import Found, active_prices
 from .robust import SampledOutput, spread_problem
-from .search import LIMIT_TOLERANCE, Goal, SearchEnd, best_end, excess_over, search_from, worst_excess
+from .search import LIMIT_TOLERANCE, Goal, SearchEnd, better, excess_over, search_from, worst_excess
 
 ANGLES = 720
 """Crank angles over the period."""
@@ -22,6 +23,8 @@ MIN_ANGLES = 12
 """Fewest crank angles of a curve."""
 EXTREME_REDUCTIONS = ("largest", "smallest", "largest_absolute", "range")
 """Reductions checked at true extremes."""
+MISSED = 1e3 * LIMIT_TOLERANCE
+"""Excess over a limit, relative to its size, that counts as missed by a search."""
 MAX_TIGHTENINGS = 4
 """Tightenings of the limits until true extremes keep them."""
 
@@ -107,38 +110,15 @@ def optimise(
     asked = (output, *(limit.output for limit in limits))
     require_resolved(angles, asked)
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
-    goal, plain = without_ratios(problem, goal_of(problem, output, sign, robust), limits)
-    begins = starting_designs(problem, starts, seed, begin)
-    with progress_bar(problem, progress):
-        best, kept, ends = best_within_limits(problem, goal, plain, begins, limits)
-    return search_result(
-        problem,
-        goal if robust is not None else Goal(output, sign),
-        kept,
-        best,
-        dict.fromkeys([*asked, *(limit.output for limit in problem.table_limits)]),
-        goal_text(sign, text, robust),
-        evaluations=problem.evaluations,
-        starts=ends_as_ratios(problem, output, goal, ends),
-    )
+    begins = _starting_designs(problem, starts, seed, begin)
+    reported = dict.fromkeys([*asked, *(limit.output for limit in problem.table_limits)])
+    return best_design(problem, output, sign, limits, begins, reported, text, robust, progress)
 
 
 def parse_goal(minimise, maximise):
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
-
-
-def goal_text(sign, text, robust):
-    """The goal in words."""
-    of = "" if robust is None else f"{robust.quantile:g} quantile of "
-    return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
-
-
-def goal_of(problem, output, sign, robust):
-    """The `Goal`: an output, or a quantile of it over a spread."""
-    checks.require("design", None if robust is None else spread_problem("robust", robust))
-    return Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
 
 
 def search_problems(starts, seed):
@@ -164,38 +144,7 @@ def require_reference(reference, output, limits):
     )
 
 
-def without_ratios(problem, goal, limits):
-    """Goal and limits with ratios replaced by their denominators, where the reference does not vary."""
-    if problem.reference is None or set(problem.names) & set(SHARED_NUMBERS):
-        return goal, limits
-    reference = scene_of(problem.reference)
-
-    def plain(output):
-        return replace(output, ratio=False)
-
-    turned = {"<=": ">=", ">=": "<=", "=": "="}
-    found = tuple(
-        Constraint(
-            plain(limit.output), turned[limit.relation], true_value(plain(limit.output), reference) / limit.value
-        )
-        if limit.output.ratio and limit.value > 0
-        else limit
-        for limit in limits
-    )
-    if callable(goal.output) or not goal.output.ratio:
-        return goal, found
-    return Goal(plain(goal.output), -goal.sign), found
-
-
-def ends_as_ratios(problem, output, goal, ends):
-    """Goals of the starts, as ratios where the search used their denominators."""
-    if callable(goal.output) or goal.output.ratio == output.ratio:
-        return ends
-    above = true_value(without_ratio(output), scene_of(problem.reference))
-    return [above / end for end in ends]
-
-
-def starting_designs(problem, count, seed, begin=None):
+def _starting_designs(problem, count, seed, begin=None):
     """Designs to start from: the source or `begin`, then a Sobol sequence within the bounds."""
     from scipy.stats import qmc
 
@@ -212,44 +161,98 @@ def starting_designs(problem, count, seed, begin=None):
     return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 
 
-def best_within_limits(problem, goal, limits, starts, asked):
-    """Best design that keeps the limits at true extremes; all limits as the user gave them; the goal of each end.
-
-    Limits by tables over travel join them; of a robust goal they hold for each machine of the spread.
-    """
-    robust = goal.output.within_tables() if callable(goal.output) else ()
-    own = *problem.table_limits, *robust
-    best, ends = best_of_searches(problem, goal, (*limits, *own), starts, (*asked, *own))
-    return tighten_limits(problem, goal, (*limits, *own), best), (*asked, *own), ends
+def _numbers_text(problem, values):
+    """Numbers of a design by their paths, as a text."""
+    return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
 
 
-def best_of_searches(problem, goal, limits, starts, named=None):
-    """Best end of several searches, and the goal of each; errors name the limits `named`.
+def best_design(problem, output, sign, limits, begins, reported, text, robust, progress) -> Found:
+    """Best of the searches from several designs, for `sign` times an output, or its quantile over a spread.
 
     Raises
     ------
     DesignError
-        None keeps the limits.
+        No design keeps the limits at true extremes.
     """
-    ends = [search_from(problem, goal, limits, start) for start in starts]
-    best = best_end(ends)
-    if best.missed > 1e3 * LIMIT_TOLERANCE:
-        nearest = dict(zip(problem.names, map(float, best.values), strict=True))
-        raise DesignError(_failure_text(problem, goal, named or limits, best, len(ends)), nearest)
-    return best, [goal.sign * end.goal if end.missed <= 1e3 * LIMIT_TOLERANCE else np.inf for end in ends]
+    checks.require("design", None if robust is None else spread_problem("robust", robust))
+    goal = Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
+    searched, plain = goal, limits
+    reference = None if problem.reference is None else scene_of(problem.reference)
+    if reference is not None and not set(problem.names) & set(SHARED_NUMBERS):
+        searched, plain = _without_ratios(goal, limits, reference)
+    # limits by tables over travel join them; of a robust goal they hold for each machine of the spread
+    own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
+    kept = (*limits, *own)
+    with progress_bar(problem, progress):
+        ends = [search_from(problem, searched, (*plain, *own), start) for start in begins]
+        best = reduce(better, ends)
+        if best.missed > MISSED:
+            nearest = dict(zip(problem.names, map(float, best.values), strict=True))
+            raise DesignError(_failure_text(problem, searched, kept, best, len(ends)), nearest)
+        best = _tighten_limits(problem, searched, (*plain, *own), best)
+    goals = [searched.sign * end.goal if end.missed <= MISSED else np.inf for end in ends]
+    if robust is None and searched.output.ratio != output.ratio:
+        above = true_value(without_ratio(output), reference)
+        goals = [above / end for end in goals]
+    evaluations = problem.evaluations
+    active, prices = active_prices(problem, goal, kept, best.values)
+    of = "" if robust is None else f"{robust.quantile:g} quantile of "
+    return Found(
+        scene_of(problem.scene(best.values)),
+        dict(zip(problem.names, map(float, best.values), strict=True)),
+        scene_of(problem.source),
+        reference,
+        kept,
+        f"{'least' if sign > 0 else 'greatest'} {of}{text}",
+        tuple(reported),
+        active,
+        prices,
+        evaluations,
+        goals,
+        spread=None if robust is None else (output, robust, sign),
+    )
+
+
+def _without_ratios(goal, limits, reference):
+    """Goal and limits with ratios replaced by their denominators, for a reference that does not vary."""
+    turned, found = {"<=": ">=", ">=": "<=", "=": "="}, []
+    for limit in limits:
+        output = limit.output
+        if output.ratio and limit.value > 0:
+            plain = without_ratio(output)
+            limit = Constraint(plain, turned[limit.relation], true_value(plain, reference) / limit.value)
+        found.append(limit)
+    if callable(goal.output) or not goal.output.ratio:
+        return goal, tuple(found)
+    return Goal(without_ratio(goal.output), -goal.sign), tuple(found)
 
 
 def _failure_text(problem, goal, limits, best, count):
+    """Sentence about the nearest design of failed searches, or about what keeps designs from being built."""
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
+        numbers = _numbers_text(problem, best.values)
+        obstacle = f"the one with {numbers} runs, but outputs asked for have no value"
+        whose = ""
+        try:
+            solution = scene_of(problem.scene(best.values)).solve(problem.angles)
+            for name in problem.quantities:
+                values_of(solution, name)
+            if callable(goal.output):
+                spreads = ", ".join(goal.output.spread.spreads)
+                whose = f", of which a machine within the spread of {spreads} fails"
+                goal.output.outputs(best.values)
+        except KinetostaticsError as error:
+            obstacle = f"with {numbers}{whose}: {error}"
         return (
-            f"no design that can be built was found by {tries} ({_obstacle_text(problem, goal, best.values)}); change "
-            f"the bounds of {', '.join(problem.names)}, or begin with a machine that runs"
+            f"no design that can be built was found by {tries} ({obstacle}); change the bounds of "
+            f"{', '.join(problem.names)}, or begin with a machine that runs"
         )
-    reached = []
-    for limit in limits:
-        if worst_excess(problem, [limit], best.values) > 1e3 * LIMIT_TOLERANCE:
-            reached.append(f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}")
+    reached = [
+        f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}"
+        for limit in limits
+        if worst_excess(problem, [limit], best.values) > MISSED
+    ]
     at_bounds = [
         name
         for name, value, low, high in zip(problem.names, best.values, problem.low, problem.high, strict=True)
@@ -259,44 +262,31 @@ def _failure_text(problem, goal, limits, best, count):
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
 
 
-def _obstacle_text(problem, goal, values):
-    """Sentence about a design that cannot be built."""
-    own = _numbers_text(problem, values)
-    try:
-        solution = scene_of(problem.scene(values)).solve(problem.angles)
-        for name in problem.quantities:
-            values_of(solution, name)
-    except KinetostaticsError as error:
-        return f"with {own}: {error}"
-    try:
-        if callable(goal.output):
-            goal.output.outputs(values)
-    except KinetostaticsError as error:
-        spreads = ", ".join(goal.output.spread.spreads)
-        return f"with {own}, of which a machine within the spread of {spreads} fails: {error}"
-    return f"the one with {own} runs, but outputs asked for have no value"
-
-
-def _numbers_text(problem, values):
-    """Numbers of a design by their paths, as a text."""
-    return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
-
-
-def tighten_limits(problem, goal, limits, best) -> SearchEnd:
+def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
     """The design with limits kept at true extremes: tighten them by the excess between samples and search again."""
     drawn = list(limits)
     for left in reversed(range(MAX_TIGHTENINGS + 1)):
-        over, failure = _true_excesses(problem, limits, best.values)
+        over, failure = np.zeros(len(limits)), None  # of the design over limits at true extremes
+        scene = scene_of(problem.scene(best.values))
+        for place, limit in enumerate(limits):
+            try:
+                of_spread = callable(limit.output)
+                excess = excess_over(problem, limit, best.values)[0][0] if of_spread else true_excess(limit, scene)
+                over[place] = excess
+            except KinetostaticsError as error:
+                failure = error
         if failure is None and all(
             part <= LIMIT_TOLERANCE * limit.scale / 2 for part, limit in zip(over, limits, strict=True)
         ):
             return best
         if not left or not any(part > 0 for part in over):
             break
-        drawn = [
-            limit if part <= 0 else replace(limit, value=limit.value - _excess_sign(limit, problem, best) * 1.01 * part)
-            for limit, part in zip(drawn, over, strict=True)
-        ]
+        for place in np.flatnonzero(over > 0):
+            limit = drawn[place]
+            side = 1.0 if limit.relation == "<=" else -1.0
+            if limit.relation == "=":
+                side = np.sign(true_extreme(limit.output, scene) - limit.value)
+            drawn[place] = replace(limit, value=limit.value - side * 1.01 * over[place])
         best = search_from(problem, goal, drawn, best.values, rounds=2)
     worst = max((part / limit.scale for part, limit in zip(over, limits, strict=True)), default=0.0)
     if failure is None and worst <= LIMIT_TOLERANCE:
@@ -307,26 +297,6 @@ def tighten_limits(problem, goal, limits, best) -> SearchEnd:
         f"{why if failure is None else failure}",
         dict(zip(problem.names, map(float, best.values), strict=True)),
     )
-
-
-def _true_excesses(problem, limits, values):
-    """Excesses of a design over limits at true extremes, and the error if one has no value, or None."""
-    scene, over, failure = scene_of(problem.scene(values)), [], None
-    for limit in limits:
-        try:
-            is_own = callable(limit.output)
-            over.append(excess_over(problem, limit, values)[0][0] if is_own else true_excess(limit, scene))
-        except KinetostaticsError as error:
-            over.append(0.0)
-            failure = error
-    return over, failure
-
-
-def _excess_sign(limit, problem, best):
-    """+1 if a design exceeds a limit upward, -1 downward."""
-    if limit.relation != "=":
-        return 1.0 if limit.relation == "<=" else -1.0
-    return np.sign(true_extreme(limit.output, scene_of(problem.scene(best.values))) - limit.value)
 
 
 def true_excess(limit, scene):

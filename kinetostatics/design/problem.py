@@ -24,7 +24,6 @@ from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_t
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import table_limits
-from .parted_curves import PartedCurve
 
 
 class DerivedNumbers:
@@ -139,7 +138,14 @@ class Problem:
         self._curves: dict[bytes, dict] = {}
         self._parted: dict[tuple, Any] = {}
         self._bends: set[str] | None = None
-        self._compared: Any = None if reference is None else _Reference(reference, self)
+        self._fixed: dict = {}
+        self._shared = [place for place, name in enumerate(self.names) if name in SHARED_NUMBERS]
+        self._compared: Problem | None = None
+        if reference is not None and self._shared:
+            limits = {self.names[place]: (self.low[place], self.high[place]) for place in self._shared}
+            known = of_scene(scene_of(reference))
+            ratios = tuple(name for name in self.quantities if name in known)
+            self._compared = Problem(reference, limits, ratios, None, angles, engine)
 
     @property
     def start(self):
@@ -186,87 +192,62 @@ class Problem:
             ((_, pieces, values_on),) = parted.refined((output,))
             angle = pieces.angle[0]
             slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]
-            found = _curve(self.program(angle, numbers)[output.quantity], slopes, changes, angle)
+            found = self._curve(self.program(angle, numbers)[output.quantity], slopes, changes, angle)
         except KinetostaticsError:
             return self.curves(values)[output.quantity]
         shape = values_on[output.quantity].shape[1:]
         vector = of_scene(scene_of(self.source))[output.quantity].vector
-        return PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
+        return measures.PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
 
     def output(self, output, values):
         """Value of an output of a design, or of a function of designs, and its derivatives."""
         if callable(output):
             return output(values)
-        found, slopes = self.curve(output, values).reduced(output.reduction, self.turns)
+        found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
-        above, rises = self._compared.output(output, values)
+        rises = np.zeros(len(self.names))
+        if self._compared is not None:
+            above, rises[self._shared] = self._compared.output(without_ratio(output), values[self._shared])
+        else:
+            if output not in self._fixed:
+                self._fixed[output] = true_value(output, scene_of(self.reference))
+            above = self._fixed[output]
         return above / found, (rises - above / found * slopes) / found
 
     def _computed(self, values):
         self.evaluations += 1
         nothing = np.full(self.angle.size, np.nan)
-        empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan))
+        empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan), self.turns)
         found = dict.fromkeys(self.quantities, empty)
         for program in (self.program, self._motion) if self.table_limits else (self.program,):
             try:  # the motion still has values where a slider leaves its table
-                return found | self._curves_of(program, values)
+                numbers, changes = self.derived(values)
+                curves = program(self.angle, numbers)
+                slopes = program.derivatives(self.angle, self.derived.paths, numbers)
+                return found | {
+                    name: self._curve(curves[name], slopes[name], changes, self.angle) for name in program.quantities
+                }
             except KinetostaticsError:
                 continue
         return found
 
-    def _curves_of(self, program, values):
-        numbers, changes = self.derived(values)
-        found = program(self.angle, numbers)
-        slopes = program.derivatives(self.angle, self.derived.paths, numbers)
-        return {name: _curve(found[name], slopes[name], changes, self.angle) for name in program.quantities}
+    def _curve(self, values, slopes, changes, angle):
+        """Curve of a quantity, from derivatives by the scene's numbers and of these by the varied ones."""
+        shape = values.shape[:-1] + angle.shape
+        by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
+        slopes, values = np.tensordot(changes.T, by_scene, 1), np.broadcast_to(values, shape)
+        made = measures.size if values.ndim == 2 else measures.Curve
+        return made(values, slopes, self.turns)
 
     def _zeros(self, scene):
         own = scene.parameters
         return tuple(path for path in self.derived.paths if isinstance(own[path], float) and own[path] == 0.0)
 
 
-class _Reference:
-    """Outputs of the reference at the design's speed; its other numbers stay."""
-
-    def __init__(self, reference, problem):
-        shared = [name for name in problem.names if name in SHARED_NUMBERS]
-        self._columns = [problem.names.index(name) for name in shared]
-        self._size = len(problem.names)
-        self._fixed: dict = {}
-        self._problem = None
-        self._reference, self._angles = reference, problem.angles
-        if shared:
-            limits = {
-                name: (problem.low[place], problem.high[place])
-                for name, place in zip(shared, self._columns, strict=True)
-            }
-            known = of_scene(scene_of(reference))
-            ratios = tuple(name for name in problem.quantities if name in known)
-            self._problem = Problem(reference, limits, ratios, None, problem.angles, problem.engine)
-
-    def output(self, output, values):
-        slopes = np.zeros(self._size)
-        if self._problem is None:
-            if output not in self._fixed:
-                self._fixed[output] = true_value(output, scene_of(self._reference))
-            return self._fixed[output], slopes
-        found, slopes[self._columns] = self._problem.output(without_ratio(output), values[self._columns])
-        return found, slopes
-
-
 def without_ratio(output):
     """The output in place of its ratio to that of the reference."""
     return replace(output, ratio=False)
-
-
-def _curve(values, slopes, changes, angle):
-    """Curve of a quantity; the chain rule joins derivatives by the scene's numbers and theirs by the varied ones."""
-    shape = values.shape[:-1] + angle.shape
-    by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
-    slopes = np.tensordot(changes.T, by_scene, 1)
-    values = np.broadcast_to(values, shape)
-    return measures.size(values, slopes) if values.ndim == 2 else measures.Curve(values, slopes)
 
 
 def choose_design(source, variant, reference):

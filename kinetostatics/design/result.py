@@ -10,8 +10,9 @@ import numpy as np
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
+from . import measures
 from .constraints import Constraint, parse_output
-from .problem import compared_value, scene_of
+from .problem import compared_value
 from .robust import quantile
 from .search import excess_over, minimises_peak
 
@@ -100,9 +101,12 @@ class Found:
         """
         import pandas as pd
 
-        hint = self._shaft_hint()
-        if hint:
-            warnings.warn(HintWarning(self.scene.mechanism.name, hint), stacklevel=2)
+        mechanism = self.scene.mechanism
+        if self.shaft_radius is not None and CAM_RADIUS in of_scene(self.scene):
+            nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
+            hint = shaft_hint(nearest, mechanism.rollers.get("A"), self.shaft_radius)
+            if hint:
+                warnings.warn(HintWarning(mechanism.name, hint), stacklevel=2)
         limits: dict[str, list[Constraint]] = {}
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
@@ -125,14 +129,6 @@ class Found:
                 "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
             }
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
-
-    def _shaft_hint(self):
-        """Sentence if the cam is too near to O for the shaft, or None."""
-        roller = self.scene.mechanism.rollers.get("A")
-        if self.shaft_radius is None or CAM_RADIUS not in of_scene(self.scene):
-            return None
-        nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
-        return shaft_hint(nearest, roller, self.shaft_radius)
 
     def numbers(self):
         """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
@@ -204,7 +200,15 @@ def active_prices(problem, goal, limits, values):
     """
     from scipy.optimize import lsq_linear
 
-    slopes = _slopes(problem, goal, values)
+    output, sign = goal
+    if callable(output):
+        slopes = sign * output(values)[1][:, None]
+    elif not minimises_peak(goal):
+        slopes = sign * problem.output(output, values)[1][:, None]
+    else:  # a column for each of equal peaks, the highest first
+        heights, slopes = measures.bounded(output.reduction, problem.curve(output, values))
+        order = np.argsort(-heights)
+        slopes = slopes[:, order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]]
     reach = problem.high - problem.low
     names, columns, free = [], [], []
     for limit in limits:
@@ -232,35 +236,3 @@ def active_prices(problem, goal, limits, values):
     for name, price in zip(names, solved.x[: len(names)] / weight, strict=True):
         found[name] = found.get(name, 0.0) + float(price)
     return tuple(found), found
-
-
-def _slopes(problem, goal, values):
-    """Derivatives (n, peaks) of the goal; a largest value has one column per equal peak, the highest first."""
-    output, sign = goal
-    if callable(output):
-        return sign * output(values)[1][:, None]
-    if not minimises_peak(goal):
-        return sign * problem.output(output, values)[1][:, None]
-    heights, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
-    order = np.argsort(-heights)
-    near = order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]
-    return slopes[:, near]
-
-
-def search_result(problem, goal, limits, reached, outputs, label, **more):
-    """`Found` of a finished search."""
-    active, cost = active_prices(problem, goal, limits, reached.values)
-    reference = None if problem.reference is None else scene_of(problem.reference)
-    return Found(
-        scene_of(problem.scene(reached.values)),
-        dict(zip(problem.names, map(float, reached.values), strict=True)),
-        scene_of(problem.source),
-        reference,
-        tuple(limits),
-        label,
-        tuple(outputs),
-        active,
-        cost,
-        spread=(goal.output.output, goal.output.spread, goal.sign) if callable(goal.output) else None,
-        **more,
-    )

@@ -24,7 +24,6 @@ from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_t
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import parse_output, table_limits
-from .parted_curves import PartedCurve
 from .problem import DerivedNumbers, choose_design, scene_of, turns_of, without_ratio
 
 MAX_SAMPLES = 2**20
@@ -162,6 +161,7 @@ class SampledOutput:
     def _take_output(self, output):
         scene = scene_of(self.problem.source)
         zeros = [path for path in self.paths if self._own[path] == 0.0]
+        self.unit, self.ratio = output.unit, output.ratio
         self.output, self.program = output, compiled(scene, output.quantity, zeros, self.problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
         self._has_kinks = not self.spread.trim and has_kinks(unchecked_turn(scene, 1), output.quantity)
@@ -169,27 +169,18 @@ class SampledOutput:
     def __str__(self):
         return f"{self.output} within the spread"
 
-    @property
-    def unit(self):
-        return self.output.unit
-
-    @property
-    def ratio(self):
-        return self.output.ratio
-
     def within_tables(self):
         """Limits that keep all samples within load tables over travel, if the spread moves sliders."""
-        limits = table_limits(scene_of(self.problem.source))
-        found = [replace(limit, output=self._worst(limit)) for limit in limits]
-        return tuple(limit for limit in found if any(map(limit.output.program.depends_on, self.spread.spreads)))
-
-    def _worst(self, limit):
-        """The output of a limit of the sample nearest to it or farthest beyond it; samples and program shared."""
-        found = copy.copy(self)
-        found._take_output(limit.output)
-        found.weights = np.zeros(self.count)
-        found.weights[-1 if limit.relation == "<=" else 0] = 1.0
-        return found
+        limits = []
+        for limit in table_limits(scene_of(self.problem.source)):
+            # of the sample nearest to the limit or farthest beyond it; samples shared
+            worst = copy.copy(self)
+            worst._take_output(limit.output)
+            worst.weights = np.zeros(self.count)
+            worst.weights[-1 if limit.relation == "<=" else 0] = 1.0
+            if any(map(worst.program.depends_on, self.spread.spreads)):
+                limits.append(replace(limit, output=worst))
+        return tuple(limits)
 
     def __call__(self, values):
         """The quantile, and its derivatives by the numbers that vary."""
@@ -235,8 +226,8 @@ class SampledOutput:
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             if not self._has_kinks:
-                curve = measures.Curve(curve, slopes[place] if sloped else np.zeros((0, curve.size)))
-            value, row = curve.reduced(self.output.reduction, self.turns)
+                curve = measures.Curve(curve, slopes[place] if sloped else np.zeros((0, curve.size)), self.turns)
+            value, row = measures.reduced(self.output.reduction, curve)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
             found[place] = value
@@ -256,7 +247,7 @@ class SampledOutput:
                 values, slopes = self._curves(some, changes[:, samples], True, pieces.angle)
             for place, sample in enumerate(samples):
                 parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
-                found[sample] = PartedCurve(*parts, pieces.some([place]), bool(self._vector))
+                found[sample] = measures.PartedCurve(*parts, pieces.some([place]), bool(self._vector))
         return found
 
     def _curves(self, numbers, changes, sloped, angle=None):

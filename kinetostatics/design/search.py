@@ -66,7 +66,7 @@ def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
     best = _round(problem, goal, limits, start)
     for _ in range(rounds - 1):
         found = _round(problem, goal, limits, best.values, LATER_TOLERANCE)
-        before, best = best, _better(best, found)
+        before, best = best, better(best, found)
         if best is before or best.missed > max(LIMIT_TOLERANCE, 0.9 * before.missed):
             break
         if before.missed <= LIMIT_TOLERANCE and before.goal - best.goal <= GOAL_TOLERANCE * max(abs(best.goal), 1e-300):
@@ -74,19 +74,11 @@ def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
     return best
 
 
-def _better(one, other):
+def better(one, other):
     """The better of two designs: first by limits, then by goal."""
     if max(one.missed, other.missed) <= LIMIT_TOLERANCE:
         return min(one, other, key=lambda found: found.goal)
     return min(one, other, key=lambda found: found.missed)
-
-
-def best_end(several):
-    """The best of several ends."""
-    best = several[0]
-    for found in several[1:]:
-        best = _better(best, found)
-    return best
 
 
 def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
@@ -105,7 +97,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
     found = minimize(
         turned.goal,
         turned.zero,
-        jac=turned.goal_slopes,
+        jac=True,
         constraints=constraints,
         method="SLSQP",
         callback=problem.stepped,
@@ -160,10 +152,16 @@ def restore_limits(problem, limits, values):
     for _ in range(MAX_RESTORING_STEPS):
         if not LIMIT_TOLERANCE < off < MAX_RESTORED_EXCESS:
             break
-        excess, slopes = _active_excesses(problem, limits, values)
+        parts, rows = [], []  # excesses of active limits in units of their sizes, and derivatives
+        for limit in limits:
+            excess, slopes = excess_over(problem, limit, values)
+            active = (excess / limit.scale > -LIMIT_TOLERANCE) | (limit.relation == "=")
+            parts.append(excess[active] / limit.scale)
+            rows.append(slopes.T[active] / limit.scale)
+        slopes = np.vstack(rows)
         if not np.isfinite(slopes).all():
             break
-        step = _restoring_step(excess, slopes, reach, problem.low - values, problem.high - values)
+        step = _restoring_step(np.concatenate(parts), slopes, reach, problem.low - values, problem.high - values)
         moved = np.clip(values + step, problem.low, problem.high)
         left = worst_excess(problem, limits, moved)
         if not left < off:
@@ -183,16 +181,6 @@ def _restoring_step(excess, slopes, reach, low, high):
         free &= inside
 
 
-def _active_excesses(problem, limits, values):
-    """Excesses of active limits in units of their sizes (parts,), and derivatives (parts, n)."""
-    excess, slopes = zip(*(excess_over(problem, limit, values) for limit in limits), strict=True)
-    sizes = [np.full(part.size, limit.scale) for part, limit in zip(excess, limits, strict=True)]
-    equal = [np.full(part.size, limit.relation == "=") for part, limit in zip(excess, limits, strict=True)]
-    found = np.concatenate(excess) / np.concatenate(sizes)
-    active = (found > -LIMIT_TOLERANCE) | np.concatenate(equal)
-    return found[active], (np.hstack(slopes) / np.concatenate(sizes)).T[active]
-
-
 def worst_excess(problem, limits, values):
     """Excess over the worst limit relative to its size; infinite if the design cannot be built."""
     worst = 0.0
@@ -208,7 +196,7 @@ def excess_over(problem, limit, values):
     sign = -1.0 if relation == ">=" else 1.0
     bounded = not callable(output) and output.reduction in measures.SIDES and not output.ratio and relation != "="
     if bounded and (relation == "<=") == (output.reduction != "smallest"):
-        found, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
+        found, slopes = measures.bounded(output.reduction, problem.curve(output, values))
         return found - sign * limit.value, slopes
     found, slopes = problem.output(output, values)
     return np.array([sign * (found - limit.value)]), sign * slopes[:, None]
@@ -235,7 +223,16 @@ class _ScaledProblem:
 
     def _turn(self):
         """Directions of the unit box, each scaled to change goal and limits by about their size, at most to the box."""
-        rows = [*self._rows()]
+        curves, rows = self.problem.curves(self.start), []
+        # derivatives of limits and goal along the period, in units of their sizes
+        for output, unit in [*((item.output, item.scale) for item in self.limits), (self.goal_of.output, self.unit)]:
+            if callable(output):
+                rows.append(output(self.start)[1][None] / unit)
+                continue
+            slopes, size = curves[output.quantity].slopes, unit
+            if output.ratio:
+                size = np.sqrt(np.mean(curves[output.quantity].values ** 2)) or 1.0
+            rows.append(slopes.T / (size * np.sqrt(slopes.shape[1])))
         stacked = np.vstack(rows) * (self.problem.high - self.problem.low)
         if not np.isfinite(stacked).all():
             return np.eye(self.start.size)
@@ -244,45 +241,24 @@ class _ScaledProblem:
         lengths[: sizes.size] = np.maximum(sizes, 1.0)
         return turns.T / lengths
 
-    def _rows(self):
-        """Derivatives of goal and limits along the period, in units of their sizes."""
-        curves = self.problem.curves(self.start)
-        outputs = [*((item.output, item.scale) for item in self.limits), (self.goal_of.output, self.unit)]
-        for output, unit in outputs:
-            if callable(output):
-                yield output(self.start)[1][None] / unit
-                continue
-            slopes = curves[output.quantity].slopes
-            if output.ratio:
-                value = np.sqrt(np.mean(curves[output.quantity].values ** 2)) or 1.0
-                yield slopes.T / (value * np.sqrt(slopes.shape[1]))
-            else:
-                yield slopes.T / (unit * np.sqrt(slopes.shape[1]))
-
     def values(self, unknowns):
         values = self.start + self.matrix @ unknowns[: self.start.size]
         return np.clip(values, self.problem.low, self.problem.high)
 
     def reached(self, values):
         """The goal of a design; infinite if it cannot be built."""
-        found = self._goal(values)[0]
+        output, sign = self.goal_of
+        found = sign * self.problem.output(output, values)[0]
         return found if np.isfinite(found) else np.inf
 
-    def _goal(self, values):
-        output, sign = self.goal_of
-        found, slopes = self.problem.output(output, values)
-        return sign * found, sign * slopes
-
     def goal(self, unknowns):
+        """The goal in units of the start's, and its derivatives."""
         if self.raised:
-            return unknowns[-1]
-        found = self._goal(self.values(unknowns))[0] / self.unit
-        return found if np.isfinite(found) else INFEASIBLE_GOAL
-
-    def goal_slopes(self, unknowns):
-        if self.raised:
-            return np.append(np.zeros(self.start.size), 1.0)
-        return np.nan_to_num(self._goal(self.values(unknowns))[1] @ self.matrix / self.unit)
+            return unknowns[-1], np.append(np.zeros(self.start.size), 1.0)
+        output, sign = self.goal_of
+        value, slopes = self.problem.output(output, self.values(unknowns))
+        found = sign * value / self.unit
+        return found if np.isfinite(found) else INFEASIBLE_GOAL, np.nan_to_num(sign * slopes @ self.matrix / self.unit)
 
     def inside(self, unknowns):
         """Margins of the bounds, in units of their range."""

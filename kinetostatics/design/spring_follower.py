@@ -38,12 +38,8 @@ _DERIVATIVE = np.array([chebyshev.chebval(_NODES, chebyshev.chebder(row)) for ro
 def reserve(energy, low, level, mass, stiffness):
     """Spring force at an energy minimum over the force for contact, 2 sqrt(mu E''); `mass` is mu = m omega^2."""
     force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
-    return float(force / (2.0 * np.sqrt(mass * _second_derivative(energy, low))))
-
-
-def _second_derivative(energy, angle, beside=1e-9):
-    """E'' at a crank angle, the larger of both sides of a kink."""
-    return max(float(energy.at(angle + side, 2)[2]) for side in (-beside, beside))
+    bend = max(float(energy.at(low + side, 2)[2]) for side in (-1e-9, 1e-9))  # the larger of both sides of a kink
+    return float(force / (2.0 * np.sqrt(mass * bend)))
 
 
 def spring_stretch(energy, level, mass, stiffness):
@@ -54,7 +50,8 @@ def spring_stretch(energy, level, mass, stiffness):
     ParameterError
         The follower lifts off: no smooth solution stays in contact, with the crank angle.
     """
-    slope = Panels(energy.edges, _derivative(energy))
+    rows = chebyshev.chebder(energy.coefficients, axis=1) * (2.0 / np.diff(energy.edges)[:, None])
+    slope = Panels(energy.edges, np.pad(rows, ((0, 0), (0, 1))))
     turns = slope.roots
     values = energy(turns)
     found = []
@@ -76,19 +73,12 @@ def spring_stretch(energy, level, mass, stiffness):
     return Panels(np.array([*edges, first + energy.period]), np.array([row for *_, row in moved]))
 
 
-def _derivative(panels):
-    widths = np.diff(panels.edges)[:, None]
-    rows = chebyshev.chebder(panels.coefficients, axis=1) * (2.0 / widths)
-    return np.pad(rows, ((0, 0), (0, 1)))
-
-
 def _march_panels(energy, slope, start, stop, level, mass, stiffness):
     """Panels (low, high, coefficients) from an energy maximum to the neighbouring minimum."""
-    forth = stop > start
     edges = np.concatenate([energy.edges[:-1] + turn * energy.period for turn in (-1, 0, 1, 2)])
     low, high = min(start, stop), max(start, stop)
     inner = edges[(edges > low + MIN_PANEL) & (edges < high - MIN_PANEL)]
-    marks = list(inner if forth else inner[::-1]) + [stop]
+    marks = list(inner if stop > start else inner[::-1]) + [stop]
     found, at, value = [], start, None
     while marks:
         nodes = at + (_NODES + 1.0) / 2.0 * (marks[0] - at)
@@ -101,8 +91,11 @@ def _march_panels(energy, slope, start, stop, level, mass, stiffness):
             marks.insert(0, (at + marks[0]) / 2)
             continue
         rows = _FIT @ x
-        _require_contact(nodes, x, marks[0] - at, slope(inside), forth)
-        mirrored = rows if forth else rows * (-1.0) ** np.arange(PANEL_DEGREE + 1)
+        rate, steep = 2.0 / (marks[0] - at) * (_DERIVATIVE @ x), slope(inside)
+        worst = int(np.argmax(rate * steep))  # a stretch that grows with the machine's energy: the contact would pull
+        if (rate * steep)[worst] > CONTACT_TOLERANCE * np.max(np.abs(rate)) * np.max(np.abs(steep)):
+            raise ParameterError(_lift_off_text(nodes[worst]))
+        mirrored = rows if stop > start else rows * (-1.0) ** np.arange(PANEL_DEGREE + 1)
         found.append((*sorted((at, marks[0])), mirrored))
         at, value = marks.pop(0), x[-1]
     return found
@@ -111,7 +104,13 @@ def _march_panels(energy, slope, start, stop, level, mass, stiffness):
 def _collocate(rest, width, share, value):
     """Stretch at the nodes of a panel by x^2 + share x'^2 = rest and x = `value` at the start; None if not resolved."""
     rate = 2.0 / width * _DERIVATIVE
-    x = _euler_steps(rest, width, share, value)
+    # from rough values by implicit Euler steps
+    start = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
+    for step, there in zip(np.diff(_NODES) * width / 2.0, rest[1:], strict=True):
+        q = share / (step * step)
+        square = (1.0 + q) * there - q * start[-1] * start[-1]
+        start.append((q * start[-1] + np.sqrt(max(square, 0.0))) / (1.0 + q))
+    x = np.array(start)
     for _ in range(MAX_NEWTON_STEPS):
         fast = rate @ x
         off = (x * x + share * fast * fast - rest) / 2.0
@@ -130,25 +129,6 @@ def _collocate(rest, width, share, value):
             tail = np.max(np.abs((_FIT @ x)[-3:]))
             return x if tail <= SERIES_TOLERANCE * size and np.all(x > 0.0) else None
     return None
-
-
-def _euler_steps(rest, width, share, value):
-    """Rough stretch at the nodes by implicit Euler steps, the start of Newton's method."""
-    x = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
-    for step, there in zip(np.diff(_NODES) * width / 2.0, rest[1:], strict=True):
-        q = share / (step * step)
-        square = (1.0 + q) * there - q * x[-1] * x[-1]
-        x.append((q * x[-1] + np.sqrt(max(square, 0.0))) / (1.0 + q))
-    return np.array(x)
-
-
-def _require_contact(nodes, x, width, slope, forth):
-    """Refuse a stretch that grows with the machine's energy: there the contact would pull."""
-    rate = 2.0 / width * (_DERIVATIVE @ x)
-    wrong = rate * slope
-    worst = int(np.argmax(wrong))
-    if wrong[worst] > CONTACT_TOLERANCE * np.max(np.abs(rate)) * np.max(np.abs(slope)):
-        raise ParameterError(_lift_off_text(nodes[worst]))
 
 
 def _lift_off_text(angle):

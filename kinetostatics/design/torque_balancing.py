@@ -270,9 +270,25 @@ def torque_balancing_cam(
     torque, energy = _energy(scene, switches)
     moving = values["mass"] * float(scene.crank_speed) ** 2
     swing, peak, lows = _energy_swing(torque, energy)
-    stiffness, least = _spring_rate(values, swing)
+    travel = values["travel"]
+    stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
+    least = swing / (stiffness * travel) - travel / 2.0
+    if least <= 0.0:
+        raise ParameterError(
+            f"{OWNER}: a spring of {stiffness:.6g} N/m takes up more than the {swing:.6g} J of the machine on a travel "
+            f"of {travel:.6g} m without any preload; take less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
+            f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
+        )
     level = peak + 0.5 * stiffness * least * least
-    reserve = _reserve(values, energy, lows, level, moving, stiffness)
+    reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
+    low = min(reserves, key=reserves.__getitem__)
+    reserve = reserves[low]
+    if reserve <= 1.0:  # (k x)^2 must exceed 4 m omega^2 E'' at minima of E
+        raise ParameterError(
+            f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
+            f"{reserve:.4g} times the force 2 omega sqrt(m E'') that contact needs; make the travel shorter than "
+            f"{travel * reserve:.6g} m, or the follower lighter than {values['mass'] * reserve**2:.6g} kg"
+        )
     stretch = spring_follower.spring_stretch(energy, level, moving, stiffness)
     shift = _base_radius(stretch, least, values) - least
     guide = Guide.at(values["guide_angle"], values["guide_offset"])
@@ -285,45 +301,33 @@ def torque_balancing_cam(
     weight = sum(float(dot(guide.direction, item.vector)) for item in scene.loads if isinstance(item, Gravity))
     spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
     loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
-    ends = least, least + values["travel"]
+    ends = least, least + travel
     radii = values.get("shaft_radius"), values.get("roller_radius")
     return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, *radii)
 
 
 def _parse_values(scene, given):
-    """Checked values by name."""
+    """Checked values by name; a scene that no such cam suits is refused."""
+    problem = None
+    if not isinstance(scene, Scene):
+        problem = f"takes a Scene, as of a case's variant, got {checks.shown(scene)}"
+    elif np.ndim(scene.crank_speed) or np.ndim(scene.crank_acceleration) or scene.crank_acceleration:
+        problem = "the crank must turn at one constant speed, its design speed"
+    elif not scene.crank_speed:
+        problem = "the crank stands; give it its design speed"
+    elif abs(scene.period - TURN) > 1e-9:
+        turns = scene.period / TURN
+        problem = f"motion and loads must repeat after a turn, but do after {turns:.6g}: a cam cannot"
+    elif "O" in scene.friction.acting:
+        problem = (
+            "friction at O grows with the force of the cam; leave it out, and look at it in the scene that is made"
+        )
     rules = dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE))
     rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
     rules |= {"pressure_angle": ("rad", POSITIVE | {"high": MAX_PRESSURE_ANGLE}), "guide_angle": ("rad", {})}
     rules |= {"guide_offset": ("m", {})}
     given = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
-    return checks.single_numbers(
-        OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in given.items()}
-    )
-
-
-def _reserve(values, energy, lows, level, moving, stiffness):
-    """Least ratio of the spring force to the force for contact; refused if it is not above 1."""
-    reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
-    reserve = min(reserves.values())
-    if reserve <= 1.0:
-        raise ParameterError(_no_contact_text(values, min(reserves, key=reserves.__getitem__), reserve))
-    return reserve
-
-
-def _scene_problem(scene):
-    """Sentence about an unsuitable scene, or None."""
-    if not isinstance(scene, Scene):
-        return f"takes a Scene, as of a case's variant, got {checks.shown(scene)}"
-    if np.ndim(scene.crank_speed) or np.ndim(scene.crank_acceleration) or scene.crank_acceleration:
-        return "the crank must turn at one constant speed, its design speed"
-    if not scene.crank_speed:
-        return "the crank stands; give it its design speed"
-    if abs(scene.period - TURN) > 1e-9:
-        return f"motion and loads must repeat after a turn, but do after {scene.period / TURN:.6g}: a cam cannot"
-    if "O" in scene.friction.acting:
-        return "friction at O grows with the force of the cam; leave it out, and look at it in the scene that is made"
-    return None
+    return checks.single_numbers(OWNER, problem, **{name: (value, *rules[name]) for name, value in given.items()})
 
 
 def _energy(scene, switches):
@@ -359,30 +363,6 @@ def _energy_swing(torque, energy):
         float(np.ptp(values)),
         float(np.max(values)),
         [angle for place, angle in enumerate(turns) if values[place] < values[place - 1]],
-    )
-
-
-def _spring_rate(values, swing):
-    """Stiffness and least stretch for the energy between both ends of the travel."""
-    travel = values["travel"]
-    stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
-    least = swing / (stiffness * travel) - travel / 2.0
-    if least <= 0.0:
-        raise ParameterError(
-            f"{OWNER}: a spring of {stiffness:.6g} N/m takes up more than the {swing:.6g} J of the machine on a travel "
-            f"of {travel:.6g} m without any preload; take less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
-            f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
-        )
-    return stiffness, least
-
-
-def _no_contact_text(values, low, reserve):
-    """Text of lost contact: (k x)^2 must exceed 4 m omega^2 E'' at minima of E."""
-    mass = values["mass"]
-    return (
-        f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
-        f"{reserve:.4g} times the force 2 omega sqrt(m E'') that contact needs; make the travel shorter than "
-        f"{values['travel'] * reserve:.6g} m, or the follower lighter than {mass * reserve**2:.6g} kg"
     )
 
 

@@ -11,9 +11,7 @@ a counterweight on the crank with an offset guide do; `weight_options` compares 
 """
 
 import warnings
-from contextlib import contextmanager
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -21,23 +19,11 @@ from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from ..results.reductions import Output
 from .cam_start import Options, crank_slider_links, starting_machine
 from .constraints import parse_constraints, parse_output
-from .optimisation import (
-    best_within_limits,
-    ends_as_ratios,
-    goal_of,
-    goal_text,
-    parse_goal,
-    require_reference,
-    require_resolved,
-    search_problems,
-    without_ratios,
-)
-from .problem import Problem, choose_design, progress_bar, scene_of, true_value
-from .result import Found, search_result
-from .search import Goal
+from .optimisation import best_design, parse_goal, require_reference, require_resolved, search_problems
+from .problem import Problem, choose_design, scene_of, true_value
+from .result import Found
 
 TORQUE, POSITION = "balancing_torque", "slider_position"
 LEAST_SQUARES_PASSES = ((2.0, 1.0), (2e3, 0.0))
@@ -73,14 +59,14 @@ def _least_squares_pass(problem, start, values, columns, weight, smooth):
 
     def residuals(steps):
         curves = problem.curves(placed(steps))
-        (torque, _), (place, _) = curves[TORQUE], curves[POSITION]
+        (torque, *_), (place, *_) = curves[TORQUE], curves[POSITION]
         missed = (np.array([place.min(), place.max()]) - ends) / start.half
         found = [torque / (start.unit * np.sqrt(count)), weight * missed, waves * placed(steps)[columns]]
         return np.nan_to_num(np.concatenate(found), nan=1e3)
 
     def slopes(steps):
         curves = problem.curves(placed(steps))
-        place, rises = curves[POSITION]
+        place, rises, _ = curves[POSITION]
         extreme = rises[:, [place.argmin(), place.argmax()]]
         rows = np.hstack([curves[TORQUE].slopes / (start.unit * np.sqrt(count)), weight * extreme / start.half])
         return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
@@ -210,72 +196,34 @@ def torque_free_cam(
     given = _without_friction(scene_of(source), gravity)
     compared = None if reference is None else _without_friction(scene_of(reference), gravity)
     start = starting_machine(given, options)
-    aims = _aims(start, compared, minimise, maximise, limits)
-    problem = _problem(start, compared, aims, max(cosine, sine), dict(vary or {}), engine)
-    generator = np.random.default_rng(seed)
-    begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
-    begins = [least_squares(problem, start, values) for values in begins]
-    _require_within_bound(start, problem, aims.limits, compared, begins[0])
-    goal, plain = without_ratios(problem, goal_of(problem, aims.output, aims.sign, robust), aims.limits)
-    with _advise_on_failure(start, problem, compared, aims.limits, begins[0]), progress_bar(problem, progress):
-        best, kept, came_to = best_within_limits(problem, goal, plain, begins, aims.limits)
-    found = search_result(
-        problem,
-        goal if robust is not None else Goal(aims.output, aims.sign),
-        kept,
-        best,
-        _reported_outputs(start.scene, compared, aims.outputs),
-        goal_text(aims.sign, aims.text, robust),
-        evaluations=problem.evaluations,
-        starts=ends_as_ratios(problem, aims.output, goal, came_to),
-    )
-    rubbing = scene_of(source).friction.get("O")
-    shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
-    return replace(found, before=given, bound=ratio_bound(start, found.scene, compared), shaft_radius=shaft)
-
-
-class _Aims(NamedTuple):
-    """The goal as sign, text and output, and the limits with the ends of the stroke."""
-
-    sign: float
-    text: str
-    output: Output
-    limits: tuple
-
-    @property
-    def outputs(self):
-        return (self.output, *(limit.output for limit in self.limits))
-
-
-def _aims(start, compared, minimise, maximise, limits):
     sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else parse_goal(minimise, maximise)
     low, high = start.ends
     kept = parse_constraints([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
-    aims = _Aims(sign, text, parse_output(text, start.scene), (*kept, *parse_constraints(limits, start.scene)))
-    require_reference(compared, aims.output, aims.limits)
-    return aims
-
-
-def _problem(start, compared, aims, order, vary, engine):
-    """The problem at enough crank angles for the highest order of the cam; refused where no coupler can solve it."""
-    angles = max(MIN_ANGLES, ANGLES_PER_HARMONIC * order)
-    require_resolved(angles, aims.outputs)
-    quantities = (TORQUE, POSITION, *(item.quantity for item in aims.outputs))
-    problem = Problem(start.machine, start.vary | vary, quantities, compared, angles, engine)
+    output, limits = parse_output(text, start.scene), (*kept, *parse_constraints(limits, start.scene))
+    require_reference(compared, output, limits)
+    outputs = (output, *(limit.output for limit in limits))
+    angles = max(MIN_ANGLES, ANGLES_PER_HARMONIC * max(cosine, sine))
+    require_resolved(angles, outputs)
+    quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
+    problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
     _require_possible(problem, start)
-    return problem
-
-
-@contextmanager
-def _advise_on_failure(start, problem, compared, limits, first):
-    """Add to the error of a failed search with limited torque what else balances weight."""
+    generator = np.random.default_rng(seed)
+    begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
+    begins = [least_squares(problem, start, values) for values in begins]
+    _require_within_bound(start, problem, limits, compared, begins[0])
+    usual = [text for text in REPORTED_OUTPUTS if text.split()[-1] in of_scene(start.scene)]
+    usual = usual if compared is not None else usual[1:]
+    reported = dict.fromkeys([*outputs, *(parse_output(text, start.scene) for text in usual)])
     try:
-        yield
-    except DesignError as error:
-        nearest = first if error.values is None else np.array(list(error.values.values()))
+        found = best_design(problem, output, sign, limits, begins, reported, text, robust, progress)
+    except DesignError as error:  # with limited torque, what else balances weight
+        nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
         torque = any(limit.output.quantity == TORQUE for limit in limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
+    rubbing = scene_of(source).friction.get("O")
+    shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
+    return replace(found, before=given, bound=ratio_bound(start, found.scene, compared), shaft_radius=shaft)
 
 
 def ratio_bound(start, scene, reference):
@@ -345,13 +293,6 @@ def _advice(start, problem, reference, values):
         "nearest to the limits; it changes by some per cent with the cam): give sine terms, coupler_spring or "
         "counterweight"
     )
-
-
-def _reported_outputs(scene, reference, outputs):
-    """Outputs of a report: goal and limits, and the usual ones."""
-    texts = REPORTED_OUTPUTS if reference is not None else REPORTED_OUTPUTS[1:]
-    usual = (parse_output(text, scene) for text in texts if text.split()[-1] in of_scene(scene))
-    return tuple(dict.fromkeys([*outputs, *usual]))
 
 
 LEAST_SQUARES_GOAL = f"rms {TORQUE}"

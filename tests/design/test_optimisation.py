@@ -239,17 +239,17 @@ WAVES = np.array([np.ones(COUNT), np.cos(ANGLE), np.sin(2 * ANGLE), np.cos(3 * A
 POINT = np.array([0.3, 1.0, -0.7, 0.4, 0.2])
 
 
-def curve(point, shift=0.0):
-    return measures.Curve(point @ WAVES + shift, WAVES)
+def curve(point):
+    return measures.Curve(point @ WAVES, WAVES, turns=2)
 
 
 def test_swing_is_the_largest_of_its_parts():
-    whole, rises = measures.reduced("swing", curve(POINT), turns=2)
-    values, slopes = measures.bounded("swing", curve(POINT), turns=2)
+    whole, rises = measures.reduced("swing", curve(POINT))
+    values, slopes = measures.bounded("swing", curve(POINT))
     assert_allclose(values.max(), whole, rtol=1e-12)
     assert_allclose(slopes[:, values.argmax()], rises, rtol=1e-12)
     step = 1e-6
     for place in range(POINT.size):
         move = step * np.eye(POINT.size)[place]
-        high, low = (measures.bounded("swing", curve(POINT + side * move), turns=2)[0] for side in (1, -1))
+        high, low = (measures.bounded("swing", curve(POINT + side * move))[0] for side in (1, -1))
         assert_allclose(slopes[place], (high - low) / (2 * step), rtol=0, atol=2e-7)
