@@ -38,7 +38,11 @@ def design(options):
         print_folded(case.title)
     found = {}
     for name in names:
-        found[name] = _search(case.designs[name], options)
+        print_error(f"searching for {name}")
+        try:
+            found[name] = case.designs[name].find(starts=options.starts, progress=machine.shows_progress(options))
+        except DesignError as error:
+            raise DesignError(f"{name}: {error}", error.values) from None
         if not machine.quiet(options):
             _print_design(case.designs[name], found[name])
             sys.stdout.flush()
@@ -55,7 +59,17 @@ def design(options):
         results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
         machine.print_json("design", case=machine.case_header(case), found=results, files=written)
     if options.csv:
-        machine.write_csv(options, _as_rows(found))
+        import pandas as pd
+
+        rows = []
+        for name, item in found.items():
+            front = isinstance(item, Front)
+            tables = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
+            for kind, table in tables.items():
+                rows.append(table.rename_axis("name").reset_index().assign(design=name, kind=kind))
+        whole = pd.concat(rows)
+        first = ["design", "kind"]
+        machine.write_csv(options, whole[[*first, *whole.columns.drop(first)]])
 
 
 def _as_json(item, found):
@@ -75,21 +89,6 @@ def _as_json(item, found):
     }
 
 
-def _as_rows(found):
-    """All results as one table, a row for each number."""
-    import pandas as pd
-
-    rows = []
-    for name, item in found.items():
-        front = isinstance(item, Front)
-        tables = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
-        for kind, table in tables.items():
-            table = table.rename_axis("name").reset_index()
-            rows.append(table.assign(design=name, kind=kind))
-    whole = pd.concat(rows)
-    return whole[["design", "kind", *(column for column in whole if column not in ("design", "kind"))]]
-
-
 def _require_writable(case, names, options):
     """Refuse unusable output files before the long searches."""
     require_writable(case, "--csv", options.csv, (".csv",))
@@ -101,14 +100,6 @@ def _require_writable(case, names, options):
         items = [case.designs[name] for name in names]
         scenes = {name: case.variant(name).scene for item in items for name in (item.reference, item.source)}
         case_text.tables(Path(options.out), scenes | {item.name: scenes[item.source] for item in items})
-
-
-def _search(item, options):
-    print_error(f"searching for {item.name}")
-    try:
-        return item.find(starts=options.starts, progress=machine.shows_progress(options))
-    except DesignError as error:
-        raise DesignError(f"{item.name}: {error}", error.values) from None
 
 
 def _print_design(item, found):
@@ -125,22 +116,6 @@ def _print_design(item, found):
     print_table(report.assign(binds=binds).rename(columns={"price": gain}))
     print()
     print_table(found.numbers().rename(columns={"price": gain}))
-    print_folded(f"\n{_search_summary(found)}")
-    if item.spread is not None:
-        print_folded(_spread_summary(item, found))
-
-
-def _spread_summary(item, found):
-    """Quantile of a robust design over more machines than in its search."""
-    output = item.table.minimise or item.table.maximise
-    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
-    quantile = item.spread.quantile
-    value = np.quantile(values, quantile)
-    return f"quantile {quantile:g} of {output} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}"
-
-
-def _search_summary(found):
-    """Evaluations, agreement of searches, bounds, and power balance of a result."""
     lines = [f"{found.evaluations} evaluations of all derivatives"]
     if len(found.starts) > 1:
         best = min(found.starts)
@@ -151,4 +126,9 @@ def _search_summary(found):
     if np.isfinite(found.bound):
         lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
     lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
-    return "\n".join(lines)
+    if item.spread is not None:  # over more machines than in the search
+        output = item.table.minimise or item.table.maximise
+        values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
+        value, share = np.quantile(values, item.spread.quantile), f"{item.spread.quantile:g}"
+        lines.append(f"quantile {share} of {output} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}")
+    print_folded("\n" + "\n".join(lines))

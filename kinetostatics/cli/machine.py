@@ -9,15 +9,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..numbers import checks
 from ..version import __version__
 from .output import STDOUT, write_table
-
-
-def require_one_output(options):
-    """Refuse JSON and CSV both on standard output."""
-    both = wants_json(options) and wants_csv(options)
-    checks.require("--json and --csv", "both would be written to standard output; give --csv a FILE" if both else None)
 
 
 def wants_json(options):
@@ -43,14 +36,10 @@ def print_json(command, **parts):
     print(json.dumps(_jsonable({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
 
 
-def print_csv(table):
-    sys.stdout.write(table.to_csv(index=False))
-
-
 def write_csv(options, table):
     """Write a table to standard output or a file, as ``--csv`` says."""
     if wants_csv(options):
-        print_csv(table)
+        sys.stdout.write(table.to_csv(index=False))
     elif options.csv:
         announce(options, "", write_table(table, options.csv))
 

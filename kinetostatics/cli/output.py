@@ -72,12 +72,18 @@ def print_table(table, bounds=None):
 
 def print_columns(*columns):
     """Print a table, as `print_table` does, from columns (heading, values[, bounds on their errors])."""
+    from tabulate import tabulate
+
     texts = []
     for heading, values, *bounds in columns:
         errors = bounds[0] if bounds else [0.0] * len(values)
         texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
     for place, part in enumerate(_parts(texts, width())):
-        print(("\n" if place else "") + _joined_lines(part))
+        rules = ["-" * _widest([heading, *cells]) for heading, cells in part]
+        rows = [[heading for heading, _ in part], rules, *zip(*(cells for _, cells in part), strict=True)]
+        alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(part)]
+        whole = tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
+        print(("\n" if place else "") + whole)
 
 
 def with_published(table, published, path):
@@ -152,15 +158,6 @@ def _of_words(column):
     """Whether cells are words: by the heading, or without any number."""
     heading, cells = column
     return heading in WORD_COLUMNS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
-
-
-def _joined_lines(columns):
-    from tabulate import tabulate
-
-    rules = ["-" * _widest([heading, *cells]) for heading, cells in columns]
-    rows = [[heading for heading, _ in columns], rules, *zip(*(cells for _, cells in columns), strict=True)]
-    alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(columns)]
-    return tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
 
 
 def stack_variants(frames):
