@@ -18,9 +18,8 @@ from pathlib import Path
 
 from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
-from .machine import wants_csv, wants_json
 from .options import parser
-from .output import print_error
+from .output import print_error, wants_csv, wants_json
 
 
 class _Terminated(BaseException):

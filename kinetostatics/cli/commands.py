@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
-from . import machine
+from . import output
 from .output import (
     print_columns,
     print_error,
@@ -39,13 +39,13 @@ def list_cases(options):
         {"name": name, "title": case["title"], "variants": list(case["variants"]), "path": str(path)}
         for name, (case, path) in raw.items()
     ]
-    if machine.wants_json(options):
-        machine.print_json("list", cases=cases)
-    elif machine.wants_csv(options):
+    if output.wants_json(options):
+        output.print_json("list", cases=cases)
+    elif output.wants_csv(options):
         import pandas as pd
 
         table = pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases])
-        machine.write_csv(options, table)
+        output.write_csv(options, table)
     else:
         breadth = max(map(len, raw)) + 2
         for case in cases:
@@ -83,8 +83,8 @@ def run(options):
     require_writable(case, "--csv", options.csv, (".csv",))
     names = list(case.variants) if options.variant is None else [options.variant]
     given = sweep_commands.standard_uncertainties(case, names, options.uncertain or ())
-    solutions = {name: case.solve(name, options.angles) for name in machine.progress(options, names, "solving")}
-    if machine.wants_json(options):
+    solutions = {name: case.solve(name, options.angles) for name in output.progress(options, names, "solving")}
+    if output.wants_json(options):
         found = {}
         for name, solution in solutions.items():
             rows = extremes_by_name(solution).items()
@@ -97,16 +97,16 @@ def run(options):
             if lose(solution):
                 lost = solution.losses
                 powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
-                found[name]["losses"] = powers | {"at": machine.rows_by_name(lost.frame())}
+                found[name]["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
             if given[name]:
-                largest = machine.rows_by_name(largest_with_uncertainty(solution, given[name]))
+                largest = output.rows_by_name(largest_with_uncertainty(solution, given[name]))
                 found[name]["uncertainty"] = {"inputs": given[name], "largest": largest}
-        machine.print_json("run", case=machine.case_header(case), angles=options.angles, variants=found)
-    elif not machine.quiet(options):
+        output.print_json("run", case=output.case_header(case), angles=options.angles, variants=found)
+    elif not output.quiet(options):
         _print_extremes(case, solutions, given, options)
     if options.csv:
         table = stack_variants({name: solution.frame() for name, solution in solutions.items()})
-        machine.write_csv(options, table)
+        output.write_csv(options, table)
 
 
 def _print_extremes(case, solutions, given, options):
@@ -159,12 +159,12 @@ def plot(options):
     from ..views.figures import draw_case
 
     def progress(names):
-        return machine.progress(options, names, "drawing")
+        return output.progress(options, names, "drawing")
 
     paths = draw_case(load_case(options.case), options.out, options.format, options.only, progress)
-    if machine.wants_json(options):
-        machine.print_json("plot", files=paths)
-    machine.announce(options, *paths)
+    if output.wants_json(options):
+        output.print_json("plot", files=paths)
+    output.announce(options, *paths)
 
 
 def precision(options):
@@ -188,8 +188,8 @@ def precision(options):
     table = pd.read_csv(paths[0])
     groups = table.groupby(["variant", "quantity"], sort=False)
     fronts = {names: study.front(part) for names, part in groups}
-    if machine.wants_json(options):
-        machine.print_json("precision", case=machine.case_header(case), best=pd.concat(fronts.values()), files=paths)
+    if output.wants_json(options):
+        output.print_json("precision", case=output.case_header(case), best=pd.concat(fronts.values()), files=paths)
         return
     print_folded(f"{case.title}\n\nno other method is both faster and nearer than these; errors by the largest value:")
     for (variant, _), front in fronts.items():
@@ -212,8 +212,8 @@ def stability(options):
 
     paths = study.write(options.out, progress=print_error, page=stability_page)
     table = pd.read_csv(paths[1])
-    if machine.wants_json(options):
-        machine.print_json("stability", places=table, files=paths)
+    if output.wants_json(options):
+        output.print_json("stability", places=table, files=paths)
         return
     print_folded(
         f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n"
@@ -255,7 +255,7 @@ def drive(options):
     if not driven:
         raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
     runs, starts, told = run_under_motors(
-        driven, options.start, lambda names: machine.progress(options, names, "running")
+        driven, options.start, lambda names: output.progress(options, names, "running")
     )
     reasons = {name: "\n".join(texts) for name, texts in told.items()}
     if not runs:
@@ -268,10 +268,10 @@ def drive(options):
         path = Path(options.out) / f"{case.path.stem}_drive.csv"
         write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
         paths = [path, *draw_drive(case, runs, options.out)]
-    if machine.wants_json(options):
-        found = {key: machine.rows_by_name(table) for key, table in tables.items()}
-        machine.print_json("drive", case=machine.case_header(case), **found, reasons=reasons, files=paths)
-    elif not machine.quiet(options):
+    if output.wants_json(options):
+        found = {key: output.rows_by_name(table) for key, table in tables.items()}
+        output.print_json("drive", case=output.case_header(case), **found, reasons=reasons, files=paths)
+    elif not output.quiet(options):
         print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
         print_table(tables["running"].rename_axis("over the period"))
         print("\nwhere the energy of a turn goes\n")
@@ -286,7 +286,7 @@ def drive(options):
         rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
         whole = pd.concat(rows)
         whole.insert(0, "table", whole.pop("table"))
-        machine.write_csv(options, whole)
+        output.write_csv(options, whole)
 
 
 RESIDUAL = "power residual"
@@ -307,27 +307,27 @@ def compare(options):
     reference = case.solve(case.reference)
     found = {
         name: Comparison(reference, case.solve(name), (case.reference, name))
-        for name in machine.progress(options, names, "comparing")
+        for name in output.progress(options, names, "comparing")
     }
     special = {
         "balancing": ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
         "linkage": ("swing and transmission", case.linkage_table(), case.published.linkage),
     }
     special = {key: item for key, item in special.items() if item[1] is not None}
-    if machine.wants_json(options):
+    if output.wants_json(options):
         ratios = "reference / variant; above 1 the variant has less"
         variants = {
-            name: machine.rows_by_name(_with_roles(case, name, item).drop(columns=["reference_name", "variant_name"]))
+            name: output.rows_by_name(_with_roles(case, name, item).drop(columns=["reference_name", "variant_name"]))
             for name, item in found.items()
         }
         others = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
-        machine.print_json("compare", case=machine.case_header(case), ratios=ratios, variants=variants, **others)
-    elif not machine.quiet(options):
+        output.print_json("compare", case=output.case_header(case), ratios=ratios, variants=variants, **others)
+    elif not output.quiet(options):
         _print_comparison(case, found, special)
     if options.csv:
         import pandas as pd
 
-        machine.write_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
+        output.write_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
 
 
 def _with_roles(case, name, comparison):

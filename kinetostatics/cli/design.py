@@ -14,7 +14,7 @@ from ..design.pareto_front import Front
 from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
-from . import machine
+from . import output
 from .output import print_error, print_folded, print_table, require_writable
 
 SPREAD_SAMPLES = 2048
@@ -34,16 +34,16 @@ def design(options):
     if any(wrong):
         raise CaseError(case.path, [problem for problem in wrong if problem])
     _require_writable(case, names, options)
-    if not machine.quiet(options):
+    if not output.quiet(options):
         print_folded(case.title)
     found = {}
     for name in names:
         print_error(f"searching for {name}")
         try:
-            found[name] = case.designs[name].find(starts=options.starts, progress=machine.shows_progress(options))
+            found[name] = case.designs[name].find(starts=options.starts, progress=output.shows_progress(options))
         except DesignError as error:
             raise DesignError(f"{name}: {error}", error.values) from None
-        if not machine.quiet(options):
+        if not output.quiet(options):
             _print_design(case.designs[name], found[name])
             sys.stdout.flush()
     written = []
@@ -51,13 +51,13 @@ def design(options):
         from ..views.figures import draw_designs
 
         written += draw_designs(case, found, options.plot, options.format)
-        machine.announce(options, "", *written)
+        output.announce(options, "", *written)
     if options.out:
         written.append(write_found(options.out, case, found))
-        machine.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
-    if machine.wants_json(options):
+        output.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
+    if output.wants_json(options):
         results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
-        machine.print_json("design", case=machine.case_header(case), found=results, files=written)
+        output.print_json("design", case=output.case_header(case), found=results, files=written)
     if options.csv:
         import pandas as pd
 
@@ -69,7 +69,7 @@ def design(options):
                 rows.append(table.rename_axis("name").reset_index().assign(design=name, kind=kind))
         whole = pd.concat(rows)
         first = ["design", "kind"]
-        machine.write_csv(options, whole[[*first, *whole.columns.drop(first)]])
+        output.write_csv(options, whole[[*first, *whole.columns.drop(first)]])
 
 
 def _as_json(item, found):
@@ -80,8 +80,8 @@ def _as_json(item, found):
         "goal": str(found.goal),
         "source": item.source,
         "reference": item.reference,
-        "outputs": machine.rows_by_name(found.report()),
-        "numbers": machine.rows_by_name(found.numbers()),
+        "outputs": output.rows_by_name(found.report()),
+        "numbers": output.rows_by_name(found.numbers()),
         "evaluations": found.evaluations,
         "ends_of_searches": found.starts,
         "bound": found.bound,
@@ -127,8 +127,8 @@ def _print_design(item, found):
         lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
     lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
     if item.spread is not None:  # over more machines than in the search
-        output = item.table.minimise or item.table.maximise
-        values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
+        goal = item.table.minimise or item.table.maximise
+        values = over_spread(found.scene, goal, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
         value, share = np.quantile(values, item.spread.quantile), f"{item.spread.quantile:g}"
-        lines.append(f"quantile {share} of {output} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}")
+        lines.append(f"quantile {share} of {goal} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}")
     print_folded("\n" + "\n".join(lines))

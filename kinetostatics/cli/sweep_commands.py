@@ -9,7 +9,7 @@ from ..numbers import checks, files, spreads
 from ..numbers.formatting import parse_heading, round_bound_up, round_uncertainty_up
 from ..numbers.units import factor, to_si
 from ..solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
-from . import machine
+from . import output
 from .output import print_folded, print_table, require_writable, variant_words, write_table
 
 OUTPUTS = ("mean_absolute balancing_torque", "largest O")
@@ -51,7 +51,7 @@ def sweep(options):
         angles=options.angles,
         workers=options.workers,
         folder=folder,
-        progress=machine.shows_progress(options),
+        progress=output.shows_progress(options),
     )
     written: list[str | Path] = []
     lines: list[str] = []
@@ -63,19 +63,17 @@ def sweep(options):
 
         written.append(sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied)))
         lines.append(str(written[-1]))
-    if machine.wants_json(options):
+    if output.wants_json(options):
         failed = int((found[sweeps.FAILED] != "").sum())
         sides = dict(zip(("variant", "reference"), names, strict=True))
-        machine.print_json(
-            "sweep", case=machine.case_header(case), **sides, failed=failed, designs=found, files=written
-        )
-    elif not machine.quiet(options):
+        output.print_json("sweep", case=output.case_header(case), **sides, failed=failed, designs=found, files=written)
+    elif not output.quiet(options):
         print_folded(f"{case.title}: {_arguments(names, wanted, options)}\n")
         _print_sweep(found, wanted, varied)
         for line in lines:
             print(line)
     if options.csv:
-        machine.write_csv(options, found)
+        output.write_csv(options, found)
     reasons = found[sweeps.FAILED]
     checks.require("sweep", None if (reasons == "").any() else f"all {len(found)} designs failed: {reasons.iloc[0]}")
 
