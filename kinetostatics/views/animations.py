@@ -9,12 +9,9 @@ from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
-from .canvas import ACCENT, axes, display_unit, single_solution
-from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_equal_scales
-from .strokes import set_points, stroke_artist
-
-UNCLIPPED_SHARE = 0.9
-"""Share of the poses in which an unbounded reaction has its arrow in full length."""
+from .canvas import ACCENT, axes, display_unit, set_equal_scales, single_solution
+from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_points, stroke_artist
+from .strokes import UNCLIPPED_SHARE
 
 
 def animation(solution, joints=None, frames=72, interval=50, ax=None):

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import KinetostaticsError, ParameterError
@@ -55,7 +54,11 @@ STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 def axes(ax):
     """The axes given, or new ones."""
     checks.require("plots", None if ax is None or hasattr(ax, "plot") else f"ax must be matplotlib Axes, got {ax!r}")
-    return plt.subplots(layout="constrained")[1] if ax is None else ax
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # the report needs none of it
+
+    return plt.subplots(layout="constrained")[1]
 
 
 def solutions_by_label(solutions, name):
@@ -242,6 +245,18 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
         share = min(box.height / ax.bbox.height, 0.4)
         ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
     return ax
+
+
+def set_equal_scales(ax, moving=()):
+    """Set equal scales that show all drawn parts and moving points (N, 2)."""
+    ax.relim()
+    if len(moving):
+        ax.update_datalim(moving)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    ax.autoscale_view()
 
 
 KINK_TOLERANCE = 1e-12

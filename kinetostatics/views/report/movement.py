@@ -11,8 +11,8 @@ import numpy as np
 from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
 from .. import strokes
-from ..animations import UNCLIPPED_SHARE
-from ..strokes import Shape, Stroke
+from ..canvas import close_curve
+from ..strokes import UNCLIPPED_SHARE, Shape, Stroke
 
 ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
@@ -103,23 +103,16 @@ def _fixed_strokes(shape):
         return Stroke(kind, np.asarray(points, dtype=float)[..., None])
 
     for joint in mechanism.curves:
-        yield still("curve", _closed(turn.position(joint)))
+        yield still("curve", close_curve(turn.position(joint)))
     for bar in mechanism.crank.bars:
-        yield still("circle", _closed(turn.position(bar.end)))
-    for slider, guide in mechanism.guides.items():
-        along = np.asarray(guide.direction, dtype=float)
-        below, reach = 0.6 * unit * strokes.left(along), 1.5 * unit * along
-        start, end = shape.ways[slider].T
-        yield still("rail", strokes.hatched_line(start - reach - below, end + reach - below, 0.5 * unit))
+        yield still("circle", close_curve(turn.position(bar.end)))
+    for rail in shape.rails():
+        yield still("rail", rail)
     for point in shape.grounds(turn.loads):
         foot = np.array([[0.0, -0.7, 0.7], [0.0, -1.0, -1.0]]) * unit
         yield still("ground", point[:, None] + foot)
         ends = point[:, None] + unit * np.array([[1.0, -1.0], [-1.0, -1.0]])
         yield still("rail", strokes.hatched_line(ends[:, 1], ends[:, 0], 0.4 * unit))
-
-
-def _closed(path):
-    return np.concatenate([path, path[:, :1]], axis=1)
 
 
 def _stroke_data(stroke, size):
