@@ -153,7 +153,7 @@ def run_under_motors(variants, from_angle=0.0, progress=iter):
     """Periodic running and start-up by the name of the variant, each under its own motor, and reasons for failures."""
     from ..drive.savings import speed_hint
     from ..drive.steady_running import steady
-    from ..drive.transient import start
+    from ..drive.transient import start_to
 
     runs: dict[str, typing.Any] = {}
     starts: dict[str, typing.Any] = {}
@@ -163,7 +163,7 @@ def run_under_motors(variants, from_angle=0.0, progress=iter):
         system = variant.scene, variant.motor, variant.flywheel
         try:
             runs[name], starts[name] = steady(*system), None
-            starts[name] = start(*system, from_angle=from_angle)
+            starts[name] = start_to(runs[name], *system, from_angle)
         except DriveError as error:
             reasons[name] = [str(error)]
         if name in runs and (doubt := speed_hint(runs[name], variant.scene)):

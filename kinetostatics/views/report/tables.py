@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import CaseError, DriveError, KinetostaticsError, NotGivenError, ParameterError
+from ...casefile.variant import run_under_motors
+from ...errors import CaseError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
@@ -380,24 +381,11 @@ def losses(subject):
 
 def drive_tables(subject):
     """Periodic running by machine under the motor of the case, its tables, and reasons for failures."""
-    from ...drive.savings import energy_table, running_table, speed_hint
-    from ...drive.steady_running import steady
-    from ...drive.transient import start
+    from ...drive.savings import energy_table, running_table
 
-    runs: dict[str, Any] = {}
-    starts: dict[str, Any] = {}
-    reasons = []
-    for name, machine in subject.machines.items():
-        if machine.motor is None:
-            continue
-        parts = machine.scene, machine.motor, machine.variant.flywheel
-        try:
-            runs[name], starts[name] = steady(*parts), None
-            starts[name] = start(*parts)
-        except DriveError as error:
-            reasons.append(f"{name}: {error}")
-        if name in runs and (doubt := speed_hint(runs[name], machine.scene)):
-            reasons.append(f"{name}: {doubt}")
+    driven = {name: machine.variant for name, machine in subject.machines.items() if machine.motor is not None}
+    runs, starts, told = run_under_motors(driven)
+    reasons = [f"{name}: {text}" for name, texts in told.items() for text in texts]
     tables = []
     if runs:
         tables.append(table_of_frame(running_table(runs, starts), "Speed, power and start-up"))
