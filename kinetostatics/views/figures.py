@@ -82,11 +82,11 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     for name in progress(paths):
         with rc_context(FONT):
             figure = figures[name](solutions, counted)
-        if number := case.published.figures.get(name):
-            text = f"figure{'s' * (',' in number)} {number} of the study"
-            figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
-            figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
-        found.append(save_figure(figure, paths[name], case.path.stem))
+            if number := case.published.figures.get(name):
+                text = f"figure{'s' * (',' in number)} {number} of the study"
+                figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
+                figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
+            found.append(save_figure(figure, paths[name], case.path.stem))
     return found
 
 
@@ -109,7 +109,7 @@ def _draw_pages(case, pages, folder, file_format):
     for name, draw in pages.items():
         with rc_context(FONT):
             figure = draw()
-        found.append(save_figure(figure, paths[name], case.path.stem))
+            found.append(save_figure(figure, paths[name], case.path.stem))
     return found
 
 
