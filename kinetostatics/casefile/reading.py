@@ -5,6 +5,7 @@ import re
 import tomllib
 import warnings
 from pathlib import Path
+from typing import Any
 
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
@@ -73,7 +74,7 @@ def read_toml(path):
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:
         raw = None
-    level = [raw]
+    level: list[Any] = [raw]
     for _ in range(MAX_DEPTH if raw is not None else 0):
         level = [
             inner

@@ -320,8 +320,8 @@ def compare(options):
             name: output.rows_by_name(_with_roles(case, name, item).drop(columns=["reference_name", "variant_name"]))
             for name, item in found.items()
         }
-        others = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
-        output.print_json("compare", case=output.case_header(case), ratios=ratios, variants=variants, **others)
+        tables = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
+        output.print_json("compare", case=output.case_header(case), ratios=ratios, variants=variants, **tables)
     elif not output.quiet(options):
         _print_comparison(case, found, special)
     if options.csv:

@@ -63,8 +63,11 @@ def design(options):
 
         rows = []
         for name, item in found.items():
-            front = isinstance(item, Front)
-            tables = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
+            tables: dict[str, Any] = (
+                {"front": item.table}
+                if isinstance(item, Front)
+                else {"output": item.report(), "number": item.numbers()}
+            )
             for kind, table in tables.items():
                 rows.append(table.rename_axis("name").reset_index().assign(design=name, kind=kind))
         whole = pd.concat(rows)

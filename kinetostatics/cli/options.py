@@ -2,6 +2,7 @@
 
 import argparse
 from functools import partial
+from typing import Any
 
 from ..numbers import checks
 from ..numbers.formatting import normalise
@@ -71,7 +72,7 @@ _angles, _designs = partial(_count, size=checks.BYTES_PER_ANGLE), partial(_count
 CASE = _option("case", "CASE", "a TOML file, or the name of a shipped case: sawframe_2r63", _text)
 VARIANT = _option("--variant", "NAME", "only this variant")
 JSON = "--json", {"action": "store_true", "help": "results as JSON in place of tables, numbers in full"}
-COMMANDS = {
+COMMANDS: dict[str, tuple[Any, ...]] = {
     "list": (
         ("commands", "list_cases"),
         "the shipped cases, with title and variants",

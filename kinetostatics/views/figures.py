@@ -39,7 +39,7 @@ from .curves import hodograph, torque
 from .drawings import mechanism
 from .strokes import load_strokes, moves_alike
 
-FONT = {"font.size": 9}
+FONT: Any = {"font.size": 9}
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
