@@ -6,6 +6,7 @@
 
 import typing
 from dataclasses import MISSING, fields
+from functools import partial
 from typing import Any, NamedTuple
 
 from ..design import balancing, linkage
@@ -43,7 +44,7 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
     """Place by path of all numbers that can vary in a validated table; a label is appended to the first name."""
     names = getattr(schema.MADE_OF.get(type(table)), "PATHS", {})
     found: dict[str, NumberPlace] = {}
-    for name, field in type(table).model_fields.items() if not _is_in_file(table) else ():
+    for name, field in type(table).model_fields.items() if _file_of(table) is None else ():
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
@@ -57,7 +58,16 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
                 if getattr(part, str(place.steps[0])) is not None
             }
         else:
-            inner = _places_in_value(table, name, value, field, f"{prefix}{names.get(name, name)}{label}")
+            path, meant = f"{prefix}{names.get(name, name)}{label}", _unit_or_rule(field)
+            if isinstance(value, schema.Table):
+                inner = places_by_path(value, f"{path}.")
+            elif hasattr(meant, "numbers"):
+                inner = {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
+            elif meant is not None and isinstance(value, tuple):
+                parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
+                inner = {f"{path}.{part}": NumberPlace((COMPONENTS[part],), meant) for part in parts}
+            else:
+                inner = {} if meant is None else {path: NumberPlace((), meant)}
         found |= {path: place._replace(steps=(name, *place.steps)) for path, place in inner.items()}
     return found
 
@@ -76,29 +86,10 @@ def _places_in_parts(table, parts):
     return found
 
 
-def _places_in_value(table, name, value, field, path):
-    if isinstance(value, schema.Table):
-        return places_by_path(value, f"{path}.")
-    meant = _unit_or_rule(field)
-    if hasattr(meant, "numbers"):
-        return {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
-    if meant is None:
-        return {}
-    if isinstance(value, tuple):
-        parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
-        return {f"{path}.{part}": NumberPlace((COMPONENTS[part],), meant) for part in parts}
-    return {path: NumberPlace((), meant)}
-
-
 def _file_of(table):
     """Name of the file with the numbers of a table, or None."""
     found = (getattr(table, key, None) for key in ("file", "table"))
     return next((name for name in found if name is not None), None)
-
-
-def _is_in_file(table):
-    """Whether the numbers of a table are in a file."""
-    return _file_of(table) is not None
 
 
 def _unit_or_rule(field):
@@ -106,11 +97,6 @@ def _unit_or_rule(field):
     candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
     found = (item for metadata in candidates for item in metadata if isinstance(item, str) or hasattr(item, "numbers"))
     return next(found, None)
-
-
-def unit_at(table, keys):
-    """SI unit of the field at these keys."""
-    return _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
 
 
 def value_at(table, steps):
@@ -131,8 +117,8 @@ def named_files(table, keys=()):
         for number, part in enumerate(table):
             yield from named_files(part, (*keys, number))
     elif isinstance(table, schema.Table):
-        if _is_in_file(table):
-            yield keys, table, _file_of(table)
+        if (name := _file_of(table)) is not None:
+            yield keys, table, name
         for name in type(table).model_fields:
             yield from named_files(getattr(table, name), (*keys, name))
 
@@ -194,19 +180,6 @@ def build_cam(table, read, guide_angle):
     return cams.Circle(table.radius, table.centre)
 
 
-def build_roller(table):
-    """Roller of its table, or None."""
-    return None if table is None else Roller(**dict(table))
-
-
-def build_friction(tables, mechanism):
-    """Friction by joint of its tables."""
-    found = collect(
-        (("friction", joint), lambda joint=joint: _friction_pair(tables[joint], joint, mechanism)) for joint in tables
-    )
-    return {joint: friction for (_, joint), friction in found.items()}
-
-
 def _friction_pair(table, joint, mechanism):
     problem = choice("joint", joint, tuple(mechanism.pairs))
     if problem:
@@ -225,18 +198,14 @@ def _friction_pair(table, joint, mechanism):
 def _chain(table, tabulated):
     """Mechanism of a variant with a list of groups."""
     crank = Crank(table.crank_length, build_link(table.crank, table.crank_length))
-    angle = _guide_angle(table.groups)
+    # direction of a cam with a law: the first guide with a slider at A
+    ahead = (part for part in table.groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
+    angle = next(map(build_guide, ahead), Guide()).guide_angle
     groups = collect(
-        (("groups", number), lambda part=part, read=tabulated.get(("groups", number, "cam")): _group(part, read, angle))
+        (("groups", number), partial(_group, part, tabulated.get(("groups", number, "cam")), angle))
         for number, part in enumerate(table.groups)
     )
     return Mechanism(table.name, crank, tuple(groups.values()))
-
-
-def _guide_angle(groups):
-    """Angle of the first guide with a slider at A, rad: direction of a cam with a law."""
-    guides = (build_guide(part) for part in groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
-    return next(guides, Guide()).guide_angle
 
 
 def _group(table, cam, guide_angle):
@@ -249,30 +218,15 @@ def _group(table, cam, guide_angle):
     if "cam" in values:
         values["cam"] = build_cam(table.cam, cam, guide_angle)
     if "roller" in values:
-        values["roller"] = build_roller(table.roller)
-    middles = {name: part.model_copy(update={"centre": (0.0, 0.0)}) for name, part in links.items() if _at_middle(part)}
+        values["roller"] = table.roller and Roller(**dict(table.roller))
+    middles = {
+        name: part.model_copy(update={"centre": (0.0, 0.0)})
+        for name, part in links.items()
+        if isinstance(part.centre, str)
+    }
     group = kind(**values | {name: build_link(middles.get(name, part)) for name, part in links.items()})
     lengths = {group.own_names[bar.link]: bar.length for bar in group.bars}
     return replace_unchecked(group, **{name: build_link(links[name], lengths.get(name)) for name in middles})
-
-
-def _at_middle(table):
-    return isinstance(table.centre, str)
-
-
-def _listed_loads(table, tabulated, mechanism):
-    """Loads in the list of a variant, with the faults of all."""
-    found = collect(
-        (
-            ("loads", number),
-            lambda part=part, number=number: _load(part, number, tabulated, mechanism, table.crank_speed),
-        )
-        for number, part in enumerate(table.loads)
-    )
-    wrong = [(keys, text) for keys, load in found.items() for text in load.problems(mechanism) if text]
-    if wrong:
-        raise PartsError(wrong)
-    return tuple(found.values())
 
 
 def _load(table, number, tabulated, mechanism, crank_speed):
@@ -289,11 +243,7 @@ def _load(table, number, tabulated, mechanism, crank_speed):
 
 def read_files(table, folder):
     """Cams, motors and values of loads in the files of a validated variant, by keys."""
-    found = list(named_files(table))
-    return collect(
-        (keys, lambda part=part, keys=keys, name=name: _read(folder / name, part, table, keys))
-        for keys, part, name in found
-    )
+    return collect((keys, partial(_read, folder / name, part, table, keys)) for keys, part, name in named_files(table))
 
 
 def without_unreadable(table, wrong):
@@ -320,7 +270,7 @@ def _read(path, part, table, keys):
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN
     if isinstance(part, schema.ValuesTable):
-        unit = unit_at(table, keys)
+        unit = _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
         return Table.from_csv(path, unit, part.area, period, part.slider, over=part.over)
     return Table.from_csv(path, period=period)
 
@@ -330,8 +280,19 @@ def build_scene(table, tabulated):
     mechanism = _mechanism(table, tabulated)
     balanced = _balance(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
-    loads = (*_own_loads(table, tabulated), *_listed_loads(table, tabulated, mechanism))
-    friction = build_friction(table.friction, mechanism)
+    own = tuple(_own_loads(table, tabulated))
+    listed = collect(
+        (("loads", number), partial(_load, part, number, tabulated, mechanism, table.crank_speed))
+        for number, part in enumerate(table.loads)
+    )
+    wrong = [(keys, text) for keys, load in listed.items() for text in load.problems(mechanism) if text]
+    if wrong:
+        raise PartsError(wrong)
+    rubbing = collect(
+        (("friction", joint), partial(_friction_pair, part, joint, mechanism)) for joint, part in table.friction.items()
+    )
+    loads = own + tuple(listed.values())
+    friction = {joint: pair for (_, joint), pair in rubbing.items()}
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction, sense=table.sense), balanced
 
 
@@ -340,7 +301,7 @@ def require_table_range(table, solution):
     own = len(solution.loads) - len(table.loads)
     read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
     collect(
-        (("loads", number) if number >= 0 else ("process_force",), lambda value=value: value(solution))
+        (("loads", number) if number >= 0 else ("process_force",), partial(value, solution))
         for number, value in read
         if isinstance(value, Table)
     )
@@ -375,19 +336,15 @@ def _mechanism(table, tabulated):
 def _cam_crank_slider(table, read):
     guide = build_guide(table)
     cam = build_cam(table.cam, read, guide.guide_angle)
-    length = _cam_coupler_length(table, cam)
+    length = table.coupler_length
+    if length is None:
+        if not isinstance(cam, cams.CosineLaw):
+            raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
+        length = cam.coupler_length
     links = {name: build_link(getattr(table, name)) for name in ("crank", "block", "slider")}
     coupler = build_link(table.coupler, length)
-    others = {"assembly": table.assembly, "roller": build_roller(table.roller)}
-    return cam_crank_slider(cam, length, guide=guide, coupler=coupler, **links, **others)
-
-
-def _cam_coupler_length(table, cam):
-    if table.coupler_length is not None:
-        return table.coupler_length
-    if not isinstance(cam, cams.CosineLaw):
-        raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
-    return cam.coupler_length
+    roller = table.roller and Roller(**dict(table.roller))
+    return cam_crank_slider(cam, length, guide=guide, coupler=coupler, assembly=table.assembly, roller=roller, **links)
 
 
 def _balance(mechanism, table):

@@ -26,6 +26,8 @@ from .variant import NamedItems, Variant, make_variant
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
+EXTREMUM = r"torque extremum [1-9][0-9]?"
+"""Row of an extremum between the smallest and the largest torque."""
 CAM_FORCE = ("smallest cam force", "largest cam force")
 """Rows of the comparison for variants with a cam only."""
 
@@ -127,22 +129,15 @@ class Case:
             for column in ("ratio", "value")
             for quantity, text in getattr(self.published, column).items()
         }
-        problems = [self._row_problem(quantity, rows) for quantity in printed]
-        if any(problems):
-            raise CaseError(self.path, [f"published: {problem}" for problem in problems if problem])
+        unknown = [name for name in printed if name not in rows and not re.fullmatch(EXTREMUM, name)]
+        if unknown:  # rows of any variant are right
+            mechanisms = [variant.mechanism for variant in self.variants.values()]
+            known = [item for made in mechanisms for item in of_mechanism(made).values() if item.kind == "reaction"]
+            allowed = tuple(dict.fromkeys([*rows, *(f"largest {item.label}" for item in known), *CAM_FORCE]))
+            problems = [checks.choice("published: row", name, allowed) for name in unknown]
+            if any(problems):
+                raise CaseError(self.path, [problem for problem in problems if problem])
         return printed
-
-    def _row_problem(self, quantity, rows):
-        """Fault of the row of a published figure, or None; rows of any variant are right."""
-        if quantity in rows or re.fullmatch(r"torque extremum [1-9][0-9]?", quantity):
-            return None
-        reactions = (
-            f"largest {known.label}"
-            for variant in self.variants.values()
-            for known in of_mechanism(variant.mechanism).values()
-            if known.kind == "reaction"
-        )
-        return checks.choice("row", quantity, tuple(dict.fromkeys([*rows, *reactions, *CAM_FORCE])))
 
     def balancing_table(self):
         """Table of counterweights and shaking force of the balanced variants, a pandas DataFrame; None without any."""
@@ -237,7 +232,10 @@ def _read_variant(name, own, common, folder, problems):
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
-        problems += _kind_problems(kind, merged, place)
+        path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
+        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
+        if meant is not None:  # faults of its other keys
+            problems += schema.validate(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
         return None
     table, found = schema.validate(schema.VARIANTS[kind], merged, place)
     problems += found
@@ -271,12 +269,3 @@ def _read_variant(name, own, common, folder, problems):
     else:
         return variant
     return None
-
-
-def _kind_problems(kind, merged, place):
-    """Faults of a variant of an unknown mechanism, also of its other keys if a mechanism is near."""
-    path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
-    wrong = [f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS))]
-    if meant is None:
-        return wrong
-    return wrong + schema.validate(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]

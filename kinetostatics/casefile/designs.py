@@ -104,7 +104,7 @@ def read_designs(tables, reference, variants, problems):
     found = {}
     for name, raw in tables.items():
         read, wrong = schema.validate(
-            schema.OneDesign, {"design": raw}, lambda keys, name=name: _design_keys(name, keys)
+            schema.OneDesign, {"design": raw}, lambda keys, name=name: ("design", name, *keys[1:])
         )
         problems += wrong
         if read is None:
@@ -122,10 +122,6 @@ def read_designs(tables, reference, variants, problems):
     return found
 
 
-def _design_keys(name, keys):
-    return "design", name, *keys[1:]
-
-
 def _problems(table, source, reference):
     """Faults of a design of right variants, each after its key."""
     scene, vary, varied = source.scene, table.vary, source
@@ -140,25 +136,18 @@ def _problems(table, source, reference):
         scene, varied, vary = start.scene, start.machine, start.vary | vary
     if vary:
         yield from _problem_of(".vary", parse_bounds, varied, vary)
-    for key, text in _outputs(table):
-        yield from _problem_of(key, _check_output, text, scene, reference.scene)
-    for number, text in enumerate(table.limits, 1):
-        yield from _problem_of(f".limits[{number}]", _check_limit, text, scene, reference.scene)
+    if isinstance(table, schema.FrontTable):
+        texts = {f".minimise[{at}]": text.strip().removeprefix("-") for at, text in enumerate(table.minimise, 1)}
+    else:
+        texts = {f".{key}": text for key in ("minimise", "maximise") if (text := getattr(table, key)) is not None}
+    limits = {f".limits[{number}]": text for number, text in enumerate(table.limits, 1)}
+    for key, text in (texts | limits).items():
+        yield from _problem_of(key, _require_output, text, key in limits, scene, reference.scene)
     if getattr(table, "robust", None) is not None:
         for path in table.robust.spreads:
             problem = checks.choice("parameter", path, tuple(scene.units))
             if problem:
                 yield f".robust.spreads: {problem}"
-
-
-def _outputs(table):
-    """Texts of the outputs to minimise or maximise, by key."""
-    if isinstance(table, schema.FrontTable):
-        return [
-            (f".minimise[{number}]", text.strip().removeprefix("-")) for number, text in enumerate(table.minimise, 1)
-        ]
-    pairs = [(f".{key}", getattr(table, key)) for key in ("minimise", "maximise")]
-    return [(key, text) for key, text in pairs if text is not None]
 
 
 def _problem_of(key, take, *given):
@@ -168,16 +157,9 @@ def _problem_of(key, take, *given):
         yield f"{key}: {_without_owner(error)}"
 
 
-def _check_limit(text, scene, reference):
-    _check_reference(parse_constraint(text, scene).output, reference)
-
-
-def _check_output(text, scene, reference):
-    _check_reference(parse_output(text, scene), reference)
-
-
-def _check_reference(output, reference):
-    """Raise an error for a ratio to an output that the reference lacks."""
+def _require_output(text, limit, scene, reference):
+    """Raise an error unless the scene has the output, or that of a limit, and for a ratio the reference too."""
+    output = parse_constraint(text, scene).output if limit else parse_output(text, scene)
     if output.ratio:
         output.of(reference)
 
@@ -211,17 +193,13 @@ def doubtful_tolerances(spreads, variants):
     for name, text in spreads.items():
         spread = parse_spread(text)
         size = max(abs(spread.median), spread.deviation) * base_factor(spread.unit)
-        nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
+        given = [item.parameters.get(name) for item in variants.values()]
+        derived = [item.scene.parameters.get(name) for item in variants.values()]  # for words in the file
+        values = [there if isinstance(value, str) else value for value, there in zip(given, derived, strict=True)]
+        nominal = [abs(value) for value in values if isinstance(value, float) and value]
         if nominal and all(not 1 / MAX_SIZE_RATIO < size / value < MAX_SIZE_RATIO for value in nominal):
             si = next(paths[name] for item in variants.values() if name in (paths := item.units))
             yield (
                 f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
                 f"{nominal[0]:.6g} {si}; is the unit right?"
             )
-
-
-def _nominal(variant, path):
-    """Value of a parameter, also of one that the file gives as a word; None if the variant has none."""
-    value = variant.parameters.get(path)
-    value = variant.scene.parameters.get(path) if isinstance(value, str) else value
-    return value if isinstance(value, float) else None

@@ -5,6 +5,7 @@ import re
 import tomllib
 import warnings
 from pathlib import Path
+from typing import Any
 
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
@@ -62,7 +63,9 @@ def read_toml(path):
     except (OSError, ValueError):  # no path; `read_text` reports it
         missing = False
     if missing:
-        names = f"{', '.join(shipped)}{_file_hint(path) or checks.hint(path.stem, shipped)}"
+        beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
+        hint = f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
+        names = f"{', '.join(shipped)}{hint or checks.hint(path.stem, shipped)}"
         raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
     text = read_text(path, MAX_CASE_BYTES)
     try:
@@ -71,28 +74,17 @@ def read_toml(path):
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:
         raw = None
-    if raw is None or _exceeds_depth(raw, MAX_DEPTH):
-        raise CaseError(path, [f"holds tables or lists within each other more than {MAX_DEPTH} deep"])
-    return path, raw
-
-
-def _file_hint(path):
-    """Question "did you mean" with a near file name in the same folder; empty if none is near."""
-    beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
-    return f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
-
-
-def _exceeds_depth(table, depth):
-    """Whether tables and lists are nested deeper than `depth`."""
-    level = [table]
-    for _ in range(depth):
+    level: list[Any] = [raw]
+    for _ in range(MAX_DEPTH if raw is not None else 0):
         level = [
             inner
             for outer in level
             for inner in (outer.values() if isinstance(outer, dict) else outer)
             if isinstance(inner, dict | list)
         ]
-    return bool(level)
+    if level:  # no table, or one deeper than that
+        raise CaseError(path, [f"holds tables or lists within each other more than {MAX_DEPTH} deep"])
+    return path, raw
 
 
 def inherit(common, own):

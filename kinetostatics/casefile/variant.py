@@ -11,7 +11,7 @@ import numpy as np
 
 from ..design import balancing
 from ..drive.motor import Motor
-from ..errors import CaseError
+from ..errors import CaseError, DriveError
 from ..numbers import checks
 from ..numbers.files import find_on_disk
 from ..numbers.formatting import normalise
@@ -147,6 +147,28 @@ def _bytes(item):
     if is_dataclass(item):
         return b"".join(_bytes(getattr(item, column.name)) for column in fields(item))
     return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
+
+
+def run_under_motors(variants, from_angle=0.0, progress=iter):
+    """Periodic running and start-up by the name of the variant, each under its own motor, and reasons for failures."""
+    from ..drive.savings import speed_hint
+    from ..drive.steady_running import steady
+    from ..drive.transient import start_to
+
+    runs: dict[str, typing.Any] = {}
+    starts: dict[str, typing.Any] = {}
+    reasons: dict[str, list[str]] = {}
+    for name in progress(variants):
+        variant = variants[name]
+        system = variant.scene, variant.motor, variant.flywheel
+        try:
+            runs[name], starts[name] = steady(*system), None
+            starts[name] = start_to(runs[name], *system, from_angle)
+        except DriveError as error:
+            reasons[name] = [str(error)]
+        if name in runs and (doubt := speed_hint(runs[name], variant.scene)):
+            reasons[name] = [doubt, *reasons.get(name, ())]
+    return runs, starts, reasons
 
 
 def make_variant(table, folder, tabulated):

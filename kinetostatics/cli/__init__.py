@@ -13,13 +13,13 @@ import sys
 import threading
 import warnings
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 
 from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
-from . import machine
 from .options import parser
-from .output import print_error
+from .output import print_error, wants_csv, wants_json
 
 
 class _Terminated(BaseException):
@@ -33,12 +33,18 @@ def main(arguments=None):
     """
     status, message = 0, ""
     try:
-        with _ending_in_order(), _warning_in_plain_words(), _drawing_to_files():
-            _require_output()
+        with _own_settings():
+            if sys.stdout is None:
+                raise ParameterError("standard output is closed; open it, or send it to /dev/null")
+            for stream in (sys.stdout, sys.stderr):
+                if hasattr(stream, "reconfigure"):
+                    stream.reconfigure(errors="replace")
             options = parser().parse_args(arguments)
-            machine.require_one_output(options)
+            if wants_json(options) and wants_csv(options):
+                raise ParameterError("--json and --csv: both would be written to standard output; give --csv a FILE")
             with _telling_new_folders(options):
-                options.command(options)
+                module, name = options.command
+                getattr(import_module(f"{__name__}.{module}"), name)(options)
             sys.stdout.flush()
     except BrokenPipeError:
         pass
@@ -54,61 +60,48 @@ def main(arguments=None):
         status, message = 143, "terminated"
     if status:
         print_error(f"kinetostatics: {message}")
-    _drop_what_cannot_be_written()
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:  # a closed pipe or full disk: the interpreter must not flush again at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return status
 
 
 @contextmanager
-def _warning_in_plain_words():
-    """Print warnings for users without the source line, and each hint once."""
-    before = warnings.formatwarning
-    told: set[str] = set()
+def _own_settings():
+    """Print warnings for users without the source line, each hint once; SIGTERM raises as Ctrl-C does; draw to files.
+
+    Figures use the backend agg instead of one for a screen in MPLBACKEND.
+    """
+    format_before, told = warnings.formatwarning, set()
+    backend_before = None if "matplotlib" in sys.modules else os.environ.get("MPLBACKEND")
+    in_main_thread = threading.current_thread() is threading.main_thread()
 
     def words(message, category, *place):
         if not issubclass(category, UserWarning):
-            return before(message, category, *place)
+            return format_before(message, category, *place)
         if isinstance(message, HintWarning):
             if message.hint in told:
                 return ""
             told.add(message.hint)
         return f"kinetostatics: warning: {message}\n"
 
-    warnings.formatwarning = words
-    try:
-        yield
-    finally:
-        warnings.formatwarning = before
-
-
-@contextmanager
-def _ending_in_order():
-    """SIGTERM ends the block by an exception, as Ctrl-C does; in the main thread only."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
     def terminate(*_):
         raise _Terminated
 
-    before = signal.signal(signal.SIGTERM, terminate)
+    warnings.formatwarning = words
+    if backend_before is not None:
+        os.environ["MPLBACKEND"] = "agg"
+    handler_before = signal.signal(signal.SIGTERM, terminate) if in_main_thread else None
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-@contextmanager
-def _drawing_to_files():
-    """Draw to files: use the backend agg instead of one for a screen in MPLBACKEND."""
-    before = os.environ.get("MPLBACKEND")
-    if before is None or "matplotlib" in sys.modules:
-        yield
-        return
-    os.environ["MPLBACKEND"] = "agg"
-    try:
-        yield
-    finally:
-        os.environ["MPLBACKEND"] = before
+        if in_main_thread:
+            signal.signal(signal.SIGTERM, handler_before)
+        if backend_before is not None:
+            os.environ["MPLBACKEND"] = backend_before
+        warnings.formatwarning = format_before
 
 
 WRITTEN = ("csv", "name", "out", "pdf", "plot")
@@ -124,21 +117,3 @@ def _telling_new_folders(options):
     outermost = {path: place for path, place in missing if place.exists() and not path.is_dir()}
     for place in dict.fromkeys(outermost.values()):
         print_error(f"made folder {place}")
-
-
-def _require_output():
-    """Require an open standard output; replace letters that it lacks."""
-    if sys.stdout is None:
-        raise ParameterError("standard output is closed; open it, or send it to /dev/null")
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
-
-
-def _drop_what_cannot_be_written():
-    """Drop output to a closed pipe or full disk, so that the interpreter does not flush it again at its end."""
-    try:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,4 +1,4 @@
-"""Commands list, new, run, explain, drive, plot, report, precision and stability; the others have modules of their own.
+"""The commands but sweep and design, which have modules of their own.
 
 A command imports its libraries when it runs, so that the others start fast.
 """
@@ -6,12 +6,12 @@ A command imports its libraries when it runs, so that the others start fast.
 import os
 import shlex
 import sys
+from math import isnan, nan
 from pathlib import Path
-from typing import Any
 
-from ..errors import CaseError, DriveError
+from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
-from . import machine
+from . import output
 from .output import (
     print_columns,
     print_error,
@@ -20,6 +20,7 @@ from .output import (
     require_writable,
     stack_variants,
     variant_words,
+    with_published,
     write_table,
 )
 
@@ -28,8 +29,6 @@ EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 
 CHECK_QUANTITY = "balancing_torque_by_power"
 """Quantity that the table omits, for the power balance states it."""
-STARTERS = ("crank-slider", "four-bar", "chain")
-"""Mechanisms of the case files to start from."""
 
 
 def list_cases(options):
@@ -40,12 +39,13 @@ def list_cases(options):
         {"name": name, "title": case["title"], "variants": list(case["variants"]), "path": str(path)}
         for name, (case, path) in raw.items()
     ]
-    if machine.wants_json(options):
-        machine.print_json("list", cases=cases)
-    elif machine.wants_csv(options):
+    if output.wants_json(options):
+        output.print_json("list", cases=cases)
+    elif output.wants_csv(options):
         import pandas as pd
 
-        machine.print_csv(pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases]))
+        table = pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases])
+        output.write_csv(options, table)
     else:
         breadth = max(map(len, raw)) + 2
         for case in cases:
@@ -58,63 +58,55 @@ def new(options):
     path = Path(options.name)
     if path.suffix.lower() != ".toml":
         path = Path(f"{options.name}.toml")
-        checks.require("new", _other_ending(Path(options.name), path))
-    checks.require("new", f"{path} is there already; give another name" if os.path.lexists(path) else None)
-    checks.require("new", files.write_problem(path))
+        kind = Path(options.name).suffix
+        if kind[1:2].isalpha():  # digits after a point are no ending: press 2.5
+            raise ParameterError(
+                f"new: {options.name} ends in {kind}, a case file in .toml: write "
+                f"{Path(options.name).with_suffix('.toml')}, or {path} if you mean it"
+            )
+    there = f"{path} is there already; give another name" if os.path.lexists(path) else None
+    checks.require("new", there or files.write_problem(path))
     with files.write_atomically(path) as temporary:
         Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
     name = f'"{path}"' if " " in str(path) else path
     print(f"wrote {path}; kinetostatics run {name}")
 
 
-def _other_ending(given, path):
-    """Fault of a name with the ending of another kind of file; digits after a point are no ending: press 2.5."""
-    kind = given.suffix
-    if not kind[1:2].isalpha():
-        return None
-    return f"{given} ends in {kind}, a case file in .toml: write {given.with_suffix('.toml')}, or {path} if you mean it"
-
-
 def run(options):
     from ..casefile.case import load_case
+    from ..results.losses import lose
+    from ..results.tables import SHOWN, extremes_by_name
+    from ..solution.uncertainty_table import largest_with_uncertainty
     from . import sweep_commands
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
     names = list(case.variants) if options.variant is None else [options.variant]
     given = sweep_commands.standard_uncertainties(case, names, options.uncertain or ())
-    solutions = {name: case.solve(name, options.angles) for name in machine.progress(options, names, "solving")}
-    if machine.wants_json(options):
-        found = {name: _run_results(solution, given[name]) for name, solution in solutions.items()}
-        machine.print_json("run", case=machine.case_header(case), angles=options.angles, variants=found)
-    elif not machine.quiet(options):
+    solutions = {name: case.solve(name, options.angles) for name in output.progress(options, names, "solving")}
+    if output.wants_json(options):
+        found = {}
+        for name, solution in solutions.items():
+            rows = extremes_by_name(solution).items()
+            extremes = {
+                key: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
+                for key, row in rows
+            }
+            found[name] = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
+            found[name]["extremes"] = extremes
+            if lose(solution):
+                lost = solution.losses
+                powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
+                found[name]["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
+            if given[name]:
+                largest = output.rows_by_name(largest_with_uncertainty(solution, given[name]))
+                found[name]["uncertainty"] = {"inputs": given[name], "largest": largest}
+        output.print_json("run", case=output.case_header(case), angles=options.angles, variants=found)
+    elif not output.quiet(options):
         _print_extremes(case, solutions, given, options)
     if options.csv:
         table = stack_variants({name: solution.frame() for name, solution in solutions.items()})
-        machine.write_csv(options, table)
-
-
-def _run_results(solution, given):
-    """Results of ``run`` for a variant, by the names of quantities in Python."""
-    from ..results.extremes import SHOWN, extremes_by_name
-    from ..results.losses import lose
-    from ..solution.uncertainty_table import largest_with_uncertainty
-
-    found = {
-        name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
-        for name, row in extremes_by_name(solution).items()
-    }
-    told = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual, "extremes": found}
-    if lose(solution):
-        lost = solution.losses
-        powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
-        told["losses"] = powers | {"at": machine.rows_by_name(lost.frame())}
-    if given:
-        told["uncertainty"] = {
-            "inputs": given,
-            "largest": machine.rows_by_name(largest_with_uncertainty(solution, given)),
-        }
-    return told
+        output.write_csv(options, table)
 
 
 def _print_extremes(case, solutions, given, options):
@@ -167,12 +159,12 @@ def plot(options):
     from ..views.figures import draw_case
 
     def progress(names):
-        return machine.progress(options, names, "drawing")
+        return output.progress(options, names, "drawing")
 
     paths = draw_case(load_case(options.case), options.out, options.format, options.only, progress)
-    if machine.wants_json(options):
-        machine.print_json("plot", files=paths)
-    machine.announce(options, *paths)
+    if output.wants_json(options):
+        output.print_json("plot", files=paths)
+    output.announce(options, *paths)
 
 
 def precision(options):
@@ -196,8 +188,8 @@ def precision(options):
     table = pd.read_csv(paths[0])
     groups = table.groupby(["variant", "quantity"], sort=False)
     fronts = {names: study.front(part) for names, part in groups}
-    if machine.wants_json(options):
-        machine.print_json("precision", case=machine.case_header(case), best=pd.concat(fronts.values()), files=paths)
+    if output.wants_json(options):
+        output.print_json("precision", case=output.case_header(case), best=pd.concat(fronts.values()), files=paths)
         return
     print_folded(f"{case.title}\n\nno other method is both faster and nearer than these; errors by the largest value:")
     for (variant, _), front in fronts.items():
@@ -220,44 +212,21 @@ def stability(options):
 
     paths = study.write(options.out, progress=print_error, page=stability_page)
     table = pd.read_csv(paths[1])
-    if machine.wants_json(options):
-        machine.print_json("stability", places=table, files=paths)
+    if output.wants_json(options):
+        output.print_json("stability", places=table, files=paths)
         return
     print_folded(
         f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n"
     )
-    print_table(_counts(table))
+    counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
+    good = [text for text in ("exact", "as near as the condition allows") if text in counts]
+    print_table(counts[[*good, *counts.columns.drop(good)]])
     near = table[table["method"].str.startswith("ours") & ~table["does"].isin(["exact", "does not give it"])]
     if len(near):
         print_folded("\nwhere ours is not exact:\n")
         print_table(near.set_index("place")[["method", "worst error", "condition there"]])
     print_folded("\nmethod by method at each place:")
     print(*paths, sep="\n")
-
-
-def _counts(table):
-    """Number of places by method and outcome, good outcomes first."""
-    counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
-    good = [text for text in ("exact", "as near as the condition allows") if text in counts]
-    return counts[[*good, *counts.columns.drop(good)]]
-
-
-def compare(options):
-    from .compare import compare
-
-    compare(options)
-
-
-def sweep(options):
-    from .sweep_commands import sweep_command
-
-    sweep_command(options)
-
-
-def design(options):
-    from .design import design
-
-    design(options)
 
 
 def report(options):
@@ -275,9 +244,8 @@ def report(options):
 
 def drive(options):
     from ..casefile.case import load_case
-    from ..drive.savings import energy_table, running_table, speed_hint
-    from ..drive.steady_running import steady
-    from ..drive.transient import start
+    from ..casefile.variant import run_under_motors
+    from ..drive.savings import energy_table, running_table
 
     case = load_case(options.case)
     checks.require("--out", files.folder_write_problem(options.out) if options.out else None)
@@ -286,58 +254,162 @@ def drive(options):
     driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
     if not driven:
         raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
-    runs: dict[str, Any] = {}
-    starts: dict[str, Any] = {}
-    reasons: dict[str, str] = {}
-    for name in machine.progress(options, driven, "running"):
-        variant = driven[name]
-        system = variant.scene, variant.motor, variant.flywheel
-        try:
-            runs[name], starts[name] = steady(*system), None
-            starts[name] = start(*system, from_angle=options.start)
-        except DriveError as error:
-            reasons[name] = str(error)
-    for name, run in runs.items():
-        if doubt := speed_hint(run, driven[name].scene):
-            reasons[name] = f"{doubt}\n{reasons[name]}" if name in reasons else doubt
+    runs, starts, told = run_under_motors(
+        driven, options.start, lambda names: output.progress(options, names, "running")
+    )
+    reasons = {name: "\n".join(texts) for name, texts in told.items()}
     if not runs:
         raise DriveError("\n".join(f"{name}: {reason}" for name, reason in reasons.items()))
     tables = {"running": running_table(runs, starts), "energy_per_turn": energy_table(runs)}
-    paths = _write_results(case, runs, options.out) if options.out else []
-    if machine.wants_json(options):
-        found = {key: machine.rows_by_name(table) for key, table in tables.items()}
-        machine.print_json("drive", case=machine.case_header(case), **found, reasons=reasons, files=paths)
-    elif not machine.quiet(options):
-        _print_drive(case, tables, reasons, paths)
+    paths = []
+    if options.out:
+        from ..views.figures import draw_drive
+
+        path = Path(options.out) / f"{case.path.stem}_drive.csv"
+        write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
+        paths = [path, *draw_drive(case, runs, options.out)]
+    if output.wants_json(options):
+        found = {key: output.rows_by_name(table) for key, table in tables.items()}
+        output.print_json("drive", case=output.case_header(case), **found, reasons=reasons, files=paths)
+    elif not output.quiet(options):
+        print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
+        print_table(tables["running"].rename_axis("over the period"))
+        print("\nwhere the energy of a turn goes\n")
+        print_table(tables["energy_per_turn"].rename_axis("energy per turn"))
+        for name, reason in reasons.items():
+            print_folded(f"\n{name}: {reason}")
+        if paths:
+            print("", *(f"wrote {path}" for path in paths), sep="\n")
     if options.csv:
-        machine.write_csv(options, _drive_rows(tables))
+        import pandas as pd
+
+        rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
+        whole = pd.concat(rows)
+        whole.insert(0, "table", whole.pop("table"))
+        output.write_csv(options, whole)
 
 
-def _print_drive(case, tables, reasons, paths):
-    print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
-    print_table(tables["running"].rename_axis("over the period"))
-    print("\nwhere the energy of a turn goes\n")
-    print_table(tables["energy_per_turn"].rename_axis("energy per turn"))
-    for name, reason in reasons.items():
-        print_folded(f"\n{name}: {reason}")
-    if paths:
-        print("", *(f"wrote {path}" for path in paths), sep="\n")
+RESIDUAL = "power residual"
 
 
-def _drive_rows(tables):
-    """Both tables as one, a row for each quantity, with the name of the table in the first column."""
-    import pandas as pd
+def compare(options):
+    from ..casefile.case import load_case
+    from ..results.comparison import Comparison
 
-    rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
-    whole = pd.concat(rows)
-    whole.insert(0, "table", whole.pop("table"))
-    return whole
+    case = load_case(options.case)
+    require_writable(case, "--csv", options.csv, (".csv",))
+    others = [name for name in case.variants if name != case.reference]
+    names = others if options.variant is None else [options.variant]
+    if not names:
+        raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
+    for name in names:
+        case.variant(name)
+    reference = case.solve(case.reference)
+    found = {
+        name: Comparison(reference, case.solve(name), (case.reference, name))
+        for name in output.progress(options, names, "comparing")
+    }
+    special = {
+        "balancing": ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
+        "linkage": ("swing and transmission", case.linkage_table(), case.published.linkage),
+    }
+    special = {key: item for key, item in special.items() if item[1] is not None}
+    if output.wants_json(options):
+        ratios = "reference / variant; above 1 the variant has less"
+        variants = {
+            name: output.rows_by_name(_with_roles(case, name, item).drop(columns=["reference_name", "variant_name"]))
+            for name, item in found.items()
+        }
+        tables = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
+        output.print_json("compare", case=output.case_header(case), ratios=ratios, variants=variants, **tables)
+    elif not output.quiet(options):
+        _print_comparison(case, found, special)
+    if options.csv:
+        import pandas as pd
+
+        output.write_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
 
 
-def _write_results(case, runs, folder):
-    """Write results over the turn as CSV, and the figures; returns the paths."""
-    from ..views.figures import draw_drive
+def _with_roles(case, name, comparison):
+    """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
+    table = case.with_published(comparison.frame())
+    table = table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
+    table.insert(1, "variant_name", name)
+    table.insert(1, "reference_name", case.reference)
+    return table
 
-    path = Path(folder) / f"{case.path.stem}_drive.csv"
-    write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
-    return [path, *draw_drive(case, runs, folder)]
+
+def _print_comparison(case, found, special):
+    from ..results.comparison import left_out
+
+    tables = {name: {row.label: row for row in comparison.rows} for name, comparison in found.items()}
+    published = [case.published_of(list(table)) for table in tables.values()]
+    print_folded(case.title)
+    if case.published.note:
+        print_folded("\n" + " ".join(case.published.note.split()))
+    for heading, table, figures in special.values():
+        print_folded(f"\n{heading}{'; published figures in brackets' if figures else ''}\n")
+        print_table(with_published(table, figures, case.path))
+    residual = max(max(table[RESIDUAL].pair) for table in tables.values())
+    labels = [label for label in _in_order([list(table) for table in tables.values()]) if label != RESIDUAL]
+    first = {label: next(table[label] for table in tables.values() if label in table) for label in labels}
+    values = {label: [row.pair[0], *_of_all(tables, label, "pair")] for label, row in first.items()}
+    bounds = {label: [row.bounds[0], *_of_all(tables, label, "bounds")] for label, row in first.items()}
+    ratios = {label: _of_all(tables, label, "ratio") for label in labels}
+    bounds_of_ratios = {label: _of_all(tables, label, "bound_of_ratio") for label in labels}
+    more = left_out(values)
+    shown = [label for label in labels if label not in more]
+    heads = ("quantity", shown), ("unit", [first[label].unit for label in shown])
+    columns = _columns([case.reference, *tables], shown, values, bounds)
+    if len(tables) == 1:
+        (name,) = tables
+        print_folded(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
+        columns += _columns(["ratio"], shown, ratios, bounds_of_ratios)
+        texts = [("published", [published[0].get(label, "") for label in shown])] if published[0] else []
+        print_columns(*heads, *columns, *texts)
+    else:
+        print_folded(f"\nvalues of {case.reference} and of what it is compared with\n")
+        print_columns(*heads, *columns, *_published(shown, case.published.value))
+        print_folded(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
+        shown = [label for label in shown if not all(map(isnan, ratios[label]))]
+        columns = _columns(tables, shown, ratios, bounds_of_ratios)
+        print_columns(("quantity", shown), *columns, *_published(shown, case.published.ratio))
+    if more:
+        print_folded(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
+    print_folded(
+        f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power"
+    )
+
+
+def _of_all(tables, label, name):
+    """Attribute of a row in each table, of a pair its second value; NaN for tables without the row."""
+    found = [getattr(table[label], name) if label in table else nan for table in tables.values()]
+    return [item[1] if isinstance(item, tuple) else item for item in found]
+
+
+def _columns(headings, shown, values, bounds):
+    """Columns to print: heading, values and bounds of the shown rows."""
+    return [
+        (heading, [values[label][at] for label in shown], [bounds[label][at] for label in shown])
+        for at, heading in enumerate(headings)
+    ]
+
+
+def _published(shown, figures):
+    """Column of published figures, if there are any."""
+    texts = [figures.get(label, "") for label in shown]
+    return [("published", texts)] if any(texts) else []
+
+
+def _in_order(lists):
+    """Names of all lists, each after its predecessor in its own list."""
+    found: list[str] = []
+    for names in lists:
+        place = 0
+        for name in names:
+            if name in found:
+                place = found.index(name) + 1
+            else:
+                found.insert(place, name)
+                place += 1
+    return found

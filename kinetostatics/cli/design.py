@@ -14,7 +14,7 @@ from ..design.pareto_front import Front
 from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
-from . import machine
+from . import output
 from .output import print_error, print_folded, print_table, require_writable
 
 SPREAD_SAMPLES = 2048
@@ -34,12 +34,16 @@ def design(options):
     if any(wrong):
         raise CaseError(case.path, [problem for problem in wrong if problem])
     _require_writable(case, names, options)
-    if not machine.quiet(options):
+    if not output.quiet(options):
         print_folded(case.title)
     found = {}
     for name in names:
-        found[name] = _search(case.designs[name], options)
-        if not machine.quiet(options):
+        print_error(f"searching for {name}")
+        try:
+            found[name] = case.designs[name].find(starts=options.starts, progress=output.shows_progress(options))
+        except DesignError as error:
+            raise DesignError(f"{name}: {error}", error.values) from None
+        if not output.quiet(options):
             _print_design(case.designs[name], found[name])
             sys.stdout.flush()
     written = []
@@ -47,15 +51,28 @@ def design(options):
         from ..views.figures import draw_designs
 
         written += draw_designs(case, found, options.plot, options.format)
-        machine.announce(options, "", *written)
+        output.announce(options, "", *written)
     if options.out:
         written.append(write_found(options.out, case, found))
-        machine.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
-    if machine.wants_json(options):
+        output.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
+    if output.wants_json(options):
         results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
-        machine.print_json("design", case=machine.case_header(case), found=results, files=written)
+        output.print_json("design", case=output.case_header(case), found=results, files=written)
     if options.csv:
-        machine.write_csv(options, _as_rows(found))
+        import pandas as pd
+
+        rows = []
+        for name, item in found.items():
+            tables: dict[str, Any] = (
+                {"front": item.table}
+                if isinstance(item, Front)
+                else {"output": item.report(), "number": item.numbers()}
+            )
+            for kind, table in tables.items():
+                rows.append(table.rename_axis("name").reset_index().assign(design=name, kind=kind))
+        whole = pd.concat(rows)
+        first = ["design", "kind"]
+        output.write_csv(options, whole[[*first, *whole.columns.drop(first)]])
 
 
 def _as_json(item, found):
@@ -66,28 +83,13 @@ def _as_json(item, found):
         "goal": str(found.goal),
         "source": item.source,
         "reference": item.reference,
-        "outputs": machine.rows_by_name(found.report()),
-        "numbers": machine.rows_by_name(found.numbers()),
+        "outputs": output.rows_by_name(found.report()),
+        "numbers": output.rows_by_name(found.numbers()),
         "evaluations": found.evaluations,
         "ends_of_searches": found.starts,
         "bound": found.bound,
         "power_residual": found.scene.solve(720).power_residual,
     }
-
-
-def _as_rows(found):
-    """All results as one table, a row for each number."""
-    import pandas as pd
-
-    rows = []
-    for name, item in found.items():
-        front = isinstance(item, Front)
-        tables = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
-        for kind, table in tables.items():
-            table = table.rename_axis("name").reset_index()
-            rows.append(table.assign(design=name, kind=kind))
-    whole = pd.concat(rows)
-    return whole[["design", "kind", *(column for column in whole if column not in ("design", "kind"))]]
 
 
 def _require_writable(case, names, options):
@@ -101,14 +103,6 @@ def _require_writable(case, names, options):
         items = [case.designs[name] for name in names]
         scenes = {name: case.variant(name).scene for item in items for name in (item.reference, item.source)}
         case_text.tables(Path(options.out), scenes | {item.name: scenes[item.source] for item in items})
-
-
-def _search(item, options):
-    print_error(f"searching for {item.name}")
-    try:
-        return item.find(starts=options.starts, progress=machine.shows_progress(options))
-    except DesignError as error:
-        raise DesignError(f"{item.name}: {error}", error.values) from None
 
 
 def _print_design(item, found):
@@ -125,22 +119,6 @@ def _print_design(item, found):
     print_table(report.assign(binds=binds).rename(columns={"price": gain}))
     print()
     print_table(found.numbers().rename(columns={"price": gain}))
-    print_folded(f"\n{_search_summary(found)}")
-    if item.spread is not None:
-        print_folded(_spread_summary(item, found))
-
-
-def _spread_summary(item, found):
-    """Quantile of a robust design over more machines than in its search."""
-    output = item.table.minimise or item.table.maximise
-    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
-    quantile = item.spread.quantile
-    value = np.quantile(values, quantile)
-    return f"quantile {quantile:g} of {output} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}"
-
-
-def _search_summary(found):
-    """Evaluations, agreement of searches, bounds, and power balance of a result."""
     lines = [f"{found.evaluations} evaluations of all derivatives"]
     if len(found.starts) > 1:
         best = min(found.starts)
@@ -151,4 +129,9 @@ def _search_summary(found):
     if np.isfinite(found.bound):
         lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
     lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
-    return "\n".join(lines)
+    if item.spread is not None:  # over more machines than in the search
+        goal = item.table.minimise or item.table.maximise
+        values = over_spread(found.scene, goal, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
+        value, share = np.quantile(values, item.spread.quantile), f"{item.spread.quantile:g}"
+        lines.append(f"quantile {share} of {goal} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}")
+    print_folded("\n" + "\n".join(lines))

@@ -1,11 +1,20 @@
-"""Tables and words on the command line: plain text, as wide as the terminal."""
+"""Output of commands: tables and words as wide as the terminal, or numbers in full by ``--json`` and ``--csv``.
 
+With these, standard output holds nothing else. NaN (no value) is null in JSON and empty in CSV; infinity is the text
+"Infinity" in JSON.
+"""
+
+import json
+import math
 import shutil
 import sys
 import textwrap
+from collections.abc import Mapping
+from pathlib import Path
 
 from ..numbers import checks, files
 from ..numbers.formatting import angle, number, parse_heading
+from ..version import __version__
 
 STDOUT = "-"
 """File name for standard output."""
@@ -72,12 +81,18 @@ def print_table(table, bounds=None):
 
 def print_columns(*columns):
     """Print a table, as `print_table` does, from columns (heading, values[, bounds on their errors])."""
+    from tabulate import tabulate
+
     texts = []
     for heading, values, *bounds in columns:
         errors = bounds[0] if bounds else [0.0] * len(values)
         texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
     for place, part in enumerate(_parts(texts, width())):
-        print(("\n" if place else "") + _joined_lines(part))
+        rules = ["-" * _widest([heading, *cells]) for heading, cells in part]
+        rows = [[heading for heading, _ in part], rules, *zip(*(cells for _, cells in part), strict=True)]
+        alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(part)]
+        whole = tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
+        print(("\n" if place else "") + whole)
 
 
 def with_published(table, published, path):
@@ -154,15 +169,6 @@ def _of_words(column):
     return heading in WORD_COLUMNS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
 
 
-def _joined_lines(columns):
-    from tabulate import tabulate
-
-    rules = ["-" * _widest([heading, *cells]) for heading, cells in columns]
-    rows = [[heading for heading, _ in columns], rules, *zip(*(cells for _, cells in columns), strict=True)]
-    alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(columns)]
-    return tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
-
-
 def stack_variants(frames):
     """Tables by variant as one, with the variant in the first column."""
     import pandas as pd
@@ -170,3 +176,77 @@ def stack_variants(frames):
     table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
     table.insert(0, "variant", table.pop("variant"))
     return table
+
+
+def wants_json(options):
+    return getattr(options, "json", False)
+
+
+def wants_csv(options):
+    return getattr(options, "csv", None) == STDOUT
+
+
+def quiet(options):
+    """Whether standard output carries JSON or CSV."""
+    return wants_json(options) or wants_csv(options)
+
+
+def announce(options, *lines):
+    """Print lines for people."""
+    if not quiet(options):
+        print(*lines, sep="\n")
+
+
+def print_json(command, **parts):
+    print(json.dumps(_jsonable({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
+
+
+def write_csv(options, table):
+    """Write a table to standard output or a file, as ``--csv`` says."""
+    if wants_csv(options):
+        sys.stdout.write(table.to_csv(index=False))
+    elif options.csv:
+        announce(options, "", write_table(table, options.csv))
+
+
+def case_header(case):
+    """Title, path and reference of a case."""
+    return {"title": case.title, "path": case.path, "reference": case.reference}
+
+
+def rows_by_name(table):
+    """Rows of a pandas DataFrame as dicts, by its index."""
+    return {str(name): row for name, row in zip(table.index, table.to_dict("records"), strict=True)}
+
+
+def shows_progress(options):
+    """Whether to show progress: standard error is a terminal."""
+    return not quiet(options) and sys.stderr is not None and sys.stderr.isatty()
+
+
+def progress(options, names, label):
+    """Yield the names, with a progress bar on a terminal."""
+    if not shows_progress(options):
+        yield from names
+        return
+    from tqdm import tqdm
+
+    bar = tqdm(list(names), desc=label, leave=False)
+    for name in bar:
+        bar.set_postfix_str(str(name))
+        yield name
+
+
+def _jsonable(item):
+    """The item with values that JSON has."""
+    if isinstance(item, Mapping):
+        return {str(key): _jsonable(value) for key, value in item.items()}
+    if hasattr(item, "columns"):  # a pandas DataFrame
+        return [_jsonable(row) for row in item.to_dict("records")]
+    if isinstance(item, list | tuple | set):
+        return [_jsonable(value) for value in item]
+    if hasattr(item, "tolist"):
+        return _jsonable(item.tolist())
+    if isinstance(item, float):
+        return item if math.isfinite(item) else None if math.isnan(item) else f"{'-' if item < 0 else ''}Infinity"
+    return str(item) if isinstance(item, Path) else item

@@ -1,7 +1,7 @@
 """Command ``sweep``, outputs of many designs, and ``run --uncertain``, the uncertainty of the largest values."""
 
 import itertools
-from functools import partial
+from collections import Counter
 from pathlib import Path
 
 from ..errors import ParameterError
@@ -9,7 +9,7 @@ from ..numbers import checks, files, spreads
 from ..numbers.formatting import parse_heading, round_bound_up, round_uncertainty_up
 from ..numbers.units import factor, to_si
 from ..solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
-from . import machine
+from . import output
 from .output import print_folded, print_table, require_writable, variant_words, write_table
 
 OUTPUTS = ("mean_absolute balancing_torque", "largest O")
@@ -20,7 +20,7 @@ TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
-def sweep_command(options):
+def sweep(options):
     from ..casefile.case import load_case
     from ..results.reductions import parsed
     from ..sweeps import designs, sweeps
@@ -31,7 +31,11 @@ def sweep_command(options):
     require_writable(case, "--csv", options.csv, (".csv",))
     require_writable(case, "--plot", options.plot, FIGURE_ENDINGS)
     checks.require("--out", files.folder_write_problem(folder) if folder else None)
-    spreads = _spreads(options.vary)
+    pairs = list(_pairs(options.vary, "cannot read", 'path=spread, "spring.stiffness=600..900 kN/m:40"'))
+    twice = [path for path, count in Counter(path for path, _ in pairs).items() if count > 1]
+    if twice:
+        raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
+    spreads = dict(pairs)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
     names = sweeps.names_of(case, options.variant, options.reference)
     varied = case.variant(names[0])
@@ -47,7 +51,7 @@ def sweep_command(options):
         angles=options.angles,
         workers=options.workers,
         folder=folder,
-        progress=machine.shows_progress(options),
+        progress=output.shows_progress(options),
     )
     written: list[str | Path] = []
     lines: list[str] = []
@@ -59,19 +63,17 @@ def sweep_command(options):
 
         written.append(sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied)))
         lines.append(str(written[-1]))
-    if machine.wants_json(options):
+    if output.wants_json(options):
         failed = int((found[sweeps.FAILED] != "").sum())
         sides = dict(zip(("variant", "reference"), names, strict=True))
-        machine.print_json(
-            "sweep", case=machine.case_header(case), **sides, failed=failed, designs=found, files=written
-        )
-    elif not machine.quiet(options):
+        output.print_json("sweep", case=output.case_header(case), **sides, failed=failed, designs=found, files=written)
+    elif not output.quiet(options):
         print_folded(f"{case.title}: {_arguments(names, wanted, options)}\n")
         _print_sweep(found, wanted, varied)
         for line in lines:
             print(line)
     if options.csv:
-        machine.write_csv(options, found)
+        output.write_csv(options, found)
     reasons = found[sweeps.FAILED]
     checks.require("sweep", None if (reasons == "").any() else f"all {len(found)} designs failed: {reasons.iloc[0]}")
 
@@ -107,20 +109,13 @@ def _print_sweep(found, wanted, varied):
         print_folded(f"\n{count} failed: {reason}")
 
 
-def _spreads(texts):
-    pairs = [_spread(text) for text in texts]
-    paths = [path for path, _ in pairs]
-    twice = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
-    if twice:
-        raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
-    return dict(pairs)
-
-
-def _spread(text):
-    path, equals, spread = text.partition("=")
-    if not equals:
-        raise ParameterError(f'cannot read {text!r}; write path=spread, "spring.stiffness=600..900 kN/m:40"')
-    return path.strip(), spread.strip()
+def _pairs(texts, problem, form):
+    """Pairs of options as path=text; `problem` begins the error, `form` says how to write them."""
+    for text in texts:
+        path, equals, told = text.partition("=")
+        if not equals:
+            raise ParameterError(f"{problem} {text!r}; write {form}")
+        yield path.strip(), told.strip()
 
 
 OF_THE_CASE = "tolerances"
@@ -132,20 +127,26 @@ def standard_uncertainties(case, names, texts):
     """Standard uncertainties in SI by variant and path."""
     units = {name: case.variant(name).scene.units for name in names}
     of_case = OF_THE_CASE in texts
-    pairs = [_split_uncertainty(text) for text in texts if text != OF_THE_CASE]
-    told = {path: partial(_size, text) for path, text in pairs}
-    paths = [path for path, _ in pairs]
+    form = f'path=size, "crank_length=0.01 mm", or "{OF_THE_CASE}" for those of the case file'
+    pairs = list(_pairs((text for text in texts if text != OF_THE_CASE), f"{OPTION}: cannot read", form))
+    told, counts = dict(pairs), Counter(path for path, _ in pairs)
     problems = [
         f"{case.path} has no [tolerances]" if of_case and not case.tolerances else None,
-        *(f"{path} is given more than once" for path in told if paths.count(path) > 1),
+        *(f"{path} is given more than once" for path in told if counts[path] > 1),
         *(checks.choice("parameter", path, tuple(dict.fromkeys(itertools.chain(*units.values())))) for path in told),
     ]
-    read = ({path: partial(_deviation, text) for path, text in case.tolerances.items()} if of_case else {}) | told
+    tolerances = case.tolerances if of_case else {}
     found: dict[str, dict[str, float]] = {name: {} for name in names}
     for name, known in units.items():
-        for path in filter(read.__contains__, known):
+        for path in filter((tolerances | told).__contains__, known):
             try:
-                found[name][path] = read[path](known[path])
+                if path in told:
+                    found[name][path] = to_si(told[path], known[path])
+                    if found[name][path] < 0.0:
+                        raise ValueError(f"must not be negative, got {told[path]!r}")
+                else:
+                    spread = spreads.parse_spread(tolerances[path])
+                    found[name][path] = spread.deviation * factor(spread.unit, known[path])
             except ValueError as error:
                 problems.append(f"{path} {error}")
     checks.require(OPTION, *dict.fromkeys(problems))
@@ -167,36 +168,9 @@ def print_uncertainty(solution, given):
     }
     shown = table.assign(largest=[format_with_uncertainty(*pair) for pair in both], **bounds)
     print()
-    print_table(shown.rename(columns=columns), _two_digit_bounds(table))
+    two_digits = (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
+    print_table(shown.rename(columns=columns), two_digits)
     print_folded(
         f"\nlargest values, and how sure they are: standard uncertainty from that of {', '.join(sorted(given))}, "
         "independent and to first order, and the proven bound on rounding added to it, rounded up to two digits"
     )
-
-
-def _two_digit_bounds(table):
-    """Error bounds that make shares print with two digits."""
-    return (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
-
-
-def _split_uncertainty(text):
-    path, equals, size = text.partition("=")
-    if not equals:
-        raise ParameterError(
-            f'{OPTION}: cannot read {text!r}; write path=size, "crank_length=0.01 mm", or "{OF_THE_CASE}" for those of '
-            "the case file"
-        )
-    return path.strip(), size.strip()
-
-
-def _size(text, unit):
-    size = to_si(text, unit)
-    if size < 0.0:
-        raise ValueError(f"must not be negative, got {text!r}")
-    return size
-
-
-def _deviation(text, unit):
-    """Standard deviation of a spread, in SI."""
-    spread = spreads.parse_spread(text)
-    return spread.deviation * factor(spread.unit, unit)

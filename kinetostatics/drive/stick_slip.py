@@ -89,10 +89,10 @@ def sense_from_rest(driven, angle):
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0
 
 
-def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Motion:
+def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None, dense=True) -> Motion:
     """Motion from a crank angle and speed until a time, a target speed, a standstill, or until it sticks.
 
-    `sense` is the sense of a start from rest; without it the net torque decides.
+    `sense` is the sense of a start from rest; without it the net torque decides. `path` needs a dense motion.
     """
     state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
     direction = math.copysign(1.0, speed) if speed else sense or sense_from_rest(driven, angle)
@@ -112,7 +112,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
     while direction and len(stretches) < MAX_STRETCHES:
         whole = math.floor(state[0] / driven.period) * driven.period
         shift, state[0] = shift + whole, state[0] - whole
-        found, what, crossed = _integrate_stretch(driven, state, direction, end - time, target, crossed, count)
+        found, what, crossed = _integrate_stretch(driven, state, direction, end - time, target, crossed, count, dense)
         if what == "lost":
             break
         stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
@@ -135,7 +135,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
     return Motion(np.array(times), np.array(rows).T, path, reversals, ended, starts)
 
 
-def _integrate_stretch(driven, state, direction, time, target, crossed, count):
+def _integrate_stretch(driven, state, direction, time, target, crossed, count, dense):
     """Motion of one stretch, what ended it, and the sign after its end of a force that crossed zero, by row."""
     from scipy.integrate import solve_ivp
 
@@ -167,7 +167,7 @@ def _integrate_stretch(driven, state, direction, time, target, crossed, count):
         events.append(_event(contact_force(row, side), 0))
         names.append("kink")
     options = {"rtol": RELATIVE_TOLERANCE, "atol": ABSOLUTE_TOLERANCE, "method": "DOP853"}
-    found = solve_ivp(change, (0.0, time), state, dense_output=True, events=events, **options)
+    found = solve_ivp(change, (0.0, time), state, dense_output=dense, events=events, **options)
     if found.status < 0 or not np.isfinite(found.y).all():
         return found, "lost", None
     if found.status == 0:

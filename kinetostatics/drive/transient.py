@@ -118,12 +118,17 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     >>> print(f"{motion.time[-1]:.4f} s")
     0.4189 s
     """
+    return start_to(None, scene, motor, flywheel, from_angle, until, engine=engine)
+
+
+def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=None):
+    """`start` to a periodic running; if it is not None, the motion is known at the times of its steps only."""
     if not isinstance(motor, Motor):
         checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
     driven, flywheel, angle, _ = _initial_state("start", scene, motor, flywheel, from_angle, 0.0, engine)
     target = None
     if until is None:
-        target = STARTED_SPEED_RATIO * steady(scene, motor, flywheel, engine=engine).mean_speed
+        target = STARTED_SPEED_RATIO * (running or steady(scene, motor, flywheel, engine=engine)).mean_speed
     else:
         until, wrong = checks.single_number("until", until, "s", low=0.0, strict=True)
         checks.require("start", wrong)
@@ -132,7 +137,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     loads = float(np.abs(driven.at_acceleration(places, 0.0 * places, 0.0).torque).max())
     if not pushing * driven.direction > MIN_TORQUE_RATIO * max(loads, abs(float(driven.motor_torque(0.0)))):
         raise _start_error(driven, angle, "it does not start")
-    found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True)
+    found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True, dense=running is None)
     if found.events[-1].name == "reversal":
         raise _start_error(driven, found.events[-1].crank_angle, f"it starts and stops after {found.time[-1]:.6g} s")
     return found
@@ -185,13 +190,13 @@ def _start_error(driven, angle, what):
     )
 
 
-def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
+def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False, dense=True):
     """`Trajectory` from an angle and speed until a time, a standstill, or a target speed."""
     driven.prepare(max(abs(speed), abs(target or 0.0)))
     fastest = max(abs(speed if target is None else target), 1e-3)
     end = until if isinstance(until, float) else MAX_TURNS * TURN / fastest
     sense = driven.direction if one_way else None
-    found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
+    found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense, dense)
     time, rows = found.time, found.rows
     if found.end == "lost":
         angle, speed = rows[:2, -1]

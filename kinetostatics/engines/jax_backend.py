@@ -186,7 +186,8 @@ class MixedPrecision:
         results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
         if self._loop is None:
             self._loop = load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
-        numba_backend.run_loop(self._loop, *turn, parameters, rows, results)
+        angle, sine, cosine = turn
+        numba_backend.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 

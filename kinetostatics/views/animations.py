@@ -1,7 +1,6 @@
 """Animation of the mechanism, with arrows for the reactions at its joints."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from contextlib import suppress
 
 import numpy as np
 
@@ -9,12 +8,9 @@ from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
-from .canvas import ACCENT, axes, display_unit, single_solution
-from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_equal_scales
-from .strokes import set_points, stroke_artist
-
-UNCLIPPED_SHARE = 0.9
-"""Share of the poses in which an unbounded reaction has its arrow in full length."""
+from .canvas import ACCENT, axes, display_unit, set_equal_scales, single_solution
+from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_points, stroke_artist
+from .strokes import UNCLIPPED_SHARE
 
 
 def animation(solution, joints=None, frames=72, interval=50, ax=None):
@@ -61,67 +57,36 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
         None if joints else "joints must name at least one reaction",
         interval=(interval, "ms", {"low": 0.0, "strict": True}),
     )["interval"]
-    solution = _over_period(solution, frames)
-    count, shape = solution.crank_angle.size, draw_fixed_parts(ax, solution)
-    links, marks = _moving_links(ax, shape, solution), _moving_marks(ax, shape, solution)
-    moving = [links, marks, _moving_arrows(ax, solution, joints), _moving_caption(ax, solution)]
-    paths = np.concatenate([*marks.paths, *links.paths], axis=1)
+    angle, period = np.sort(solution.crank_angle), solution.period
+    step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
+    if angle[-1] - angle[0] + 1.5 * step < period:
+        with suppress(ParameterError):
+            solution = solution.at(angle[0] + np.linspace(0.0, period, max(frames, 2), endpoint=False))
+    move, paths = _moving_parts(ax, draw_fixed_parts(ax, solution), solution, joints)
     set_equal_scales(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
-
-    def draw(step):
-        for part in moving:
-            part.move(step)
-        return [one for part in moving for one in part.artists]
-
+    count = solution.crank_angle.size
     steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
-    return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
+    return FuncAnimation(ax.figure, move, frames=steps, interval=interval)
 
 
-class _MovingParts(NamedTuple):
-    """Moving parts of an animation: artists, a function that moves them to a step, and their points (2, K)."""
+def _moving_parts(ax, shape, solution, joints):
+    """A function that moves all parts to a step and returns their artists, and the points (2, K) of the parts.
 
-    artists: list
-    move: Callable[[int], None]
-    paths: list
-
-
-def _moving_links(ax, shape, solution):
-    """Links, counterweights and signs of loads."""
+    Of the arrows of reactions the largest is as long as the crank, with its size in the title.
+    """
+    made = solution.mechanism
     strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
-    parts = [stroke_artist(ax, stroke, 1.0) for stroke in strokes]
-
-    def move(step):
-        for part, stroke in zip(parts, strokes, strict=True):
-            set_points(part, stroke.points[..., step])
-
-    return _MovingParts(parts, move, [stroke.points.reshape(2, -1) for stroke in strokes])
-
-
-def _moving_marks(ax, shape, solution):
-    """Joints and mass centres."""
-    moving = [name for name, point in solution.mechanism.joints.items() if point.link != FRAME]
-    spots = [(name, {**PIN, "zorder": 4}) for name in moving]
+    links = [stroke_artist(ax, stroke, 1.0) for stroke in strokes]
+    spots = [(name, {**PIN, "zorder": 4}) for name, point in made.joints.items() if point.link != FRAME]
     spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
     marks = [ax.plot([], [], **style)[0] for _, style in spots]
     positions = [solution.position(name) for name, _ in spots]
-
-    def move(step):
-        for mark, position in zip(marks, positions, strict=True):
-            mark.set_data(position[:, [step]])
-
-    return _MovingParts(marks, move, positions)
-
-
-def _moving_arrows(ax, solution, joints):
-    """Reactions as arrows, the largest as long as the crank, with its size in the title."""
-    made = solution.mechanism
     forces = [_clipped_reaction(solution, joint) for joint in joints]
     largest = max(_largest_finite(magnitude(force)) for force in forces)
     length = _largest_finite(magnitude(solution.position(first_moving_joint(made))))
     starts = [solution.position(made.outputs[joint].at or joint) for joint in joints]
     arrows = ax.quiver(
-        *np.zeros((2, len(joints))),
-        *np.zeros((2, len(joints))),
+        *np.zeros((4, len(joints))),
         angles="xy",
         scale_units="xy",
         scale=(largest or 1.0) / length,
@@ -131,34 +96,19 @@ def _moving_arrows(ax, solution, joints):
     )
     factor, shown = display_unit("N", [largest])
     ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
-
-    def move(step):
-        arrows.set_offsets(np.array([start[:, step] for start in starts]))
-        arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
-
-    return _MovingParts([arrows], move, [])
-
-
-def _moving_caption(ax, solution):
-    """The crank angle."""
     caption = ax.text(0.02, 0.94, "", transform=ax.transAxes, fontsize="small")
 
     def move(step):
+        for link, stroke in zip(links, strokes, strict=True):
+            set_points(link, stroke.points[..., step])
+        for mark, position in zip(marks, positions, strict=True):
+            mark.set_data(position[:, [step]])
+        arrows.set_offsets(np.array([start[:, step] for start in starts]))
+        arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
         caption.set_text(f"crank angle {np.degrees(solution.crank_angle[step]):.0f}°")
+        return [*links, *marks, arrows, caption]
 
-    return _MovingParts([caption], move, [])
-
-
-def _over_period(solution, frames):
-    """The solution over its whole period, at its own crank angles if they cover it."""
-    angle, period = np.sort(solution.crank_angle), solution.period
-    step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
-    if angle[-1] - angle[0] + 1.5 * step >= period:
-        return solution
-    try:
-        return solution.at(angle[0] + np.linspace(0.0, period, max(frames, 2), endpoint=False))
-    except ParameterError:
-        return solution
+    return move, np.concatenate([*positions, *(stroke.points.reshape(2, -1) for stroke in strokes)], axis=1)
 
 
 def _largest_finite(values):

@@ -7,14 +7,15 @@ Curves go over the crank angle. `with_peaks` adds crank angles of extremes, kink
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics.quantities import label_of
 from ..numbers import checks
+from ..numbers.files import write_atomically
 from ..numbers.formatting import parse_heading
 from ..results.extremes import extrema
 from ..results.rounding import PLACED
@@ -55,7 +56,11 @@ STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 def axes(ax):
     """The axes given, or new ones."""
     checks.require("plots", None if ax is None or hasattr(ax, "plot") else f"ax must be matplotlib Axes, got {ax!r}")
-    return plt.subplots(layout="constrained")[1] if ax is None else ax
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # the report needs none of it
+
+    return plt.subplots(layout="constrained")[1]
 
 
 def solutions_by_label(solutions, name):
@@ -177,7 +182,13 @@ def ordinary_size(arrays):
     Values grow without bound if they are far beyond most others, as forces near change points, or beside a gap.
     """
     rows = [np.abs(np.atleast_1d(np.asarray(array, dtype=float))) for array in arrays]
-    sizes, away = (np.concatenate([np.ravel(row) for row in part]) for part in (rows, map(_away_from_gaps, rows)))
+    others = []
+    for values in rows:
+        missing = np.isnan(values)
+        reach = max(1, values.shape[-1] // GAP_REACH) if missing.any() else 0
+        beside = np.any([np.roll(missing, step, axis=-1) for step in range(-reach, reach + 1)], axis=0)
+        others.append(np.where(beside, np.nan, values))
+    sizes, away = (np.concatenate([np.ravel(row) for row in part]) for part in (rows, others))
     finite, others = sizes[np.isfinite(sizes)], away[np.isfinite(away)]
     if not finite.size:
         return 0.0
@@ -186,16 +197,6 @@ def ordinary_size(arrays):
         return apart
     usual, largest = float(np.quantile(finite, ORDINARY_SHARE)), float(np.nanmax(sizes))
     return usual if 0.0 < UNBOUNDED_RATIO * usual < largest else most
-
-
-def _away_from_gaps(values):
-    """Values over the crank angles, with NaN beside gaps."""
-    missing = np.isnan(values)
-    if not missing.any():
-        return values
-    reach = max(1, values.shape[-1] // GAP_REACH)
-    beside = np.any([np.roll(missing, step, axis=-1) for step in range(-reach, reach + 1)], axis=0)
-    return np.where(beside, np.nan, values)
 
 
 def drawn_limit(arrays):
@@ -244,6 +245,18 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
     return ax
 
 
+def set_equal_scales(ax, moving=()):
+    """Set equal scales that show all drawn parts and moving points (N, 2)."""
+    ax.relim()
+    if len(moving):
+        ax.update_datalim(moving)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    ax.autoscale_view()
+
+
 KINK_TOLERANCE = 1e-12
 """Distance from a kink, rad, within which samples of the turn stand at it or at a side of a jump."""
 
@@ -261,37 +274,31 @@ def with_peaks(named, *quantities):
     quantities : str or function
         As for `extremes`; vectors by their magnitude.
     """
-    more = np.concatenate(
-        [np.empty(0), *(_peak_angles(solution, item) for solution in named.values() for item in quantities)]
-    )
-    return {name: _with_angles(solution, np.unique(more)) for name, solution in named.items()}
-
-
-def _peak_angles(solution, quantity):
-    """Crank angles of peaks, kinks and jumps of a quantity in a period; none if its extremes are not defined."""
-    if not _is_known_between(solution):
-        return np.empty(0)
-    try:
-        found = extrema(solution, quantity)
-    except KinetostaticsError:  # such as a force that does not repeat; it can still be drawn
-        return np.empty(0)
-    return angles_between(solution, found.angle[np.isfinite(found.value)])
+    known = {name: solution for name, solution in named.items() if _is_known_between(solution)}
+    more = [np.empty(0)]
+    for solution in known.values():
+        for item in quantities:
+            try:
+                found = extrema(solution, item)
+            except KinetostaticsError:  # such as a force that does not repeat; it can still be drawn
+                continue
+            more.append(angles_between(solution, found.angle[np.isfinite(found.value)]))
+    angles = np.unique(np.concatenate(more))
+    if not angles.size:
+        return dict(named)
+    return {name: _with_angles(solution, angles) if name in known else solution for name, solution in named.items()}
 
 
 def angles_between(solution, extremes):
     """Rising crank angles of extremes that the solution lacks, of kinks, and of both sides of jumps."""
     there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
-    return np.unique(np.concatenate([extremes[~there], _kink_samples(solution.sampled)]))
-
-
-def _kink_samples(turn):
-    """Samples of a turn at kinks and at both sides of jumps."""
+    turn = solution.sampled
     if not turn.kinks.size:
-        return turn.kinks
+        return np.unique(extremes[~there])
     kinks = np.concatenate([turn.kinks[-1:] - turn.period, turn.kinks, turn.kinks[:1] + turn.period])
     behind = np.searchsorted(kinks, turn.angle).clip(1, kinks.size - 1)
     distance = np.minimum(turn.angle - kinks[behind - 1], kinks[behind] - turn.angle)
-    return turn.angle[distance < KINK_TOLERANCE]
+    return np.unique(np.concatenate([extremes[~there], turn.angle[distance < KINK_TOLERANCE]]))
 
 
 def _is_known_between(solution):
@@ -303,8 +310,6 @@ def _is_known_between(solution):
 
 def _with_angles(solution, more):
     """The solution with added crank angles, in every period that its own angles cover."""
-    if not more.size or not _is_known_between(solution):
-        return solution
     own, period = solution.crank_angle, solution.period
     span = own[-1] - own[0]
     turns = np.round((span + np.max(np.diff(own))) / period)
@@ -326,7 +331,11 @@ def shade_gaps(ax, named, curves, counted):
     found: dict[tuple[float, float, str], list[str]] = {}
     for name, solution in named.items():
         _, closed = period_curve(solution, solution.closed, counted)
-        for start, end, rows in _missing_runs(*curves[name]):
+        angle, value = curves[name]
+        missing = np.flatnonzero(np.isnan(value))
+        runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1) if missing.size else ()
+        for rows in runs:
+            start, end = (float(angle[row]) for row in (max(rows[0] - 1, 0), min(rows[-1] + 1, len(angle) - 1)))
             found.setdefault((start, end, _reason_missing(closed[rows].astype(bool), solution)), []).append(name)
     low, high = ax.get_xlim()
     for (start, end, why), names in found.items():
@@ -338,18 +347,45 @@ def shade_gaps(ax, named, curves, counted):
     ax.set_xlim(low, high)
 
 
-def _missing_runs(angle, value):
-    """Gaps of a curve: last angle with a value before, first after, and the rows between."""
-    missing = np.flatnonzero(np.isnan(value))
-    for rows in np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1):
-        if rows.size:
-            yield float(angle[max(rows[0] - 1, 0)]), float(angle[min(rows[-1] + 1, len(angle) - 1)]), rows
-
-
 def _reason_missing(closed, solution):
     if not closed.all():
         return "cannot be assembled"
     return "jams" if solution.friction else "no value"
+
+
+def draw_over_turn(ax, named, curves, label, unit, counted):
+    """Draw curves (2, N) over the longest period, with gaps shaded and values without bound off the scale."""
+    draw_curves(ax, curves)
+    period = round(np.degrees(max(solution.period for solution in named.values())))
+    finish_axes(ax, label, len(named) > 1, period, counted)
+    limit_axis(ax, [value for _, value in curves.values()], unit)
+    shade_gaps(ax, named, curves, counted)
+    return ax
+
+
+def panels(count, columns, width, height, more=0.0):
+    """Figure of so many axes in rows, each of a width and height in inches, and the axes; `more` is added in height."""
+    import matplotlib.pyplot as plt
+
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    size = (width * columns, height * rows + more)
+    figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    for ax in grid.flat[count:]:
+        ax.remove()
+    return figure, list(grid.flat[:count])
+
+
+def save_figure(figure, path, salt=None, **options):
+    """Save a figure in the format of its file's ending, the same bytes each time; returns the path."""
+    import matplotlib.pyplot as plt
+
+    kind = Path(path).suffix[1:] or "png"
+    with plt.rc_context({"svg.hashsalt": salt}), write_atomically(path) as temporary:
+        metadata = {"Date": None} if kind == "svg" else {}
+        figure.savefig(temporary, format=kind, dpi=150, metadata=metadata, **options)
+    plt.close(figure)
+    return Path(path)
 
 
 def limit_axis(ax, arrays, unit):
@@ -402,10 +438,3 @@ def curve_ends(solution, curve, drawn):
             x, y = drawn[:, row] - (drawn[:, before] if there[before] else 0.0)
             why = _reason_missing(solution.closed[[behind]], solution) if missing[behind] else ""
             yield CurveEnd(row, float(np.degrees(np.arctan2(y, x))), why)
-
-
-def mark_ends(ax, found, points, color):
-    """Mark ends of a curve (2, N): a cross at a gap, an arrow head at the frame."""
-    for end in found:
-        style = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
-        ax.plot(*points[:, end.row], ls="", color=color, zorder=4, **style)

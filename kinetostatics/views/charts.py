@@ -7,12 +7,10 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..errors import ParameterError
-from ..numbers.files import write_atomically
-from .canvas import ACCENT, axes, axis_words, require_columns
+from .canvas import ACCENT, axes, axis_words, panels, require_columns, save_figure
 
 MIN_DRAWN_ERROR = 1e-17
 """Smallest error drawn, below the rounding of the largest value; zero errors lie there."""
@@ -266,20 +264,12 @@ def _axis_text(labels, column, width=40):
 def sweep_page(table, parameters, outputs, path, labels=None):
     """Chart of a sweep saved to a file: a panel for each output, or a scatter matrix with three parameters and more."""
     if len(parameters) < 3:
-        columns = min(3, len(outputs))
-        rows = -(-len(outputs) // columns)
-        size = (5.4 * columns, 4.2 * rows)
-        figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
-        for ax, output in zip(grid.flat, outputs, strict=False):
+        figure, axes = panels(len(outputs), 3, 5.4, 4.2)
+        for ax, output in zip(axes, outputs, strict=True):
             sweep_map(table, parameters, output, ax=ax, labels=labels)
-        for ax in grid.flat[len(outputs) :]:
-            ax.remove()
     else:
         figure = _scatter_matrix(table, [*parameters, *outputs], labels or {})
-    with write_atomically(path) as temporary:
-        figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
-    plt.close(figure)
-    return Path(path)
+    return save_figure(figure, path, bbox_inches="tight")
 
 
 def _scatter_matrix(table, columns, labels):
@@ -300,11 +290,11 @@ def _scatter_matrix(table, columns, labels):
 
 def precision_page(table, path):
     """Chart of a study, a panel for each variant and quantity, saved as PNG and SVG; returns the paths."""
-    panels = {
+    tables = {
         f"{part['case'].iloc[0]}, {variant}: {part['label'].iloc[0]}": part
         for (variant, _), part in table.groupby(["variant", "quantity"], sort=False)
     }
-    return _draw_page(work_precision, panels, path)
+    return _draw_page(work_precision, tables, path)
 
 
 def drive_page(tables, path):
@@ -319,31 +309,13 @@ def stability_page(table, path):
     return _draw_page(error_by_distance, dict(list(table.groupby("place", sort=False))), path)
 
 
-def _draw_page(draw, panels, path):
+def _draw_page(draw, tables, path):
     """Panels by title, two in a row of a page's width, with one legend below."""
-    columns = min(2, len(panels))
-    rows = -(-len(panels) // columns)
-    size = (8.4, 3.4 * rows + 1.6)
-    figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    figure, axes = panels(len(tables), 2, 8.4 / min(2, len(tables)), 3.4, 1.6)
     entries: dict[str, Any] = {}
-    for ax, (title, part) in zip(grid.flat, panels.items(), strict=False):
+    for ax, (title, part) in zip(axes, tables.items(), strict=True):
         draw(part, ax=ax)
         ax.set_title(title, fontsize=9)
         entries |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
-    for ax in grid.flat[len(panels) :]:
-        ax.remove()
     figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=2, fontsize=8)
-    return _save_page(figure, path)
-
-
-def _save_page(figure, path):
-    """Save a figure as PNG and SVG; returns the paths."""
-    paths = []
-    for kind in ("png", "svg"):
-        target = Path(f"{path}.{kind}")
-        with rc_context({"svg.hashsalt": target.stem}), write_atomically(target) as temporary:
-            metadata = {"Date": None} if kind == "svg" else {}
-            figure.savefig(temporary, format=kind, dpi=150, metadata=metadata)
-        paths.append(target)
-    plt.close(figure)
-    return paths
+    return [save_figure(figure, Path(f"{path}.{kind}"), Path(path).name) for kind in ("png", "svg")]

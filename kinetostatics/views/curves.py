@@ -21,6 +21,7 @@ from .canvas import (
     close_curve,
     display_unit,
     draw_curves,
+    draw_over_turn,
     drawn_limit,
     finish_axes,
     ordinary_size,
@@ -167,14 +168,10 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     ax = axes(ax)
     named = with_peaks(solutions_by_label(solutions, quantity), quantity)
     read = {name: values(solution, quantity) for name, solution in named.items()}
-    declared = _quantity_of(named, quantity)
+    declared = quantities.quantity(next(iter(named.values())), quantity)
     factor, shown = display_unit(declared.unit, list(read.values()))
     curves = {name: period_curve(named[name], factor * value, counted) for name, value in read.items()}
-    draw_curves(ax, curves)
-    finish_axes(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest_period(named), counted)
-    canvas.limit_axis(ax, [value for _, value in curves.values()], shown)
-    canvas.shade_gaps(ax, named, curves, counted)
-    return ax
+    return draw_over_turn(ax, named, curves, f"{declared.label} [{shown}]", shown, counted)
 
 
 def torque(solutions, ax=None, counted=FROM_X):
@@ -285,13 +282,8 @@ def acceleration_error(solutions, ax=None, slider=None):
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         curves[name] = period_curve(solution, 100 * error, FROM_X)
-    draw_curves(ax, curves)
-    finish_axes(
-        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest_period(named)
-    )
-    canvas.limit_axis(ax, [value for _, value in curves.values()], "%")
-    canvas.shade_gaps(ax, named, curves, FROM_X)
-    return ax
+    label = "deviation of slider acceleration\nfrom cosine law [% of amplitude]"
+    return draw_over_turn(ax, named, curves, label, "%", FROM_X)
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
@@ -327,28 +319,39 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
     ax = axes(ax)
     named = with_peaks(solutions_by_label(solutions, joint), joint)
-    curves = {name: _vector(solution, joint) for name, solution in named.items()}
-    declared = _quantity_of(named, joint)
+    curves = {}
+    for name, solution in named.items():
+        vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
+        if joint not in vectors:
+            raise QuantityError(choice(f"{solution.mechanism.name}: reaction", joint, tuple(vectors)))
+        curves[name] = vectors[joint].read(solution)
+    declared = quantities.quantity(next(iter(named.values())), joint)
     factor, shown = display_unit(declared.unit, curves.values())
     sizes = [np.hypot(*curve) for curve in curves.values()]
     sight = drawn_limit(sizes)
     whole = curves
     curves = {name: np.where(np.hypot(*curve) <= sight, curve, np.nan) for name, curve in curves.items()}
     most = 2.0 * ordinary_size(sizes)
-    extents = {name: factor * min(_extent(curve), most) for name, curve in curves.items()}
+    drawn = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
+    extents = {
+        name: factor * min(float(np.max(np.ptp(curve, axis=1))) if curve.size else 0.0, most)
+        for name, curve in drawn.items()
+    }
     whys: set[str] = set()
     for name, solution, style in with_line_styles(named):
         (line,) = ax.plot(*close_curve(factor * curves[name]), linestyle=style, label=name)
         rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curves[name][0, row])]
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
         ends = list(canvas.curve_ends(solution, whole[name], curves[name]))
-        canvas.mark_ends(ax, ends, factor * curves[name], line.get_color())
+        for end in ends:
+            mark = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
+            ax.plot(*factor * curves[name][:, end.row], ls="", color=line.get_color(), zorder=4, **mark)
         whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[name], 0.02 * max(extents.values()))
         period = np.degrees(solution.period)
-        texts = _merge_labels(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
-        for text, point in texts:
+        degrees = counted(np.degrees(solution.crank_angle)[rows], period) % period
+        for text, point in _merge_labels(degrees, factor * curves[name][:, rows], near):
             label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
@@ -366,38 +369,12 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     return ax
 
 
-def _extent(curve):
-    """Largest extent of a curve (2, N) in x or y."""
-    found = curve[:, np.isfinite(curve).all(axis=0)]
-    return float(np.max(np.ptp(found, axis=1))) if found.size else 0.0
-
-
-def _degrees(solution):
-    return np.degrees(solution.crank_angle)
-
-
-def _longest_period(named):
-    """Longest period of solutions, degrees."""
-    return round(np.degrees(max(solution.period for solution in named.values())))
-
-
-def _vector(solution, name):
-    """Values of a vector, (2, N)."""
-    vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
-    if name not in vectors:
-        raise QuantityError(choice(f"{solution.mechanism.name}: reaction", name, tuple(vectors)))
-    return vectors[name].read(solution)
-
-
-def _quantity_of(named, name):
-    """Unit and label of a quantity that all solutions have."""
-    return quantities.quantity(next(iter(named.values())), name)
-
-
 def _rows_at_marks(solution, step):
     """Rows of the solution whose crank angles are multiples of a step in degrees, to half a degree."""
     period = np.degrees(solution.period)
-    apart = np.mod(_degrees(solution) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
+    apart = (
+        np.mod(np.degrees(solution.crank_angle) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
+    )
     return np.argmin(np.abs(apart), axis=1)[np.abs(apart).min(axis=1) < 0.5]
 
 

@@ -4,23 +4,64 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.path import Path
 
 from ..machine.group import FRAME
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
-from . import strokes
-from .canvas import ACCENT, FROM_X, INK, ZERO_TOLERANCE, axes, close_curve, solutions_by_label, with_line_styles
+from .canvas import (
+    ACCENT,
+    FROM_X,
+    INK,
+    LOAD,
+    STEEL,
+    ZERO_TOLERANCE,
+    axes,
+    close_curve,
+    set_equal_scales,
+    solutions_by_label,
+    with_line_styles,
+)
 from .labels import label
-from .strokes import Shape, at_angles, set_points, stroke_artist, strokes_by_owner, whole_turn
+from .strokes import Shape, at_angles, strokes_by_owner, whole_turn
 
 ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
+_quarters = [Path.wedge(0, 90), Path.wedge(180, 270)]
+MASS_CENTRE_PATH = Path.make_compound_path(*_quarters)
+"""Dark quarters of the sign of a mass centre, as a marker."""
+_ticks = np.arange(-0.8, 1.01, 0.4)
+PIVOT = Path.make_compound_path(
+    Path([(0, 0), (-0.7, -1.0), (0.7, -1.0), (0, 0)]),
+    Path([(-1.0, -1.0), (1.0, -1.0)]),
+    *(Path([(x, -1.0), (x - 0.3, -1.4)]) for x in _ticks),
+)
+"""A fixed pivot on hatched ground, as a marker with the pivot at its middle."""
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
-    {"marker": strokes.MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
+    {"marker": MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes in counterweights."""
+LINES: dict[str, dict[str, Any]] = {
+    "bar": {"color": STEEL, "lw": 2.5, "solid_capstyle": "round", "zorder": 2},
+    "slotted": {"color": STEEL, "lw": 7, "solid_capstyle": "round", "zorder": 2},
+    "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
+    "spring": {"color": INK, "lw": 1, "zorder": 2.5},
+    "damper": {"color": INK, "lw": 1, "zorder": 2.5},
+    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
+    "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
+    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
+}
+"""Styles of strokes drawn as lines, by kind."""
+PLATES: dict[str, dict[str, Any]] = {
+    "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
+    "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
+    "block": {"fc": STEEL, "ec": "none", "zorder": 3},
+    "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
+}
+"""Styles of strokes drawn as filled shapes, by kind."""
 GROUND_DEPTH = 3.0
 """Depth of the ground below a fixed pivot, in half lengths of a block."""
 
@@ -101,7 +142,8 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     shape, poses = draw_fixed_parts(ax, solution), at_angles(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
-    once = [stroke for stroke, owners in strokes_by_owner(named, angles[:1]) if len(owners) == len(named)]
+    owned = strokes_by_owner(named, angles[:1])
+    once = [stroke for stroke, owners in owned if len(owners) == len(named)]
     moving = [name for name, point in shape.mechanism.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
@@ -117,9 +159,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
         label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
-    _draw_own(
-        ax, [(stroke, owners) for stroke, owners in strokes_by_owner(named, angles[:1]) if len(owners) < len(named)]
-    )
+    _draw_own(ax, [(stroke, owners) for stroke, owners in owned if len(owners) < len(named)])
     set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
 
@@ -148,14 +188,10 @@ def draw_fixed_parts(ax, solution):
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
     for bar in made.crank.bars:
         ax.plot(*turn.position(bar.end), color=INK, lw=0.5, ls=":")
-    for slider, guide in made.guides.items():
-        along = np.asarray(guide.direction, dtype=float)
-        below, reach = 0.6 * shape.unit * strokes.left(along), 1.5 * shape.unit * along
-        start, end = shape.ways[slider].T
-        rail = strokes.hatched_line(start - reach - below, end + reach - below, 0.5 * shape.unit)
+    for rail in shape.rails():
         ax.plot(*rail, color=INK, lw=0.8, alpha=0.6, zorder=1)
     for point in shape.grounds(solution.loads):
-        ax.plot(*point, marker=strokes.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
+        ax.plot(*point, marker=PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
         ax.plot(*point, **PIN, zorder=4)
     return shape
 
@@ -179,13 +215,16 @@ def _names_by_place(poses, shape):
     return found
 
 
-def set_equal_scales(ax, moving=()):
-    """Set equal scales that show all drawn parts and moving points (N, 2)."""
-    ax.relim()
-    if len(moving):
-        ax.update_datalim(moving)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.08)
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
-    ax.autoscale_view()
+def stroke_artist(ax, stroke, shade):
+    """Empty matplotlib artist of a stroke."""
+    if stroke.kind in PLATES:
+        return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
+    return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
+
+
+def set_points(drawn, points):
+    """Set the points (2, K) of a stroke's artist."""
+    if isinstance(drawn, Line2D):
+        drawn.set_data(points)
+    else:
+        drawn.set_xy(points.T)

@@ -16,7 +16,7 @@ from ..design.pareto_front import Front
 from ..errors import CaseError, ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..numbers.files import write_atomically, write_problem
+from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
 from ..results.losses import lose
 from . import curves, drawings, drives
@@ -31,11 +31,15 @@ from .canvas import (
     display_unit,
     distinct_curves,
     finish_axes,
+    panels,
+    save_figure,
     with_line_styles,
 )
 from .curves import hodograph, torque
 from .drawings import mechanism
 from .strokes import load_strokes, moves_alike
+
+FONT: Any = {"font.size": 9}
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
@@ -62,7 +66,7 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
         There is no figure of that name; the message lists them. Or the files cannot be written.
     """
     checks.require("figures", checks.case("case", case))
-    figures = {name: draw for name, (draw, applies) in FIGURES.items() if applies(case)}
+    figures = figures_of(case)
     unknown = [checks.choice("published.figures", name, tuple(FIGURES)) for name in case.published.figures]
     if any(unknown):
         raise CaseError(case.path, [problem for problem in unknown if problem])
@@ -74,77 +78,67 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
     counted = FROM_Y_CLOCKWISE if _is_chain_unit(case) else FROM_X
-    pages = {
-        name: partial(_with_figure_number, figures[name], case.published.figures.get(name), counted) for name in paths
-    }
-    return [save_figure(pages[name], solutions, paths[name], case, file_format) for name in progress(paths)]
-
-
-def _with_figure_number(draw, number, counted, solutions) -> Figure:
-    """A figure, with its number in the published study if it has one."""
-    figure = draw(solutions, counted)
-    if number:
-        text = f"figure{'s' * (',' in number)} {number} of the study"
-        figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
-        figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
-    return figure
+    found = []
+    for name in progress(paths):
+        with rc_context(FONT):
+            figure = figures[name](solutions, counted)
+            if number := case.published.figures.get(name):
+                text = f"figure{'s' * (',' in number)} {number} of the study"
+                figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
+                figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
+            found.append(save_figure(figure, paths[name], case.path.stem))
+    return found
 
 
 def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
     bars = len(drives.energy_parts(runs)) * (1 + len(runs))
-    figures = {
-        "speed": lambda runs: _one_axes(drives.crank_speed)(runs),
-        "torque": lambda runs: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
-        "energy": lambda runs: _one_axes(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
+    pages = {
+        "drive_speed": lambda: _one_axes(drives.crank_speed)(runs),
+        "drive_torque": lambda: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
+        "drive_energy": lambda: _one_axes(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
     }
-    paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
+    return _draw_pages(case, pages, folder, "png")
+
+
+def _draw_pages(case, pages, folder, file_format):
+    """Draw pages by name into files named after the case; returns the paths."""
+    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in pages}
     checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
-    return [save_figure(figures[name], runs, path, case, "png") for name, path in paths.items()]
-
-
-def save_figure(draw, solutions, path, case, file_format):
-    with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
-        figure = draw(solutions)
-        metadata = {"Date": None} if file_format == "svg" else {}
-        with write_atomically(path) as temporary:
-            figure.savefig(temporary, format=file_format, dpi=150, metadata=metadata)
-    plt.close(figure)
-    return path
+    found = []
+    for name, draw in pages.items():
+        with rc_context(FONT):
+            figure = draw()
+            found.append(save_figure(figure, paths[name], case.path.stem))
+    return found
 
 
 def _having(quantity, items):
     return {name: item for name, item in items.items() if quantity in of_mechanism(item.mechanism)}
 
 
-def _always(case):
-    return True
-
-
-def _has(quantity):
-    return lambda case: bool(_having(quantity, case.variants))
-
-
-def _compares_with_cosine_law(case):
-    """Whether a variant has a cosine-law cam, and each variant has one slider to compare."""
-    kinds = {getattr(getattr(item.table, "cam", None), "kind", None) for item in case.variants.values()}
-    return "cosine-law" in kinds and all(item.mechanism.slider is not None for item in case.variants.values())
-
-
 def _is_chain_unit(case):
     return all(item.table.mechanism == "chain-unit" for item in case.variants.values())
 
 
-def _has_friction(case):
-    return any(map(lose, case.variants.values()))
+def figures_of(case):
+    """Functions that draw the figures of a case, by name; those of `FIGURES` that apply to it."""
+    variants = case.variants.values()
+    found = {name for item in variants for name in of_mechanism(item.mechanism)}
+    cams = {getattr(getattr(item.table, "cam", None), "kind", None) for item in variants}
+    if "cosine-law" in cams and all(item.mechanism.slider is not None for item in variants):
+        found.add("cosine law")
+    if any(map(lose, variants)):
+        found.add("friction")
+    if any(item.balanced is not None for item in variants):
+        found.add("balanced")
+    if _is_chain_unit(case):
+        found.add("chain unit")
+    return {name: draw for name, (draw, needed) in FIGURES.items() if needed is None or needed in found}
 
 
 def _with_friction(solutions):
     return {name: solution for name, solution in solutions.items() if lose(solution)}
-
-
-def _is_balanced(case):
-    return any(item.balanced is not None for item in case.variants.values())
 
 
 def _one_axes(plot, width=6.4, height=4.0, **axes):
@@ -176,16 +170,10 @@ def _hodographs(solutions, counted=FROM_X) -> Figure:
 
 def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
     """A figure with axes for each variant."""
-    columns = min(columns, len(solutions))
-    rows = -(-len(solutions) // columns)
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
-    )
-    for ax, (name, solution) in zip(axes.flat, solutions.items(), strict=False):
+    figure, axes = panels(len(solutions), columns, width, height)
+    for ax, (name, solution) in zip(axes, solutions.items(), strict=True):
         plot(solution, ax=ax)
         ax.set_title(name)
-    for ax in axes.flat[len(solutions) :]:
-        ax.remove()
     return figure
 
 
@@ -219,19 +207,14 @@ TITLE_HEIGHT = 0.8
 """Height of title and labels of axes, inches."""
 
 
-def _most_loaded(solutions):
-    """Name of the variant with most loads in its drawing, the last of several."""
-    strokes = {name: len(load_strokes(solution, DRAWN_ANGLES[:1])) for name, solution in solutions.items()}
-    return max(reversed(strokes), key=strokes.__getitem__)
-
-
 def _overview(solutions, counted=FROM_X) -> Figure:
     """The variant with most loads, the torques of all, and the support reactions of the first and the last.
 
     A wide mechanism is drawn across the page, a tall one over the whole height, others beside the torque.
     """
     shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
-    drawn = _most_loaded(solutions)
+    strokes = {name: len(load_strokes(solution, DRAWN_ANGLES[:1])) for name, solution in solutions.items()}
+    drawn = max(reversed(strokes), key=strokes.__getitem__)  # the last of several
     wide = _proportion(solutions[drawn])
     many = len(shown)
     rows: list[Any] = [["mechanism", "torque"], shown]
@@ -256,31 +239,31 @@ def _overview(solutions, counted=FROM_X) -> Figure:
 
 
 FIGURES = {
-    "overview": (_overview, _always),
-    "mechanism": (_mechanisms, _always),
-    "torque": (_over_turn("balancing_torque"), _always),
-    "acceleration_error": (_one_axes(curves.acceleration_error), _compares_with_cosine_law),
-    "hodograph": (_hodographs, _always),
-    "pressure_angle": (_over_turn("pressure_angle"), _has("pressure_angle")),
-    "cam_force": (_over_turn("cam_force"), _has("cam_force")),
-    "losses": (lambda solutions, _: _one_axes(drives.losses)(_with_friction(solutions)), _has_friction),
+    "overview": (_overview, None),
+    "mechanism": (_mechanisms, None),
+    "torque": (_over_turn("balancing_torque"), None),
+    "acceleration_error": (_one_axes(curves.acceleration_error), "cosine law"),
+    "hodograph": (_hodographs, None),
+    "pressure_angle": (_over_turn("pressure_angle"), "pressure_angle"),
+    "cam_force": (_over_turn("cam_force"), "cam_force"),
+    "losses": (lambda solutions, _: _one_axes(drives.losses)(_with_friction(solutions)), "friction"),
     "lost_power": (
         lambda solutions, _: _one_each(drives.lost_power, _with_friction(solutions), 6.4, 3.2, 1),
-        _has_friction,
+        "friction",
     ),
-    "mass_centres": (_one_axes(drawings.mass_centres, 9.0, 3.6), _is_balanced),
-    "shaking_by_direction": (_one_axes(curves.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
+    "mass_centres": (_one_axes(drawings.mass_centres, 9.0, 3.6), "balanced"),
+    "shaking_by_direction": (_one_axes(curves.shaking_force, 6.4, 4.8, projection="polar"), "balanced"),
     "shaking_by_crank_angle": (
         _one_axes(partial(curves.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
-        _is_balanced,
+        "balanced",
     ),
     **{
-        f"{link}_{kind}": (_one_axes(partial(curves.chain_unit_motion, link=link, order=order)), _is_chain_unit)
+        f"{link}_{kind}": (_one_axes(partial(curves.chain_unit_motion, link=link, order=order)), "chain unit")
         for link in ("coupler", "rocker")
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },
 }
-"""By name: the function that draws a figure, and the condition that a case must meet."""
+"""By name: the function that draws a figure, and what `figures_of` must find in a case for it."""
 
 
 def front(found, ax=None):
@@ -328,14 +311,11 @@ ANGLES_PER_TURN = 720
 
 def draw_designs(case, found, folder, file_format="png"):
     """Draw results of a case's designs by name into a folder, a page each; returns the paths."""
-    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in found}
-    checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
     pages = {
-        name: partial(front_page if isinstance(item, Front) else before_and_after, item) for name, item in found.items()
+        name: partial(_one_axes(front, 6.4, 4.4) if isinstance(item, Front) else before_and_after, item)
+        for name, item in found.items()
     }
-    return [
-        save_figure(lambda _, draw=pages[name]: draw(), {}, path, case, file_format) for name, path in paths.items()
-    ]
+    return _draw_pages(case, pages, folder, file_format)
 
 
 def before_and_after(found):
@@ -379,12 +359,6 @@ def before_and_after(found):
     for name, solution in solutions.items():
         hodograph(solution, ax=parts[name], marks=45)
         parts[name].set_title(f"support reaction, {name}")
-    return figure
-
-
-def front_page(found):
-    figure, ax = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
-    front(found, ax=ax)
     return figure
 
 

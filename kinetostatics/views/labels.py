@@ -34,16 +34,29 @@ class Labels(Artist):
         ax: Any = self.axes
         lines, scale = ax.lines, renderer.points_to_pixels(1.0)
         paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
-        marks = [_boxes_of_markers(line, scale) for line in lines if isinstance(line.get_marker(), Path)]
+        marks = [NO_BOX]  # boxes of markers with path shapes, (N, 4)
+        for line in lines:
+            if isinstance(shape := line.get_marker(), Path):
+                corners = shape.get_extents().get_points()
+                corners = corners * 0.5 * scale * line.get_markersize() / np.abs(shape.vertices).max()
+                marks.append((corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4))
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
         frees = []  # the places of each label, and their costs without other labels
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = _Places.around(point, size.width, size.height, scale)
-            frees.append(
-                (places, DISTANCE_COSTS + self._costs(places.boxes, points, np.concatenate([NO_BOX, *marks]), paths))
+            boxes = places.boxes
+            outside = ~_contain(np.array([ax.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
+            bounds = [Bbox.from_extents(box) for box in boxes]
+            crossed = [[path.intersects_bbox(box, filled=filled) for path, filled in paths] for box in bounds]
+            costs = (
+                ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
+                + ON_POINT * _overlap(boxes, np.concatenate(marks)).sum(axis=1)
+                + ON_CURVE * np.sum(crossed, axis=1)
+                + OUTSIDE * outside
             )
+            frees.append((places, DISTANCE_COSTS + costs))
         chosen: list[tuple] = []
         for place in list(range(len(shown))) * PLACEMENT_ROUNDS:
             others = chosen[:place] + chosen[place + 1 :]
@@ -54,20 +67,6 @@ class Labels(Artist):
             text.set_position(offset / scale)
             if leader is not None:
                 Line2D(*leader.vertices.T, color="0.5", lw=0.5, transform=IdentityTransform()).draw(renderer)
-
-    def _costs(self, boxes, points, marks, paths):
-        """Costs of a label in each of some boxes, (P,)."""
-        frame: Any = self.axes
-        outside = ~_contain(np.array([frame.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
-        crossed = [
-            [path.intersects_bbox(Bbox.from_extents(box), filled=filled) for path, filled in paths] for box in boxes
-        ]
-        return (
-            ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
-            + ON_POINT * _overlap(boxes, marks).sum(axis=1)
-            + ON_CURVE * np.sum(crossed, axis=1)
-            + OUTSIDE * outside
-        )
 
 
 NO_BOX = np.empty((0, 4))
@@ -86,13 +85,6 @@ def _contain(boxes, points):
 
 def _in_pixels(item):
     return item.get_transform().transform_path(item.get_path())
-
-
-def _boxes_of_markers(line, scale):
-    """Boxes of markers with path shapes, in pixels, (N, 4)."""
-    corners = line.get_marker().get_extents().get_points()
-    corners = corners * 0.5 * scale * line.get_markersize() / np.abs(line.get_marker().vertices).max()
-    return (corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4)
 
 
 DISTANCE_COSTS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))

@@ -7,15 +7,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
-from matplotlib.path import Path
 
 from ..machine.group import FRAME
 from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import rotate_back
-from .canvas import ACCENT, INK, LOAD, STEEL
 
 UP = (np.nan, np.nan)
 SPRING = (
@@ -36,17 +32,6 @@ COUPLE = np.array([*np.transpose([np.cos(_HALF), np.sin(_HALF)]), (0.42, 0.72), 
 SPIRAL = np.transpose([_BENT * np.cos(_BENT), _BENT * np.sin(_BENT)]) / _BENT[-1]
 RING = np.transpose([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
 RECTANGLE = np.array([(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)])
-
-_quarters = [Path.wedge(0, 90), Path.wedge(180, 270)]
-MASS_CENTRE_PATH = Path.make_compound_path(*_quarters)
-"""Dark quarters of the sign of a mass centre, as a marker."""
-_ticks = np.arange(-0.8, 1.01, 0.4)
-PIVOT = Path.make_compound_path(
-    Path([(0, 0), (-0.7, -1.0), (0.7, -1.0), (0, 0)]),
-    Path([(-1.0, -1.0), (1.0, -1.0)]),
-    *(Path([(x, -1.0), (x - 0.3, -1.4)]) for x in _ticks),
-)
-"""A fixed pivot on hatched ground, as a marker with the pivot at its middle."""
 
 
 def left(direction):
@@ -80,43 +65,10 @@ def hatched_line(start, end, width):
     return np.column_stack([start, end, UP, strokes])
 
 
-LINES: dict[str, dict[str, Any]] = {
-    "bar": {"color": STEEL, "lw": 2.5, "solid_capstyle": "round", "zorder": 2},
-    "slotted": {"color": STEEL, "lw": 7, "solid_capstyle": "round", "zorder": 2},
-    "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
-    "spring": {"color": INK, "lw": 1, "zorder": 2.5},
-    "damper": {"color": INK, "lw": 1, "zorder": 2.5},
-    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
-    "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
-    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
-}
-"""Styles of strokes drawn as lines, by kind."""
-PLATES: dict[str, dict[str, Any]] = {
-    "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
-    "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
-    "block": {"fc": STEEL, "ec": "none", "zorder": 3},
-    "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
-}
-"""Styles of strokes drawn as filled shapes, by kind."""
-
-
-def stroke_artist(ax, stroke, shade):
-    """Empty matplotlib artist of a stroke."""
-    if stroke.kind in PLATES:
-        return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
-    return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
-
-
-def set_points(drawn, points):
-    """Set the points (2, K) of a stroke's artist."""
-    if isinstance(drawn, Line2D):
-        drawn.set_data(points)
-    else:
-        drawn.set_xy(points.T)
-
-
 THIN_RATIO = 1e-3
 """Width of a link, relative to its length, up to which it is a straight bar."""
+UNCLIPPED_SHARE = 0.9
+"""Share of the poses in which an unbounded reaction has its arrow in full length."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
@@ -157,8 +109,16 @@ class Shape:
     @cached_property
     def slots(self):
         """Slots with both ends of the joint's travel, (2, 2), in the axes of the link, the nearer end first."""
-        found = [(slot, _ends(self._seen(slot.link, self.turn.position(slot.joint)))) for slot in self.mechanism.slots]
-        return [(slot, ends if slot.rod else _lengthen(ends, self.unit)) for slot, ends in found]
+        found = []
+        for slot in self.mechanism.slots:
+            link = self.turn.placement.links[slot.link]
+            pairs = zip(self.turn.position(slot.joint), link.joint.position, strict=True)
+            seen = rotate_back([here - there for here, there in pairs], link.direction)
+            ends = _ends(np.array(np.broadcast_arrays(*seen)))
+            apart = ends[:, 1] - ends[:, 0]
+            more = apart * self.unit / (np.hypot(*apart) or 1.0)
+            found.append((slot, ends if slot.rod else ends + np.column_stack([-more, more])))
+        return found
 
     @cached_property
     def ways(self):
@@ -181,25 +141,20 @@ class Shape:
             found[bar.link].append((bar.length, 0.0))
         for slot, ends in self.slots:
             found[slot.link] += [] if slot.rod else [tuple(end) for end in ends.T]
-        return {link: self._different(points) for link, points in found.items()}
+        apart: dict[str, list[Any]] = {link: [] for link in found}  # without points that coincide with others
+        for link, points in found.items():
+            for point in (np.asarray(point, dtype=float).ravel() for point in points):
+                if all(np.hypot(*(point - other)) > 1e-6 * self.size for other in apart[link]):
+                    apart[link].append(point)
+        return {link: np.array(points).T for link, points in apart.items()}
 
-    def _different(self, points):
-        kept: list[Any] = []
-        for point in (np.asarray(point, dtype=float).ravel() for point in points):
-            if all(np.hypot(*(point - other)) > 1e-6 * self.size for other in kept):
-                kept.append(point)
-        return np.array(kept).T
-
-    def _seen(self, link, position):
-        """Positions in the axes of a link."""
-        found = self.turn.placement.links[link]
-        apart = [here - there for here, there in zip(position, found.joint.position, strict=True)]
-        return np.array(np.broadcast_arrays(*rotate_back(apart, found.direction)))
-
-    @cached_property
-    def rods(self):
-        """Links that slide in others as pistons."""
-        return {slot.rod for slot in self.mechanism.slots}
+    def rails(self):
+        """Hatched lines (2, K) along guides, over the travel of their sliders."""
+        for slider, guide in self.mechanism.guides.items():
+            along = np.asarray(guide.direction, dtype=float)
+            below, reach = 0.6 * self.unit * left(along), 1.5 * self.unit * along
+            start, end = self.ways[slider].T
+            yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.unit)
 
     def strokes(self, pose):
         """Lines and plates of all links in the poses of a motion, from back to front."""
@@ -210,27 +165,25 @@ class Shape:
             order = _line_order(corners)
             if corners.shape[1] > 1:
                 kind = "plate" if order is None else "bar"
-                order = _polygon_order(corners) if order is None else order[[0, -1]]
+                if order is None:
+                    x, y = corners - corners.mean(axis=1, keepdims=True)
+                    order = np.argsort(np.arctan2(y, x))
+                else:
+                    order = order[[0, -1]]
                 yield Stroke(kind, _link_points(pose, link, corners[:, order]))
         for slot, ends in self.slots:
-            yield from self._piston(pose, slot, ends) if slot.rod else self._slot(pose, slot, ends)
+            line = _link_points(pose, slot.link, ends)
+            yield from self._piston(pose, slot, ends) if slot.rod else (Stroke("slotted", line), Stroke("slot", line))
+        rods = {slot.rod for slot in self.mechanism.slots}
         for link, corners in self.corners.items():
-            if link in self.mechanism.guides or (corners.shape[1] == 1 and link not in self.rods):
-                turn, place = self._axes(pose, link)
+            if link in self.mechanism.guides or (corners.shape[1] == 1 and link not in rods):
+                turn = pose.as_vector(pose.placement.links[link].direction)
+                place = pose.position(self.mechanism.references[link])
                 size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
                 yield Stroke("block", place_sign(RECTANGLE, place, turn, size))
         for joint, radius in self.mechanism.rollers.items():
             size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
             yield Stroke("roller", self._ring(pose.position(joint), size))
-
-    def _axes(self, pose, link):
-        """Direction and reference joint of a link, (2, N)."""
-        return pose.as_vector(pose.placement.links[link].direction), pose.position(self.mechanism.references[link])
-
-    def _slot(self, pose, slot, ends):
-        line = _link_points(pose, slot.link, ends)
-        yield Stroke("slotted", line)
-        yield Stroke("slot", line)
 
     def _piston(self, pose, slot, ends):
         """Cylinder from the reference joint to the nearer end of the travel, and a rod in it."""
@@ -326,13 +279,6 @@ def _ends(points):
     return np.column_stack(sorted((far, other), key=np.linalg.norm))
 
 
-def _lengthen(ends, more):
-    """A line extended at both ends by a length."""
-    apart = ends[:, 1] - ends[:, 0]
-    step = apart * more / (np.hypot(*apart) or 1.0)
-    return ends + np.column_stack([-step, step])
-
-
 def _line_order(points):
     """Order of points on a straight line, the reference joint first if it is an end; None if they are not on one."""
     far = points[:, np.argmax(np.hypot(*points))]
@@ -344,12 +290,6 @@ def _line_order(points):
         return None
     order = np.argsort(along)
     return order if order[-1] else order[::-1]
-
-
-def _polygon_order(points):
-    """Order of points around their middle."""
-    x, y = points - points.mean(axis=1, keepdims=True)
-    return np.argsort(np.arctan2(y, x))
 
 
 def whole_turn(solution):
@@ -389,17 +329,17 @@ def strokes_by_owner(named, angle):
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
         for stroke in (*weights, *load_strokes(solution, angle)):
-            same = (owners for other, owners in found if _looks_same(stroke, other))
+            kind, points = stroke
+            same = (
+                owners
+                for other, owners in found
+                if kind == other.kind
+                and points.shape == other.points.shape
+                and np.allclose(points, other.points, rtol=1e-6, equal_nan=True)
+            )
             owners = next(same, None)
             if owners is None:
                 found.append((stroke, [name]))
             elif name not in owners:
                 owners.append(name)
     return found
-
-
-def _looks_same(stroke, other):
-    """Whether two strokes look the same."""
-    if stroke.kind != other.kind or stroke.points.shape != other.points.shape:
-        return False
-    return np.allclose(stroke.points, other.points, rtol=1e-6, equal_nan=True)

@@ -13,7 +13,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
-from kinetostatics.cli.commands import STARTERS
+from kinetostatics.cli.options import STARTERS
 from kinetostatics.cli.output import print_folded, print_table
 from support.every import every
 

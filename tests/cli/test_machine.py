@@ -12,7 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
-from kinetostatics.cli import machine, main
+from kinetostatics.cli import main, output
 from support.every import every
 
 pytestmark = pytest.mark.slow
@@ -81,7 +81,7 @@ VALUES = {
 @every("name", VALUES)
 def test_values_of_every_kind_are_numbers_of_json(name, capsys):
     given, wanted = VALUES[name]
-    machine.print_json("x", value=given)
+    output.print_json("x", value=given)
     assert json.loads(capsys.readouterr().out)["value"] == wanted
 
 
@@ -96,5 +96,5 @@ def test_progress_shows_on_terminals_only(options, terminal, seen, monkeypatch):
     stream = io.StringIO()
     stream.isatty = lambda: terminal
     monkeypatch.setattr("sys.stderr", stream)
-    assert list(machine.progress(SimpleNamespace(**options), ["one", "two"], "solving")) == ["one", "two"]
+    assert list(output.progress(SimpleNamespace(**options), ["one", "two"], "solving")) == ["one", "two"]
     assert ("one" in stream.getvalue()) == seen

@@ -12,7 +12,7 @@ from matplotlib.path import Path as CurvePath
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.views import labels, strokes
+from kinetostatics.views import drawings, labels, strokes
 from kinetostatics.views.canvas import LOAD
 from kinetostatics.views.labels import label
 from kinetostatics.views.strokes import Shape, strokes_by_owner
@@ -68,7 +68,7 @@ def test_springs_and_dampers_join_their_points(axes):
     (damper,) = lines_between(axes, pose.position(("coupler", 0.1))[:, 0], (0.35, 0.1))
     assert len(spring) == len(strokes.SPRING)
     assert len(damper) == len(strokes.DAMPER)
-    grounds = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is strokes.PIVOT]
+    grounds = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is drawings.PIVOT]
     assert {(0.6, 0.5), (0.35, 0.1), (0.0, 0.0)} == {tuple(place) for place in grounds}
 
 
@@ -171,7 +171,7 @@ def test_three_joint_links_are_plates(axes):
 @pytest.mark.slow
 def test_only_links_with_mass_show_a_centre(axes):
     pose = drawn(FOUR_BAR, axes)
-    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is strokes.MASS_CENTRE_PATH]
+    marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is drawings.MASS_CENTRE_PATH]
     assert np.allclose(marked, [pose.position(link)[:, 0] for link in ("coupler", "rocker")])
 
 
@@ -205,7 +205,7 @@ def test_pivots_stand_within_the_axes(axes):
     drawn(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, -0.2), **BARS), axes)
     axes.figure.canvas.draw()
     for line in axes.lines:
-        if line.get_marker() is strokes.PIVOT:
+        if line.get_marker() is drawings.PIVOT:
             (x, y) = axes.transData.transform(line.get_xydata()[0])
             assert axes.bbox.y0 + 0.5 * line.get_markersize() < y
             assert axes.bbox.x0 < x < axes.bbox.x1

@@ -1,5 +1,6 @@
 """What may stand at a key and what holds where it is left out, in words, from what the schema reads."""
 
+import functools
 import inspect
 import json
 import math
@@ -113,14 +114,12 @@ def words_of(function):
     """Words for what one function reads, by what it closes over or by its name."""
     inside = inspect.getclosurevars(function).nonlocals
     if "unit" in inside:
-        measure = in_unit(inside["unit"], inside.get("low"), inside.get("strict"))
-        shape = function.__qualname__.partition(".")[0]
-        return {"pair_of": f"pair of {measure}", "series_of": f"list of {measure}", "_row": f"list of {measure}"}.get(
-            shape, measure
-        )
+        return in_unit(inside["unit"], inside.get("low"), inside.get("strict"))
+    if isinstance(inside.get("read_part"), functools.partial):
+        return f"{'pair' if inside['size'] == 2 else 'list'} of {in_unit(inside['read_part'].keywords['unit'])}"
     if "rule" in inside:
         return by_rule(inside["rule"])
-    if "words" in inside:
+    if "read" in inside:
         return words_of(inside["read"])
     return {
         texts._stiffness: f'{in_unit("N/m", 0.0, False)} or `"{texts.BALANCE_THE_SLIDER}"`',

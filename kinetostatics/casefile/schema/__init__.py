@@ -7,14 +7,12 @@ from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
 from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, key_path, validate
-from .texts import BALANCE_THE_SLIDER, MID_LENGTH
 from .variants import (
     VARIANTS,
     CamVariant,
     CaseTable,
     ChainUnitVariant,
     ChainVariant,
-    CrankSliderVariant,
     FourBarVariant,
     MechanismVariant,
     ProcessForceTable,
@@ -24,9 +22,7 @@ from .variants import (
 )
 
 __all__ = [
-    "BALANCE_THE_SLIDER",
     "MADE_OF",
-    "MID_LENGTH",
     "TAGS",
     "VARIANTS",
     "CamVariant",
@@ -34,7 +30,6 @@ __all__ = [
     "ChainUnitVariant",
     "ChainVariant",
     "CosineLawTable",
-    "CrankSliderVariant",
     "FourBarVariant",
     "FrontTable",
     "HarmonicTable",

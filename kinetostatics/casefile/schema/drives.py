@@ -9,9 +9,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ...drive.motor import Motor
 from ...errors import ParameterError
-from ...numbers.units import quoted, to_si
 from .tables import Table, one_of
-from .texts import reader
+from .texts import reader, series_of
 
 Factor = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Power = Annotated[float, BeforeValidator(reader("W", low=0.0, strict=True))]
@@ -23,13 +22,7 @@ MomentOfInertia = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0))]
 
 def _row_type(unit):
     """Type of a list of texts with units."""
-
-    def read(value):
-        if not isinstance(value, list) or not value:
-            raise ValueError(f'must be a list such as ["0 {unit}", "1 {unit}"], found {quoted(value)}')
-        return tuple(to_si(part, unit) for part in value)
-
-    return Annotated[tuple[float, ...] | None, BeforeValidator(read)]
+    return Annotated[tuple[float, ...] | None, BeforeValidator(series_of(unit, "0", "1", 1))]
 
 
 class MotorTable(Table):

@@ -22,7 +22,7 @@ from ...machine.loads.points import PLACE_FORMS, PlacePairRule, PlaceRule
 from ...numbers import checks
 from ...numbers.units import quoted, to_si
 from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in
-from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
+from .texts import Angle, Coordinate, GuidePoints, Stiffness, list_reader, pair_of, reader
 
 GUIDE_FIELDS = {
     "guide_angle": (Angle | None, None),
@@ -44,7 +44,10 @@ def field_of(rule) -> Any:
         unit = _case_unit(rule.unit)
         return Annotated[float, BeforeValidator(reader(unit, low=rule.low, strict=rule.strict)), unit]
     if isinstance(rule, checks.Pair | PlaceRule | PlacePairRule):
-        return Annotated[Any, BeforeValidator(_numbers_reader(rule)), rule]
+        read = _read_two_points if isinstance(rule, PlacePairRule) else _read_point
+        if isinstance(rule, checks.Pair):
+            read = pair_of(_case_unit(rule.unit))
+        return Annotated[Any, BeforeValidator(read), rule]
     return Annotated[Any, BeforeValidator(value_reader(rule))]
 
 
@@ -68,13 +71,6 @@ def value_reader(rule):
     return take
 
 
-def _numbers_reader(rule):
-    """Function that reads a pair, a point or two points, with numbers as text."""
-    if isinstance(rule, PlacePairRule):
-        return _read_two_points
-    return _read_point if isinstance(rule, PlaceRule) else pair_of(_case_unit(rule.unit))
-
-
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")
 """Begin of a number, which is no name of a link."""
 POINT_FORMS = f'{PLACE_FORMS}, such as "B", ["coupler", "0.5 m", "0.1 m"] or ["1 m", "0 m"]'
@@ -89,10 +85,7 @@ def _read_point(value):
     return value_reader(PlaceRule())(value)
 
 
-def _read_two_points(value):
-    if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f"must be a pair of points, each {POINT_FORMS}, found {quoted(value)}")
-    return tuple(map(_read_point, value))
+_read_two_points = list_reader(_read_point, f"a pair of points, each {POINT_FORMS}", 2)
 
 
 def _table_model(word, kind, **other) -> Any:
@@ -134,12 +127,9 @@ SPECIAL_FIELDS: dict[Any, dict[str, Any]] = {
 LOADS = {kind.PATH.replace("_", " "): kind for kind in KINDS if kind is not Gravity}
 
 
-def _table_models(kinds):
-    return {word: _table_model(word, kind, **SPECIAL_FIELDS.get(kind, {})) for word, kind in kinds.items()}
-
-
-Groups = list_of(one_of("group", _table_models(GROUPS)), "groups", 1)
-Loads = list_of(one_of("load", _table_models(LOADS)), "loads")
+_tables = {word: _table_model(word, kind, **SPECIAL_FIELDS.get(kind, {})) for word, kind in (GROUPS | LOADS).items()}
+Groups = list_of(one_of("group", {word: _tables[word] for word in GROUPS}), "groups", 1)
+Loads = list_of(one_of("load", {word: _tables[word] for word in LOADS}), "loads")
 
 MEANINGS = {
     "guide_angle": "Direction of the guide, from +x.",

@@ -28,6 +28,7 @@ from .texts import (
     Period,
     Point,
     Weight,
+    list_reader,
     reader,
     series_of,
     with_alternative,
@@ -69,15 +70,8 @@ def one_of(family, models: dict[str, Any]) -> Any:
 
 def list_of(kind, name, least=0) -> Any:
     """Type of a list of at least `least` tables."""
-
-    def read(value):
-        if not isinstance(value, list) or len(value) < least:
-            raise ValueError(
-                f"must be a list of tables, each under [[{name}]], {least} at least, found {quoted(value)}"
-            )
-        return value
-
-    return Annotated[tuple[kind, ...], BeforeValidator(read)]
+    words = f"a list of tables, each under [[{name}]], {least} at least"
+    return Annotated[tuple[kind, ...], BeforeValidator(list_reader(lambda part: part, words, least=least))]
 
 
 class LinkTable(Table):

@@ -4,6 +4,7 @@ Each type ends with its SI unit, by which `build.places_by_path` finds the numbe
 """
 
 import math
+from functools import partial
 from typing import Annotated
 
 from pydantic import BeforeValidator, Field
@@ -58,29 +59,30 @@ def _stiffness(text):
     return text if text == BALANCE_THE_SLIDER else with_alternative(_STIFFNESS, f'"{BALANCE_THE_SLIDER}"')(text)
 
 
+def list_reader(read_part, words, size=None, least=0):
+    """Function that reads a list of `size` parts, or of `least` parts at least; `words` tell what it must be."""
+
+    def read(value):
+        if not isinstance(value, list | tuple) or len(value) < (size or least) or len(value) > (size or len(value)):
+            raise ValueError(f"must be {words}, found {quoted(value)}")
+        return tuple(map(read_part, value))
+
+    return read
+
+
 def pair_of(unit):
     """Function that reads a pair of texts with units."""
-
-    def read(value):
-        if not isinstance(value, list) or len(value) != 2:
-            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {quoted(value)}')
-        return tuple(to_si(part, unit) for part in value)
-
-    return read
+    return list_reader(partial(to_si, unit=unit), f'a pair such as ["0.1 {unit}", "0 {unit}"]', 2)
 
 
-def series_of(unit):
-    """Function that reads a list of texts with units, the coefficients of a series."""
-
-    def read(value):
-        if not isinstance(value, list | tuple):
-            raise ValueError(f'must be a list such as ["0.3 {unit}", "0.02 {unit}"], found {quoted(value)}')
-        return tuple(to_si(part, unit) for part in value)
-
-    return read
+def series_of(unit, first="0.3", second="0.02", least=0):
+    """Function that reads a list of texts with units; two numbers are its example."""
+    words = f'a list such as ["{first} {unit}", "{second} {unit}"]'
+    return list_reader(partial(to_si, unit=unit), words, least=least)
 
 
 point = pair_of("m")
+_two_points = list_reader(point, 'two points such as [["0 m", "0 m"], ["1 m", "0 m"]]', 2)
 
 
 def _centre(value):
@@ -94,12 +96,6 @@ def _sampling(text):
     if not math.radians(0.001) <= value <= math.pi:
         raise ValueError(f"must be a step of the crank angle from 0.001 to 180 deg, found {text!r}")
     return value
-
-
-def _two_points(value):
-    if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {quoted(value)}')
-    return tuple(point(part) for part in value)
 
 
 def _period(text):

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
 from ...numbers.formatting import pretty_unit
-from ..canvas import display_unit, drawn_limit, with_peaks
+from ..canvas import close_curve, display_unit, drawn_limit, with_peaks
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
 """Quiet colours of the machines, in their order."""
@@ -31,13 +31,6 @@ def require_bokeh():
             'the report\'s figures need Bokeh, which is not installed: pip install "kinetostatics[report]"'
         ) from None
     return bokeh
-
-
-def bokeh_script():
-    """Bokeh's script, to embed in the page."""
-    from bokeh.resources import Resources
-
-    return "\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])
 
 
 def over_turn(solutions, name, height=300):
@@ -67,7 +60,10 @@ def curves_over(names, curves, label, height=300):
     for row in range(len(names)):
         angle, value = curves.get(row, (np.empty(0), np.empty(0)))
         if len(angle):
-            angle, value = _repeat(angle, value, period)
+            own = _period(angle)
+            turns = np.arange(max(1, round(period / own)))  # a closed curve over as many of its periods as fit
+            angle = np.append((own * turns[:, None] + angle).ravel(), own * len(turns))
+            value = np.append(np.tile(value, len(turns)), value[:1])
         _line(plot, row, names[row], {"angle": angle, "value": value})
     plot.x_range.update(start=0.0, end=period, bounds=(-0.02 * period, 1.02 * period))
     plot.below[0].ticker = np.linspace(0.0, period, 9).tolist()
@@ -78,15 +74,6 @@ def curves_over(names, curves, label, height=300):
 
 def _period(angle):
     return float(angle[-1] - angle[0] + np.max(np.diff(angle))) if len(angle) > 1 else 360.0
-
-
-def _repeat(angle, value, period):
-    """A closed curve over as many of its periods as the longest one contains."""
-    own = _period(angle)
-    turns = np.arange(max(1, round(period / own)))
-    return np.append((own * turns[:, None] + angle).ravel(), own * len(turns)), np.append(
-        np.tile(value, len(turns)), value[:1]
-    )
 
 
 def hodograph(solutions, name, height=420):
@@ -104,17 +91,14 @@ def hodograph(solutions, name, height=420):
     for row, vector in vectors.items():
         angle = np.degrees(have[row].crank_angle)
         x, y = factor * vector
-        _line(plot, row, names[row], {"angle": _close(angle), "x": _close(x), "y": _close(y)}, "x", "y")
+        closed = close_curve(np.stack([angle, x, y]))
+        _line(plot, row, names[row], dict(zip(("angle", "x", "y"), closed, strict=True)), "x", "y")
         plot.scatter(
             [x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}"
         )
     text = "@x{0.0000 a}, @y{0.0000 a}"
     _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("x, y", text)], "mouse")
     return plot
-
-
-def _close(values):
-    return np.append(values, values[:1])
 
 
 def _plot(height, x_label, y_label, **options):

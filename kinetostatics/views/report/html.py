@@ -45,11 +45,20 @@ def page(subject, progress=lambda text: None):
         warnings.simplefilter("always")
         found = _contents(subject, progress)
     progress("page")
-    return _template().render(found, remarks=tables.remarks(caught) + found["reasons"])
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    made = Environment(
+        loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    # in order: Bokeh's models stand before what refers to them
+    made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
+    warned = dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning))
+    return made.get_template("page.html.j2").render(found, remarks=[*warned, *found["reasons"]])
 
 
 def _contents(subject, progress):
     """Contents of the template."""
+    from bokeh.resources import Resources
     from markupsafe import Markup
 
     progress("movement")
@@ -93,8 +102,11 @@ def _contents(subject, progress):
         "data": {**moving, **turning, "quantities": values, "colours": figures.COLOURS},
         "style": Markup(_text("style.css")),
         "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
-        "library": Markup(figures.bokeh_script()),
-        "speeds": [_speed(machine) for machine in subject.machines.values()],
+        "library": Markup("\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])),
+        "speeds": [
+            {"rpm": mean * 30.0 / math.pi, "turn": 2.0 * math.pi / mean if mean else math.inf}
+            for mean in (float(np.mean(np.abs(machine.scene.crank_speed))) for machine in subject.machines.values())
+        ],
     }
 
 
@@ -109,22 +121,20 @@ def _published(subject):
 
 def _same_torque_text(subject):
     """Sentence on machines with equal torque, whose curves coincide; "" if there are none."""
-    groups: list[list] = []
-    for machine in subject.machines.values():
-        group = next((group for group in groups if _same(group[0], machine)), None)
-        if group is None:
-            groups.append([machine])
+    groups: list[list[str]] = []
+    torques = {name: solution.balancing_torque for name, solution in subject.solutions.items()}
+    for name, torque in torques.items():
+        for group in groups:
+            first = torques[group[0]]
+            if first.shape == torque.shape and np.nanmax(np.abs(first - torque)) < 1e-9 * np.nanmax(
+                np.abs(first), initial=1e-300
+            ):
+                group.append(name)
+                break
         else:
-            group.append(machine)
-    same = [" and ".join(machine.name for machine in group) for group in groups if len(group) > 1]
+            groups.append([name])
+    same = [" and ".join(group) for group in groups if len(group) > 1]
     return f"Curves lie on one another where machines take the same torque: {'; '.join(same)}." if same else ""
-
-
-def _same(first, second):
-    torques = first.solution.balancing_torque, second.solution.balancing_torque
-    if torques[0].shape != torques[1].shape:
-        return False
-    return bool(np.nanmax(np.abs(torques[0] - torques[1])) < 1e-9 * np.nanmax(np.abs(torques[0]), initial=1e-300))
 
 
 def _turning(subject):
@@ -132,7 +142,9 @@ def _turning(subject):
     machines = list(subject.machines.values())
     first = subject.reference.solution
     torque = np.abs(first.balancing_torque)
-    unit = display_unit("N", _forces(subject))
+    solutions = [machine.solution for machine in machines]
+    forces = [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
+    unit = display_unit("N", forces)
     return {
         "step": subject.reference.step,
         "counts": [machine.solution.crank_angle.size for machine in machines],
@@ -141,17 +153,6 @@ def _turning(subject):
         "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
         "forceUnit": {"factor": unit[0], "unit": pretty_unit(unit[1])},
     }
-
-
-def _forces(subject):
-    solutions = [machine.solution for machine in subject.machines.values()]
-    return [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
-
-
-def _speed(machine):
-    speed = np.ravel(machine.scene.crank_speed)
-    mean = float(np.mean(np.abs(speed)))
-    return {"rpm": mean * 30.0 / math.pi, "turn": 2.0 * math.pi / mean if mean else math.inf}
 
 
 def _figures(subject, values, runs):
@@ -171,7 +172,15 @@ def _figures(subject, values, runs):
     if any(lose(solution) for solution in solutions.values()) and "friction_loss" in values:
         made["loss"] = figures.over_turn(solutions, "friction_loss", 260)
     if runs:
-        made |= _drive_figures(subject, runs)
+        names = {name: row for row, name in enumerate(subject.machines)}
+        angles = {name: np.degrees(run.crank_angle) for name, run in runs.items()}
+        speeds = {names[name]: (angles[name], run.speed) for name, run in runs.items()}
+        ratios = {name: run.motor.transmission if run.motor else 1.0 for name, run in runs.items()}
+        torques = {name: ratios[name] * run.motor_torque for name, run in runs.items()}
+        factor, unit = display_unit("N m", torques.values())
+        drawn = {names[name]: (angles[name], factor * torque) for name, torque in torques.items()}
+        made["speed"] = figures.curves_over(list(names), speeds, "crank speed [rad/s]", 260)
+        made["motor"] = figures.curves_over(list(names), drawn, f"motor torque [{pretty_unit(unit)}]", 260)
     return {
         "items": {name: json_item(plot) for name, plot in made.items()},
         "places": {name: place for place, name in enumerate(made)},
@@ -180,36 +189,8 @@ def _figures(subject, values, runs):
     }
 
 
-def _drive_figures(subject, runs):
-    """Figures of crank speed and of motor torque at the crank in periodic running."""
-    names = list(subject.machines)
-
-    def curves(values):
-        return {names.index(name): (np.degrees(run.crank_angle), values(run)) for name, run in runs.items()}
-
-    torques = curves(lambda run: (run.motor.transmission if run.motor else 1.0) * run.motor_torque)
-    factor, unit = display_unit("N m", [value for _, value in torques.values()])
-    torques = {row: (angle, factor * value) for row, (angle, value) in torques.items()}
-    return {
-        "speed": figures.curves_over(names, curves(lambda run: run.speed), "crank speed [rad/s]", 260),
-        "motor": figures.curves_over(names, torques, f"motor torque [{pretty_unit(unit)}]", 260),
-    }
-
-
 def _text(name):
     return resources.files(__package__).joinpath("page", name).read_text(encoding="utf-8")
-
-
-def _template():
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
-    made = Environment(
-        loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    made.policies["json.dumps_kwargs"] = {
-        "separators": (",", ":")
-    }  # in order: Bokeh's models stand before what refers to them
-    return made.get_template("page.html.j2")
 
 
 BROWSERS = (
@@ -257,14 +238,8 @@ def print_page(path, pdf):
     with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
         made = Path(folder) / "page.pdf"
         command = [
-            *(
-                found,
-                "--headless",
-                "--disable-gpu",
-                "--disable-dev-shm-usage",
-                "--no-first-run",
-                "--window-size=1010,1400",
-            ),
+            *(found, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"),
+            "--window-size=1010,1400",
             *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={RENDER_TIME}", "--no-pdf-header-footer"),
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             *(f"--print-to-pdf={made}", Path(path).resolve().as_uri()),

@@ -11,8 +11,8 @@ import numpy as np
 from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
 from .. import strokes
-from ..animations import UNCLIPPED_SHARE
-from ..strokes import Shape, Stroke
+from ..canvas import close_curve
+from ..strokes import UNCLIPPED_SHARE, Shape, Stroke
 
 ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
@@ -65,13 +65,6 @@ def _largest(solution, joint):
     return float(np.quantile(size, UNCLIPPED_SHARE) if solution.mechanism.grows(joint) else size.max())
 
 
-def _arrow(vector, size):
-    """Vectors at the scale of the drawing, limited to `MAX_ARROW`."""
-    length = magnitude(vector)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return vector * np.minimum(1.0, MAX_ARROW * size / np.where(length > 0, length, 1.0))
-
-
 def _drawing(name, shape, scale, boxes):
     solution = shape.turn
     made = solution.mechanism
@@ -81,7 +74,12 @@ def _drawing(name, shape, scale, boxes):
     outputs = made.outputs
     arrows = {joint: outputs[joint].at or joint for joint in solution.reactions}
     places = {joint: solution.position(joint) for joint in dict.fromkeys([*made.joints, *arrows.values()])}
-    boxes += [places[at] + _arrow(scale * solution.reaction(joint), shape.size) for joint, at in arrows.items()]
+    for joint, at in arrows.items():
+        vector = scale * solution.reaction(joint)
+        length = magnitude(vector)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            shown = np.minimum(1.0, MAX_ARROW * shape.size / np.where(length > 0, length, 1.0))
+        boxes.append(places[at] + vector * shown)
     return {
         "name": name,
         "kind": made.name,
@@ -103,23 +101,16 @@ def _fixed_strokes(shape):
         return Stroke(kind, np.asarray(points, dtype=float)[..., None])
 
     for joint in mechanism.curves:
-        yield still("curve", _closed(turn.position(joint)))
+        yield still("curve", close_curve(turn.position(joint)))
     for bar in mechanism.crank.bars:
-        yield still("circle", _closed(turn.position(bar.end)))
-    for slider, guide in mechanism.guides.items():
-        along = np.asarray(guide.direction, dtype=float)
-        below, reach = 0.6 * unit * strokes.left(along), 1.5 * unit * along
-        start, end = shape.ways[slider].T
-        yield still("rail", strokes.hatched_line(start - reach - below, end + reach - below, 0.5 * unit))
+        yield still("circle", close_curve(turn.position(bar.end)))
+    for rail in shape.rails():
+        yield still("rail", rail)
     for point in shape.grounds(turn.loads):
         foot = np.array([[0.0, -0.7, 0.7], [0.0, -1.0, -1.0]]) * unit
         yield still("ground", point[:, None] + foot)
         ends = point[:, None] + unit * np.array([[1.0, -1.0], [-1.0, -1.0]])
         yield still("rail", strokes.hatched_line(ends[:, 1], ends[:, 0], 0.4 * unit))
-
-
-def _closed(path):
-    return np.concatenate([path, path[:, :1]], axis=1)
 
 
 def _stroke_data(stroke, size):
@@ -128,9 +119,15 @@ def _stroke_data(stroke, size):
     sent = {"kind": stroke.kind, "filled": stroke.kind in FILLED_KINDS, "points": to_base64(points[..., 0].T)}
     if points.shape[2] == 1 or _same(points, points[..., :1], size):
         return sent
-    pose = _poses(points)
-    if _same(points, _transform(points[..., 0], pose), size):
-        return sent | {"poses": to_base64(pose.T)}
+    # the best-fit shift and angle of a rigid body, from the first pose to each
+    middles = np.nanmean(points, axis=1)
+    first, others = points[..., 0] - middles[:, :1], points - middles[:, None]
+    cross = np.nansum(first[0][:, None] * others[1] - first[1][:, None] * others[0], axis=0)
+    dot = np.nansum(first[0][:, None] * others[0] + first[1][:, None] * others[1], axis=0)
+    angle = np.arctan2(cross, dot)
+    shift = middles - _rotate(middles[:, :1], angle)
+    if _same(points, _rotate(points[..., :1], angle) + shift[:, None], size):
+        return sent | {"poses": to_base64(np.stack([*shift, angle]).T)}
     return sent | {"shapes": to_base64(points.transpose(2, 1, 0))}
 
 
@@ -141,22 +138,6 @@ def _same(points, others, size):
     return bool(np.max(np.abs(points - others), where=~gaps, initial=0.0) < RIGID_TOLERANCE * size)
 
 
-def _poses(points):
-    """Best-fit shift and angle, (3, N), from the points of the first pose to those of each pose."""
-    middles = np.nanmean(points, axis=1)
-    first, others = points[..., 0] - middles[:, :1], points - middles[:, None]
-    cross = np.nansum(first[0][:, None] * others[1] - first[1][:, None] * others[0], axis=0)
-    dot = np.nansum(first[0][:, None] * others[0] + first[1][:, None] * others[1], axis=0)
-    angle = np.arctan2(cross, dot)
-    shift = middles - _rotate(middles[:, :1], angle)
-    return np.stack([*shift, angle])
-
-
 def _rotate(points, angle):
     (x, y), cosine, sine = points, np.cos(angle), np.sin(angle)
     return np.stack([cosine * x - sine * y, sine * x + cosine * y])
-
-
-def _transform(points, poses):
-    """Points (2, K) in all poses, (2, K, N)."""
-    return _rotate(points[..., None], poses[2]) + poses[:2, None]

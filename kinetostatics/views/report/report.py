@@ -104,13 +104,6 @@ class Subject:
     def solutions(self):
         return {name: machine.solution for name, machine in self.machines.items()}
 
-    def comparison(self, machine):
-        """Table of dynamic coefficients against the reference, with published figures, and a table of error bounds."""
-        names = self.reference.name, machine.name
-        found = Comparison(self.reference.solution, machine.solution, names)
-        table = found.frame()
-        return table if self.case is None else self.case.with_published(table), found.error_bounds()
-
     @cached_property
     def files(self):
         """Name and SHA-256 of each file of the case."""
@@ -135,7 +128,16 @@ def subject_of(what, variant=None, title=None, command="") -> Subject:
     names = dict.fromkeys([case.reference, *(case.variants if variant is None else [variant])])
     scenes = {name: case.variants[name].scene for name in names}
     step = _step(scenes.values())
-    machines = {name: _of_variant(name, case.variants[name], step) for name in names}
+    machines = {}
+    for name in names:
+        variant = case.variants[name]
+        units, derived = variant.units, variant.scene.parameters
+        given = {  # a parameter that the file leaves open or gives as a word has its derived number
+            path: (derived.get(path, value) if value is None or isinstance(value, str) else value, units[path])
+            for path, value in variant.parameters.items()
+            if value is not None or path in derived
+        }
+        machines[name] = Machine(name, variant.scene, step, given, variant)
     return Subject(title or case.title, case.source, machines, command, case)
 
 
@@ -158,30 +160,13 @@ def _of_scenes(scenes, variant, title, command):
             "give a scene of one design, and what varies over the turn as a ks.Table or a function"
         )
     step = _step(scenes.values())
-    machines = {str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()}
+    machines = {}
+    for name, scene in scenes.items():
+        units = scene.units
+        given = {path: (value, units[path]) for path, value in scene.parameters.items()}
+        machines[str(name)] = Machine(str(name), scene, step, given)
     kinds = dict.fromkeys(scene.mechanism.name for scene in scenes.values())
     return Subject(title or " and ".join(kinds), "", machines, command)
-
-
-def _numbers(scene):
-    units = scene.units
-    return {path: (value, units[path]) for path, value in scene.parameters.items()}
-
-
-def _of_variant(name, variant, step):
-    units = variant.units
-    derived = variant.scene.parameters
-    given = {
-        path: (_number_or_word(path, value, derived), units[path])
-        for path, value in variant.parameters.items()
-        if value is not None or path in derived
-    }
-    return Machine(name, variant.scene, step, given, variant)
-
-
-def _number_or_word(path, value, derived):
-    """The value, or the derived number for a parameter that the file leaves open or gives as a word."""
-    return derived.get(path, value) if value is None or isinstance(value, str) else value
 
 
 def _step(scenes):
@@ -241,7 +226,15 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
     >>> ks.report(press, "press.html", title="Press")  # doctest: +SKIP
     PosixPath('press.html')
     """
-    case = _read_case(what)
+    case = what
+    if not (isinstance(what, Case | Scene) or hasattr(what, "items")):
+        try:
+            case = load_case(what)
+        except ParameterError:
+            raise ParameterError(
+                f"report takes a case, the name or path of one, a Scene or a mapping of label to Scene, got a "
+                f"{type(what).__name__}"
+            ) from None
     inputs = case.files if isinstance(case, Case) else ()
     checks.require(
         "report",
@@ -276,16 +269,3 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
             with files.write_atomically(pdf) as temporary:
                 html.print_page(path, temporary)
     return Path(path)
-
-
-def _read_case(what):
-    """The case of a name or path; cases and scenes as they are."""
-    if isinstance(what, Case | Scene) or hasattr(what, "items"):
-        return what
-    try:
-        return load_case(what)
-    except ParameterError:
-        raise ParameterError(
-            f"report takes a case, the name or path of one, a Scene or a mapping of label to Scene, got a "
-            f"{type(what).__name__}"
-        ) from None

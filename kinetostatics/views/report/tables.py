@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import CaseError, DriveError, KinetostaticsError, NotGivenError, ParameterError
+from ...casefile.variant import run_under_motors
+from ...errors import CaseError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
-from ...results.comparison import left_out
+from ...results.comparison import Comparison, left_out
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from ...results.rounding import FLOOR, zeroed
@@ -114,14 +115,35 @@ def readings(machines):
             if quantity.kind in KINDS and name not in found and not _is_still(machine.solution, quantity):
                 found[name] = {
                     "quantity": quantity,
-                    "of": [_values(other, other.solution, name) for other in machines.values()],
+                    "values": [_values(other, other.solution, name) for other in machines.values()],
                     "between": [_values(other, other.between, name) for other in machines.values()],
                 }
     ordered = sorted(found.items(), key=lambda item: KINDS.index(item[1]["quantity"].kind))
     texts = {
         name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
     }
-    return {name: _reading_data(text=texts.get(name, ""), **item) for name, item in ordered}
+    for name, item in ordered:
+        quantity = item["quantity"]
+        arrays = [values for values in item["values"] if values is not None]
+        sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
+        factor, unit = display_unit(quantity.unit, sizes)
+        sight = drawn_limit(sizes)
+        sent = {
+            key: [None if values is None else to_base64(factor * values, "<f8") for values in item[key]]
+            for key in ("values", "between")
+        }
+        found[name] = {
+            "label": quantity.label,
+            "kind": quantity.kind,
+            "text": texts.get(name, ""),
+            "unit": pretty_unit(unit),
+            "factor": factor,
+            "vector": quantity.vector,
+            "sight": factor * sight if np.isfinite(sight) else None,
+            "decimals": decimals(factor * ordinary_size(sizes)),
+            **sent,
+        }
+    return {name: found[name] for name, _ in ordered}
 
 
 def _is_still(solution, quantity):
@@ -134,25 +156,6 @@ def _values(machine, solution, name):
         return None
     shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(machine.solution, name)))
     return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
-
-
-def _reading_data(quantity, of, between, text):
-    arrays = [values for values in of if values is not None]
-    sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
-    factor, unit = display_unit(quantity.unit, sizes)
-    sight = drawn_limit(sizes)
-    return {
-        "label": quantity.label,
-        "kind": quantity.kind,
-        "text": text,
-        "unit": pretty_unit(unit),
-        "factor": factor,
-        "vector": quantity.vector,
-        "sight": factor * sight if np.isfinite(sight) else None,
-        "decimals": decimals(factor * ordinary_size(sizes)),
-        "values": [None if values is None else to_base64(factor * values, "<f8") for values in of],
-        "between": [None if values is None else to_base64(factor * values, "<f8") for values in between],
-    }
 
 
 def decimals(largest):
@@ -230,7 +233,10 @@ def _coefficients(subject):
     name = subject.reference.name
     frames, bounds = {}, {}
     for machine in subject.others:
-        frames[machine.name], bounds[machine.name] = subject.comparison(machine)
+        found = Comparison(subject.reference.solution, machine.solution, (name, machine.name))
+        frame = found.frame()
+        frames[machine.name] = frame if subject.case is None else subject.case.with_published(frame)
+        bounds[machine.name] = found.error_bounds()
     rows = []
     more = {
         row
@@ -265,23 +271,23 @@ def _value_and_ratio(row, errors, name):
 
 def extremes(subject):
     """Tables of the extremes of every quantity of each machine, with certain digits."""
-    return [_of_extremes(machine) for machine in subject.machines.values()]
-
-
-def _of_extremes(machine):
-    rows = []
-    for name, (quantity, (low, low_at, high, high_at), (low_error, _, high_error, _)) in machine.extremes.items():
-        digits = _proven_digits((low, low_error), (high, high_error))
-        if digits is None:
-            digits = _digits(machine.solution, name, np.nan_to_num([low_at, high_at]))
-        most = DIGITS if digits is None else digits
-        smallest, largest = number(low, most, low_error), number(high, most, high_error)
-        told = str(digits) if digits is not None and (low or high) else ""
-        rows.append(
-            [quantity.label, pretty_unit(quantity.unit), smallest, angle(low_at), largest, angle(high_at), told]
-        )
     heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
-    return Table(machine.name, heads, rows, 2)
+    tables = []
+    for machine in subject.machines.values():
+        rows = []
+        for name, (quantity, ends, (low_error, _, high_error, _)) in machine.extremes.items():
+            low, low_at, high, high_at = ends
+            digits = _proven_digits((low, low_error), (high, high_error))
+            if digits is None:
+                digits = _digits(machine.solution, name, np.nan_to_num([low_at, high_at]))
+            most = DIGITS if digits is None else digits
+            smallest, largest = number(low, most, low_error), number(high, most, high_error)
+            told = str(digits) if digits is not None and (low or high) else ""
+            rows.append(
+                [quantity.label, pretty_unit(quantity.unit), smallest, angle(low_at), largest, angle(high_at), told]
+            )
+        tables.append(Table(machine.name, heads, rows, 2))
+    return tables
 
 
 def _proven_digits(*ends):
@@ -380,24 +386,11 @@ def losses(subject):
 
 def drive_tables(subject):
     """Periodic running by machine under the motor of the case, its tables, and reasons for failures."""
-    from ...drive.savings import energy_table, running_table, speed_hint
-    from ...drive.steady_running import steady
-    from ...drive.transient import start
+    from ...drive.savings import energy_table, running_table
 
-    runs: dict[str, Any] = {}
-    starts: dict[str, Any] = {}
-    reasons = []
-    for name, machine in subject.machines.items():
-        if machine.motor is None:
-            continue
-        parts = machine.scene, machine.motor, machine.variant.flywheel
-        try:
-            runs[name], starts[name] = steady(*parts), None
-            starts[name] = start(*parts)
-        except DriveError as error:
-            reasons.append(f"{name}: {error}")
-        if name in runs and (doubt := speed_hint(runs[name], machine.scene)):
-            reasons.append(f"{name}: {doubt}")
+    driven = {name: machine.variant for name, machine in subject.machines.items() if machine.motor is not None}
+    runs, starts, told = run_under_motors(driven)
+    reasons = [f"{name}: {text}" for name, texts in told.items() for text in texts]
     tables = []
     if runs:
         tables.append(table_of_frame(running_table(runs, starts), "Speed, power and start-up"))
@@ -413,11 +406,10 @@ def inputs(subject):
     for path in paths:
         values = [machine.given.get(path, (None, ""))[0] for machine in machines]
         unit = next(machine.given[path][1] for machine in machines if path in machine.given)
-        if not any(value is not None and np.any(value) for value in values if not isinstance(value, str)) and not any(
-            isinstance(value, str) for value in values
-        ):
+        if not any(isinstance(value, str) or (value is not None and np.any(value)) for value in values):
             continue
-        shown, cells = _in_unit(unit, values)
+        factor, shown = (180.0 / np.pi, "°") if unit == "rad" else (1.0, pretty_unit(unit))
+        cells = [_cell(value, factor) for value in values]
         if len(set(cells)) == 1:
             common.append([path, shown, cells[0]])
         else:
@@ -433,12 +425,6 @@ def inputs(subject):
     return tables
 
 
-def _in_unit(unit, values):
-    """Readable unit, and values in it as text."""
-    factor = 180.0 / np.pi if unit == "rad" else 1.0
-    return ("°" if unit == "rad" else pretty_unit(unit)), [_cell(value, factor) for value in values]
-
-
 def _cell(value, factor):
     if value is None:
         return ""
@@ -446,8 +432,3 @@ def _cell(value, factor):
         return value
     several = np.ndim(value) > 0
     return ", ".join(number(factor * item, 10) for item in np.ravel(value)) if several else number(factor * value)
-
-
-def remarks(caught):
-    """Texts of warnings during the report, each once."""
-    return list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
