@@ -49,6 +49,7 @@ class Branch:
 
     @property
     def start(self: Any):
+        """Direction from which the crank angle is halved."""
         return self.pivot
 
     @property
