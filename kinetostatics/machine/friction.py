@@ -277,8 +277,9 @@ def friction_problems(mechanism, given):
                     f"radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
                     "smaller roller or a larger cam"
                 )
-            known = roller is not None and checks.has_known_values(roller.radius)
-            if known and np.any(other := np.asarray(given) != roller.radius):
+            if roller is None or not checks.has_known_values(roller.radius):
+                continue
+            if np.any(other := np.asarray(given) != roller.radius):
                 yield checks.Problem(
                     f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be that of the roller of its "
                     f"group, {np.max(roller.radius):.6g} m",
