@@ -117,7 +117,20 @@ def cam_crank_slider(
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     if isinstance(cam, CosineLaw | LawCam):
-        _warn_off_law(cam, group)
+        own, offset = group.guide, getattr(cam, "guide_offset", 0.0)
+        direction = np.cos(own.guide_angle - cam.guide_angle)
+        length, wanted = group.coupler_length, cam.coupler_length
+        facts = (
+            (f"guide_offset {own.guide_offset} m is not {offset:.9g}", own.guide_offset, offset),
+            (f"assembly {group.assembly} is not +1", group.assembly, 1.0),
+            (f"guide_angle {own.guide_angle} is not the cam's {cam.guide_angle}", direction, 1.0),
+            (f"coupler_length {length} m is not the cam's {wanted} m", length, wanted),
+        )
+        known = [fact for fact in facts if all(map(checks.has_known_values, fact[1:]))]
+        wrong = [text for text, value, by_law in known if np.any(np.abs(value - by_law) > 1e-9)]
+        if wrong:
+            kind = "cosine law" if isinstance(cam, CosineLaw) else "law"
+            warnings.warn(f"the slider will not follow the {kind} of its cam: {'; '.join(wrong)}", stacklevel=2)
     return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block, roller), group))
 
 
@@ -266,25 +279,6 @@ def scotch_yoke(
     """
     group = YokeGroup(_guide(guide, guide_angle, guide_offset), slot_angle, slider=slider, block=block)
     return Mechanism("Scotch yoke", Crank(crank_length, crank), (group,))
-
-
-def _warn_off_law(cam, group):
-    """Warn if the slider will not follow the law that the cam is cut for."""
-    angle, length = group.guide.guide_angle, group.coupler_length
-    offset = getattr(cam, "guide_offset", 0.0)
-    wrong = [
-        text
-        for text, value, wanted in [
-            (f"guide_offset {group.guide.guide_offset} m is not {offset:.9g}", group.guide.guide_offset, offset),
-            (f"assembly {group.assembly} is not +1", group.assembly, 1.0),
-            (f"guide_angle {angle} is not the cam's {cam.guide_angle}", np.cos(angle - cam.guide_angle), 1.0),
-            (f"coupler_length {length} m is not the cam's {cam.coupler_length} m", length, cam.coupler_length),
-        ]
-        if checks.has_known_values(value) and checks.has_known_values(wanted) and np.any(np.abs(value - wanted) > 1e-9)
-    ]
-    if wrong:
-        kind = "cosine law" if isinstance(cam, CosineLaw) else "law"
-        warnings.warn(f"the slider will not follow the {kind} of its cam: {'; '.join(wrong)}", stacklevel=3)
 
 
 def _guide(guide, angle, offset):

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.planar import add_vectors, minus, number_or_zero, subtract_vectors, vector_or_zero
-from .group import FRAME, Bar, Group, Output, Point, Resolved
+from .group import EMPTY, FRAME, Bar, Group, Output, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, arm, first_at, present, second_at
 
@@ -184,20 +184,13 @@ class Pin(checks.Checked, Group):
     LINKS: ClassVar[dict[str, str]] = {}
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_"}
+    hangs_on, outputs = (), EMPTY
     RULES = checks.Rules("pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name())
 
     @property
     def label(self):
         """Its name, for the paths of its numbers: "pin_C.along"."""
         return self.name
-
-    @property
-    def hangs_on(self):
-        return ()
-
-    @property
-    def outputs(self):
-        return {}
 
     @property
     def joints(self):

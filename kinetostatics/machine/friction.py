@@ -217,7 +217,7 @@ class Frictions(Mapping, Batched):
         """Skip checks: `friction_problems` makes them with the mechanism."""
 
     def __getitem__(self, name):
-        return next((rub.friction for rub in self.rubs if rub.joint == name), None) or _missing(name)
+        return {rub.joint: rub.friction for rub in self.rubs}[name]
 
     def __iter__(self):
         return (rub.joint for rub in self.rubs)
@@ -240,10 +240,6 @@ class Frictions(Mapping, Batched):
 
 
 NO_FRICTION = Frictions()
-
-
-def _missing(name):
-    raise KeyError(name)
 
 
 def frictions_by_joint(given):
@@ -270,32 +266,22 @@ def friction_problems(mechanism, given):
             ]
             yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"
         elif isinstance(pairs[name], Rolling):
-            yield from _too_large(mechanism, name, friction)
-            yield from _another(mechanism, name, friction)
-
-
-def _too_large(mechanism, name, friction):
-    """Yield the problem of a roller that is larger than the least radius of curvature of its path."""
-    tightest = next((getattr(group, "tightest", None) for group in mechanism.groups if name in group.pairs), None)
-    if tightest is None or not (checks.has_known_values(tightest) and checks.has_known_values(friction.roller_radius)):
-        return
-    if np.any(np.asarray(friction.roller_radius) >= tightest):
-        yield (
-            f"friction: roller_radius of {name!r}, {np.max(friction.roller_radius):.6g} m, must be less than the "
-            f"smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
-            "smaller roller or a larger cam"
-        )
-
-
-def _another(mechanism, name, friction):
-    """Yield the problem of a roller whose radius in its friction is not that on its cam."""
-    roller = next((getattr(group, "roller", None) for group in mechanism.groups if name in group.pairs), None)
-    given = friction.roller_radius
-    if roller is None or not (checks.has_known_values(roller.radius) and checks.has_known_values(given)):
-        return
-    if np.any(other := np.asarray(given) != roller.radius):
-        yield checks.Problem(
-            f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be that of the roller of its group, "
-            f"{np.max(roller.radius):.6g} m",
-            other,
-        )
+            group = next(group for group in mechanism.groups if name in group.pairs)
+            given = friction.roller_radius
+            tightest, roller = getattr(group, "tightest", None), getattr(group, "roller", None)
+            if not checks.has_known_values(given):
+                continue
+            if tightest is not None and checks.has_known_values(tightest) and np.any(np.asarray(given) >= tightest):
+                yield (
+                    f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be less than the smallest "
+                    f"radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
+                    "smaller roller or a larger cam"
+                )
+            if roller is None or not checks.has_known_values(roller.radius):
+                continue
+            if np.any(other := np.asarray(given) != roller.radius):
+                yield checks.Problem(
+                    f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be that of the roller of its "
+                    f"group, {np.max(roller.radius):.6g} m",
+                    other,
+                )

@@ -315,11 +315,19 @@ class Group:
         """Entries of a table for its links, in the order of `LINKS`; None without one."""
         return [table.get(self.called(name)) for name in self.LINKS]
 
-    def enter(self, placement, motion, joints, links, travels=None):
-        """Add to a placement joints by name, links and travels by name without the label, and `motion` as details."""
+    def enter(self, placement, motion, joints=EMPTY, links=None, travels=EMPTY):
+        """Add to a placement joints by name, links and travels by name without the label, and `motion` as details.
+
+        By default the links are the first fields of `motion`, in the order of `LINKS`, with reference joints of theirs.
+        """
         placement.joints.update(joints)
+        if links is None:
+            links = dict(zip(self.LINKS, motion, strict=False))
+            for link, joint in zip(links.values(), self.references.values(), strict=True):
+                if joint not in self.hangs_on:
+                    placement.joints[joint] = link.joint
         placement.links.update({self.called(name): link for name, link in links.items()})
-        placement.travels.update({self.called(name): travel for name, travel in (travels or {}).items()})
+        placement.travels.update({self.called(name): travel for name, travel in travels.items()})
         placement.details[self._key] = motion
 
     def placed(self, placement):

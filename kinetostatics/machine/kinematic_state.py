@@ -123,25 +123,21 @@ def place(group, placement):
             f"{owner} hangs on {hung}, but its place asks for {error}; it finds there what earlier parts of the chain "
             "place, and what it adds itself"
         ) from error
+    problems = []
     declared = (
-        ("joint", "joints", group.joints, Joint),
-        ("link", "links", group.links, LinkMotion),
-        ("travel of", "travels", group.guides, Joint),
+        ("joint", "joints", "joints", group.joints, Joint),
+        ("link", "links", "links", group.links, LinkMotion),
+        ("travel of", "travels", "guides", group.guides, Joint),
     )
-    checks.require(
-        owner,
-        *(
-            f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its "
-            f"{'guides' if table == 'travels' else table} declare, but puts {_shown(getattr(placement, table), name)}"
-            for what, table, names, kind in declared
+    for what, table, declaring, names, kind in declared:
+        found = getattr(placement, table)
+        problems += [
+            f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its {declaring} "
+            f"declare, but puts {checks.shown(found[name]) if name in found else 'none'}"
             for name in names
-            if not isinstance(getattr(placement, table).get(name), kind)
-        ),
-    )
-
-
-def _shown(table, name):
-    return checks.shown(table[name]) if name in table else "none"
+            if not isinstance(found.get(name), kind)
+        ]
+    checks.require(owner, *problems)
 
 
 def margin(group, placement, shape):
@@ -152,21 +148,18 @@ def margin(group, placement, shape):
     words = "one value, not several" if isinstance(found, list | tuple) else checks.not_a_number(found)
     if getattr(found, "dtype", np.dtype(float)) == np.dtype(bool):
         words = "truth values; give numbers"
-    if words is None and not _fits(np.shape(found), shape):
-        words = f"of shape {np.shape(found)}"
+    if words is None:
+        try:
+            fits = np.broadcast_shapes(np.shape(found), shape) == tuple(shape)
+        except ValueError:
+            fits = False
+        words = None if fits else f"of shape {np.shape(found)}"
     text = "a number, or an array with a value for each crank angle"
     checks.require(
         type(group).__name__,
         words and f"its closure must return its margin, {text}, got {checks.shown(found)}, {words}",
     )
     return found
-
-
-def _fits(shape, wanted):
-    try:
-        return np.broadcast_shapes(shape, wanted) == tuple(wanted)
-    except ValueError:
-        return False
 
 
 def require_positions(group, placement, margins):

@@ -49,6 +49,7 @@ class Branch:
 
     @property
     def start(self: Any):
+        """Direction from which the crank angle is halved."""
         return self.pivot
 
     @property
@@ -154,7 +155,7 @@ class Branch:
         several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
         checks.require("change points", several if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None)
         kind, first, turn = parse_passage(self.passage)[0], self._first(throws), 2 * math.pi
-        at = (0.0, math.pi)
+        at = [0.0, math.pi]
         if kind in TWO_TURN_KINDS:
-            at = (math.pi,) if kind == FAR else (0.0,)
+            at = [math.pi if kind == FAR else 0.0]
         return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn

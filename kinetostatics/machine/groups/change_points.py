@@ -93,13 +93,6 @@ def _start(pivot, ground, facing):
     return (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
 
 
-def _quarter(angle, pivot, ground, facing):
-    """A quarter of the crank angle from O -> O2 as a unit vector."""
-    quarter = 0.25 * angle
-    ray, start = (cos(quarter), sin(quarter)), _start(pivot, ground, facing)
-    return rotate_back(ray, start and _start(start, 1.0, 0))
-
-
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel).
 
@@ -121,9 +114,19 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
         lengths = a, b, h, d, constant
         found = _meeting(half, *lengths, side) if kind == MEETING else _single(half, kind, *lengths, m, side)
     elif side > 0 and kind != KITE:
-        found = _translated(placement.ray, pivot, d)
+        # a parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank
+        along = (pivot[0] / d, pivot[1] / d)
+        found = (along, None, None), (placement.ray, 1.0, None), 1.0, 1.0, cross(along, placement.ray)
     elif side < 0 and kind != PARALLEL:
-        found = _folded(placement.ray, pivot, d)
+        # a folded kite: B stays on O, the coupler on the crank, the rocker on the ground
+        back = (-pivot[0] / d, -pivot[1] / d)
+        found = (
+            (subtract_vectors(None, placement.ray), 1.0, None),
+            (back, None, None),
+            1.0,
+            1.0,
+            cross(back, placement.ray),
+        )
     else:
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
@@ -180,7 +183,9 @@ def slotted(placement, on, pivot, offset, passage, side):
         direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
     else:
         way, mean, middle = 1.0 if kind == NEAR else -1.0, 0.5 * (a + d), sqrt(a * d)
-        cosine, sine = _quarter(placement.angle, pivot, d, facing)
+        quarter = 0.25 * placement.angle
+        ray, start = (cos(quarter), sin(quarter)), _start(pivot, d, facing)
+        cosine, sine = rotate_back(ray, start and _start(start, 1.0, 0))
         passed = cosine if way * side > 0 else sine
         square, least = 2.0 * passed * passed, 0.25 * offset * offset / (mean + middle)
         near = least + middle * square
@@ -199,18 +204,6 @@ def divide_by_factors(parts, divisor):
     """
     factor, distance = divisor
     return tuple(part / factor / distance for part in parts)
-
-
-def _translated(ray, pivot, ground):
-    """Parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank."""
-    along = (pivot[0] / ground, pivot[1] / ground)
-    return (along, None, None), (ray, 1.0, None), 1.0, 1.0, cross(along, ray)
-
-
-def _folded(ray, pivot, ground):
-    """Folded kite: B stays on O, the coupler on the crank, the rocker on the ground."""
-    back = (-pivot[0] / ground, -pivot[1] / ground)
-    return ((-ray[0], -ray[1]), 1.0, None), (back, None, None), 1.0, 1.0, cross(back, ray)
 
 
 def _mirrored(half, kind, a, d, m, side):

@@ -94,6 +94,7 @@ class CylinderGroup(checks.Checked, Branch, Group):
 
     @property
     def clearance(self):
+        """Offset and pivot, for `near_dead_centre.has_small_clearance`."""
         return 0.0, self.pivot
 
     def place(self, placement):

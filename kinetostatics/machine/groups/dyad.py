@@ -131,7 +131,8 @@ class Dyad(checks.Checked, Group):
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
-        self._enter(placement, place(first, second, self.length1, self.length2, self.assembly))
+        motion = place(first, second, self.length1, self.length2, self.assembly)
+        self.enter(placement, motion, {self.pin: motion.pin})
 
     def follow(self, placement, joints):
         """Place both links at known joints."""
@@ -141,10 +142,7 @@ class Dyad(checks.Checked, Group):
             for name, length in zip(self.on, (self.length1, self.length2), strict=True)
         )
         sine, cosine = cross(first.direction, second.direction), dot(first.direction, second.direction)
-        self._enter(placement, RockerMotion(first, second, pin, sine, cosine, sine, None))
-
-    def _enter(self, placement, motion):
-        self.enter(placement, motion, {self.pin: motion.pin}, {"dyad1": motion.coupler, "dyad2": motion.rocker})
+        self.enter(placement, RockerMotion(first, second, pin, sine, cosine, sine, None), {self.pin: pin})
 
     def closure(self, placement):
         """Squared sine of the angle between the links."""

@@ -231,9 +231,11 @@ class LeverGroup(checks.Checked, Branch, Group):
 
     @property
     def clearance(self):
+        """Offset and pivot, for `near_dead_centre.has_small_clearance`."""
         return self.offset, self.pivot
 
     def passage_on(self, throw):
+        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
         a, x, y, o = self.known(throw, self.offset)
         d = np.sqrt(x * x + y * y)
         unit = equality(a, abs(o), d)
@@ -248,8 +250,7 @@ class LeverGroup(checks.Checked, Branch, Group):
             motion = passed(placement, self.on, *given, *self.branch)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
-        links = {"lever": motion.lever, "block": motion.block}
-        self.enter(placement, motion, {self.pivot_name: motion.lever.joint}, links)
+        self.enter(placement, motion)
 
     def follow(self, placement, joints):
         """Place lever and block, which add no moving joint."""

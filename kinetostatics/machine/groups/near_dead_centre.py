@@ -129,16 +129,10 @@ class PivotFromPin(NamedTuple):
 def direction_and_length(start):
     """Direction of a vector that may vanish, as its components, and its length; along an axis a sign, of length 1."""
     x, y = map(present, start)
-    if y is None:
-        return (_sign(number_or_zero(x)), None), 1.0
-    if x is None:
-        return (None, _sign(y)), 1.0
-    start = offset_from_zero(x, NEGLIGIBLE_LENGTH), y
-    return start, length(start)
-
-
-def _sign(part):
-    return sign(offset_from_zero(part, NEGLIGIBLE_LENGTH))
+    if x is None and y is not None:
+        return (None, sign(offset_from_zero(y, NEGLIGIBLE_LENGTH))), 1.0
+    x = offset_from_zero(number_or_zero(x), NEGLIGIBLE_LENGTH)
+    return ((sign(x), None), 1.0) if y is None else ((x, y), length((x, y)))
 
 
 def squared_distances(ray, direction, reach):

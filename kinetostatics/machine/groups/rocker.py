@@ -228,9 +228,11 @@ class RockerGroup(checks.Checked, Branch, Group):
 
     @property
     def clearance(self):
+        """Offset and pivot, for `near_dead_centre.has_small_clearance`."""
         return 0.0, self.pivot
 
     def passage_on(self, throw):
+        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
         a, x, y, b, h = self.known(throw, self.coupler_length, self.rocker_length)
         d = np.sqrt(x * x + y * y)
         unit = equality(a, b, h, d)
@@ -270,8 +272,7 @@ class RockerGroup(checks.Checked, Branch, Group):
         self._enter(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
 
     def _enter(self, placement, motion):
-        joints = {self.pin: motion.pin, self.pivot_name: motion.rocker.joint}
-        self.enter(placement, motion, joints, {"coupler": motion.coupler, "rocker": motion.rocker})
+        self.enter(placement, motion, {self.pin: motion.pin})
         swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.courses[self.pin] = Course(swing=swing)
 

@@ -225,14 +225,17 @@ class SliderGroup(checks.Checked, Branch, Group):
 
     @property
     def start(self):
+        """Direction from which the crank angle is halved: the right normal of the guide."""
         x, y = self.guide.direction
         return y, -x
 
     @property
     def clearance(self):
+        """Offset and length, for `near_dead_centre.has_small_clearance`."""
         return self.guide.guide_offset, self.coupler_length
 
     def passage_on(self, throw):
+        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
         a, x, y, b, e = self.known(throw, self.coupler_length, self.guide.guide_offset)
         unit = equality(a, b, abs(e))
         far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
@@ -244,7 +247,7 @@ class SliderGroup(checks.Checked, Branch, Group):
             motion = passed(placement, self.on, *given, *self.branch)
         else:
             motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
-        self._enter(placement, motion)
+        self.enter(placement, motion, travels={"slider": motion.travel})
 
     def follow(self, placement, joints):
         """Place coupler and slider at known joints."""
@@ -253,11 +256,8 @@ class SliderGroup(checks.Checked, Branch, Group):
         sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
         travel = Joint(*(dot(direction, part) for part in pin))
         slider = LinkMotion(pin, direction, None, None)
-        self._enter(placement, SliderMotion(coupler, slider, sine, cosine, cosine, None, travel))
-
-    def _enter(self, placement, motion):
-        links = {"coupler": motion.coupler, "slider": motion.slider}
-        self.enter(placement, motion, {self.pin: motion.slider.joint}, links, {"slider": motion.travel})
+        motion = SliderMotion(coupler, slider, sine, cosine, cosine, None, travel)
+        self.enter(placement, motion, travels={"slider": travel})
 
     def requirement(self, placement):
         distance = abs(self.placed(placement).sine * self.coupler_length)

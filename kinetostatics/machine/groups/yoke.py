@@ -173,11 +173,8 @@ class YokeGroup(checks.Checked, Group):
                 Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
                 Sliding("block", self.on, "slider", "slot_force", "slot_moment"),
             ),
+            lengths=(self.guide.guide_offset,),
         )
-
-    @property
-    def lengths(self):
-        return (self.guide.guide_offset, *self.slider.centre, *self.block.centre)
 
     def sliding(self, name, placement):
         motion = self.placed(placement)
@@ -187,7 +184,8 @@ class YokeGroup(checks.Checked, Group):
         return Slide(motion.block.direction, climbing / motion.slot[1])
 
     def place(self, placement):
-        self._enter(placement, place(placement.joints[self.on], self.guide.line, self.slot_angle))
+        motion = place(placement.joints[self.on], self.guide.line, self.slot_angle)
+        self.enter(placement, motion, travels={"slider": motion.travel})
 
     def follow(self, placement, joints):
         """Place block and slider at known joints."""
@@ -196,14 +194,8 @@ class YokeGroup(checks.Checked, Group):
         rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
         slider = LinkMotion(pin, self.guide.direction, None, None)
-        self._enter(
-            placement,
-            YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot),
-        )
-
-    def _enter(self, placement, motion):
-        links = {"block": motion.block, "slider": motion.slider}
-        self.enter(placement, motion, {self.pin: motion.slider.joint}, links, {"slider": motion.travel})
+        block = LinkMotion(joint, rotate(slot, guide.direction), None, None)
+        self.enter(placement, YokeMotion(block, slider, travel, rise, slot), travels={"slider": travel})
 
     def closure(self, placement):
         """Squared sine of the slot's angle: it closes at all finite crank angles."""

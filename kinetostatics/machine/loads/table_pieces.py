@@ -10,7 +10,7 @@ x is the crank angle, rad, or the travel, m; y is in the unit of the load, N or 
 import math
 import re
 from bisect import bisect_left
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -209,22 +209,26 @@ class Curve(NamedTuple):
         found, row = [], first
         while row < last:
             count = 2
-            while row + count <= last and not self._breaks(self.x[row], self.x[row + count]):
+            while row + count <= last and not self._breaks(row, row + count):
                 count *= 2
             ends = range(row + count // 2 + 1, min(row + count, last + 1))
-            low = self.x[row]
-            row = ends.start - 1 + bisect_left(ends, True, key=lambda end, low=low: self._breaks(low, self.x[end]))
+            breaks = partial(self._breaks, row)
+            row = ends.start - 1 + bisect_left(ends, True, key=breaks)
             found.append(row)
         return found[:-1]
 
     def kinks(self, rows, reach):
         """Rows at which the curve kinks: it is not smooth from `reach` before the row to `reach` behind it."""
         x = self.x
-        found = [row for row in rows if self._breaks(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
+        found = [row for row in rows if not self._is_smooth(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
         return np.array(found, dtype=int)
 
-    def _breaks(self, low, high):
-        """Whether no polynomial approximates every stroke between two places, at the rows and between them."""
+    def _breaks(self, row, end):
+        """Whether the curve is not smooth from one row to another."""
+        return not self._is_smooth(self.x[row], self.x[end])
+
+    def _is_smooth(self, low, high):
+        """Whether a polynomial approximates every stroke between two places, at the rows and between them."""
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         some = slice(np.searchsorted(self.x, low), np.searchsorted(self.x, high, side="right"))
         places = np.concatenate([CHEBYSHEV_POINTS, (self.x[some] - middle) / half])
@@ -232,8 +236,8 @@ class Curve(NamedTuple):
             values = np.interp(middle + half * CHEBYSHEV_POINTS, self.x, y)
             found = chebyshev.chebval(places, CHEBYSHEV_FIT @ values)
             if np.abs(found - np.concatenate([values, y[some]])).max() > self.room:
-                return True
-        return False
+                return False
+        return True
 
 
 # Stops and crossings of a slider

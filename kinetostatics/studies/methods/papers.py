@@ -298,7 +298,8 @@ class SliderByVectors(SliderGroup):
         q = scale_vector(1 / length, AB)
         coupler, slider = LinkMotion(A, q, ratio, ratio_slope), LinkMotion(pin, u, None, None)
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
-        self._enter(placement, SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel))
+        motion = SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel)
+        self.enter(placement, motion, travels={"slider": travel})
 
 
 class SliderByAsin(SliderByVectors):
