@@ -281,7 +281,7 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
             return best
         if not left or not any(part > 0 for part in over):
             break
-        for place in np.flatnonzero(over > 0):
+        for place in np.flatnonzero(over > 0).tolist():
             limit = drawn[place]
             side = 1.0 if limit.relation == "<=" else -1.0
             if limit.relation == "=":

@@ -14,7 +14,6 @@ from ...errors import ParameterError
 from ...machine.loads import period_of
 from ...numbers import checks, files
 from ...numbers.lazy import cached_property
-from ...results.comparison import Comparison
 from ...results.extremes import extremes_by_name
 from ...solution.scene import Scene
 from ..canvas import angles_between
