@@ -529,12 +529,12 @@ def test_a_reciprocal_of_a_tiny_number_is_no_pivot():
 @pytest.mark.slow
 def test_random_extreme_graphs_lie_within_bounds(flint):
     """Every operation, zeros, numbers of every size; many thousands: ``Case(seed).wrong`` of more seeds."""
-    assert [wrong for seed in range(60) for wrong in Case(seed).wrong(WAYS)] == []
+    assert [wrong for seed in range(30) for wrong in Case(seed).wrong(WAYS)] == []
 
 
 @pytest.mark.slow
 def test_compiled_random_graphs_lie_within_bounds(flint, numba):
-    assert [wrong for seed in range(2) for wrong in Case(seed).wrong(COMPILED)] == []
+    assert list(Case(0).wrong(COMPILED)) == []
 
 
 def test_an_output_that_is_a_plain_number_is_exact():

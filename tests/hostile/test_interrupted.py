@@ -72,10 +72,12 @@ SCRIPT = "from kinetostatics.__main__ import main; sys.exit(main())"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("start", [MODULE, SCRIPT], ids=["module", "script"])
 @pytest.mark.parametrize(
-    "module",
-    ["kinetostatics.cli", "numpy", "numpy._core._multiarray_umath", "kinetostatics.cli.commands", "tomllib"],
+    ("module", "start"),
+    [
+        *((module, MODULE) for module in ("kinetostatics.cli", "numpy._core._multiarray_umath", "tomllib")),
+        *((module, SCRIPT) for module in ("numpy", "kinetostatics.cli.commands")),
+    ],
 )
 def test_command_stops_while_loading_libraries(module, start):
     assert ended(WHILE_LOADED + start, module, "list") == (*LINES[signal.SIGINT], "")

@@ -173,10 +173,13 @@ DWELLING = ("roller follower", "flat follower", "swinging follower")
 """Kinds whose laws have dwells."""
 
 
+LAWS = (laws.extremes, laws.means, laws.swept, laws.compiled)
+MANY = [(kind, law, (one + other) % 2 == 1) for one, kind in enumerate(KINDS) for other, law in enumerate(LAWS)]
+"""Every law of every kind; with friction every other one."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("law", [laws.extremes, laws.means, laws.swept, laws.compiled], ids=lambda law: law.__name__)
-@pytest.mark.parametrize("friction", [False, True])
+@pytest.mark.parametrize(("kind", "law", "friction"), MANY)
 def test_many_machines(kind, law, friction):
     """Sweeps, and means with friction, resolve a turn with kinks to 1e-8 of the largest value: no better than that.
 

@@ -145,8 +145,7 @@ def test_a_warning_comes_from_one_per_cent(step, warned):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam")
-@pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
-@pytest.mark.parametrize("count", [90, 360])
+@pytest.mark.parametrize(("count", "step"), [(90, 1e-6), (360, 1e-7), (360, 1e-5)])
 @pytest.mark.parametrize("name", CAMS)
 def test_stated_noise_is_smoothed_away(name, count, step):
     """What is stated bounds the error in each, and at every degree smoothing takes nine tenths of it and more."""

@@ -130,7 +130,7 @@ def test_condition_is_nan_exactly_in_gaps(mechanism):
 
 def at_limits():
     """Mechanisms with a crank angle at which they stand in a limit position, exact but for rounding."""
-    for turn in (0.0, 0.3, np.pi / 2, 2.0, np.pi, -0.7):
+    for turn in (0.0, 0.3, np.pi):
         for crank, coupler, offset, angle in (
             (0.3, 0.5, 0.2, -np.pi / 2),
             (0.3, 0.5, -0.2, np.pi / 2),
@@ -354,14 +354,14 @@ def assert_bound(solution, allowed=1e4):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", RANDOM)
 def test_condition_bounds_the_true_magnification(kind):
-    """Fifty of each kind, at four crank angles."""
-    draw = Draw(11, 50)
-    angle = draw.random.uniform(0.0, 2 * np.pi, (50, 4))
+    """Twenty of each kind, at four crank angles."""
+    draw = Draw(11, 20)
+    angle = draw.random.uniform(0.0, 2 * np.pi, (20, 4))
     loads = (ks.Gravity(), ks.Spring(500.0, 1.0)) if "slider" in kind or kind == "cam" else (ks.Gravity(),)
     mechanism = RANDOM[kind](draw)
     s = ks.Solution(mechanism, angle, draw.scale(1.0, 30.0), draw.between(-9.0, 9.0), loads)
     with np.errstate(all="ignore"):
-        assert assert_bound(s, allowed=100.0) >= 50
+        assert assert_bound(s, allowed=100.0) >= 20
 
 
 COSINE = ks.cams.CosineLaw(0.3, 2.0)
