@@ -12,7 +12,8 @@ from kinetostatics.machine.friction import Sliding, Turning
 from kinetostatics.mechanics.motion import Motion
 from kinetostatics.views import strokes
 from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
-from kinetostatics.views.strokes import LINES, PLATES, Shape
+from kinetostatics.views.drawings import LINES, PIVOT, PLATES
+from kinetostatics.views.strokes import Shape
 
 FOLDER = Path(__file__).parent / "theory"
 TURN = np.radians(np.arange(720) / 2)
@@ -234,7 +235,7 @@ def signs():
     for start, end in (((0.0, 0.0), a), (a, b)):
         ax.plot(*np.stack([start, end], axis=1), **LINES["bar"])
     ax.fill(*(b[:, None] + _box(u, 0.016)), **PLATES["block"])
-    ax.plot(0, 0, marker=strokes.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
+    ax.plot(0, 0, marker=PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
     for point, name, shift in (((0, 0), "O", (-0.018, 0.006)), (a, "A", (-0.012, 0.014)), (b, "B", (-0.022, 0.022))):
         ax.plot(*point, "o", ms=5, mfc="white", mec=INK, zorder=8)
         ax.text(*(np.asarray(point) + shift), name, ha="center", va="center")

@@ -74,8 +74,8 @@ def new(options):
 
 def run(options):
     from ..casefile.case import load_case
-    from ..results.losses import lose
     from ..results.extremes import SHOWN, extremes_by_name
+    from ..results.losses import lose
     from ..solution.uncertainty_table import largest_with_uncertainty
     from . import sweep_commands
 

@@ -371,16 +371,17 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     True
     """
     mechanism = solution.mechanism
-    first, *others = groups = with_numeric_side(mechanism).groups
+    groups = with_numeric_side(mechanism).groups
     kinds = [type(group) for group in groups]
     cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
     if kinds == [SliderGroup]:
-        made = [_convert(SliderByVectors, first)]
+        made = [_convert(SliderByVectors, groups[0])]
     elif kinds == [RockerGroup]:
-        made = [_convert(RockerByAtanAcos, first, crank_length=mechanism.crank.length)]
-    elif kinds == [CamRoller, SliderGroup] and type(first.cam) in cams:
+        made = [_convert(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length)]
+    elif kinds == [CamRoller, SliderGroup] and type(groups[0].cam) in cams:
+        first, second = groups
         cam = _convert(cams[type(first.cam)], first.cam)
-        made = [RollerByAngles(cam, first.block, first.roller, sign), _convert(SliderByAsin, *others)]
+        made = [RollerByAngles(cam, first.block, first.roller, sign), _convert(SliderByAsin, second)]
     else:
         raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
     return replace(solution, mechanism=replace(mechanism, groups=tuple(made)), engine=KERNELS)

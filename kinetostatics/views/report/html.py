@@ -52,8 +52,12 @@ def page(subject, progress=lambda text: None):
     )
     # in order: Bokeh's models stand before what refers to them
     made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
-    warned = dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning))
-    return made.get_template("page.html.j2").render(found, remarks=[*warned, *found["reasons"]])
+    return made.get_template("page.html.j2").render(found, remarks=[*remarks(caught), *found["reasons"]])
+
+
+def remarks(caught):
+    """Texts of warnings during the report, each once."""
+    return list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
 
 
 def _contents(subject, progress):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views.report import tables
+from kinetostatics.views.report import html, tables
 from kinetostatics.views.report.report import Subject, subject_of
 from support.reports import plain, subject, table_of
 
@@ -164,4 +164,4 @@ def test_remarks_are_each_told_once():
         for _ in range(2):
             warnings.warn("doubtful", ks.HintWarning, stacklevel=1)
         warnings.warn("later", DeprecationWarning, stacklevel=1)
-    assert tables.remarks(caught) == ["doubtful"]
+    assert html.remarks(caught) == ["doubtful"]
