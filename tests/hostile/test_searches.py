@@ -12,16 +12,28 @@ from kinetostatics.mechanics import assembly
 from kinetostatics.numbers.units import to_si
 from kinetostatics.results.comparison import _ratio
 from kinetostatics.results.reductions import REDUCTIONS, parsed
-from support.every import every
+from support.every import each, every, told
 
 PUMP = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0)
 VARY = {"slider.mass": (0.5, 2.0)}
 TORQUE = "mean_absolute balancing_torque"
+BARS = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(1.0)), 10.0)
 
 
-@every(
-    ("vary", "message"),
-    [
+def spread(spreads, damped=False, count=16, **options):
+    loads = [ks.TorsionDamper(0.1, on="crank")] if damped else []
+    scene = ks.Scene(PUMP.mechanism, 100.0, loads=loads)
+    return ks.design.over_spread(scene, TORQUE, ks.design.Spread(0.05, spreads, **options), samples=count)
+
+
+def crank_slider(crank_length=0.3):
+    return ks.crank_slider(crank_length, 1.1, coupler=ks.Link(2.0, 0.5, 0.2), slider=ks.Link(3.0))
+
+
+REFUSED = [
+    *told(
+        ks.ParameterError,
+        lambda vary: ks.design.optimise(PUMP, vary, TORQUE),
         (None, "vary must be a dict"),
         ({}, "vary must be a dict"),
         (["slider.mass"], "vary must be a dict"),
@@ -36,16 +48,17 @@ TORQUE = "mean_absolute balancing_torque"
         ({"slider.mass": ("1", "2")}, "bounds of slider.mass"),
         ({"slider.mass": (None, None)}, "bounds of slider.mass"),
         ({"slider.mass": (1, 1), "crank_length": "long"}, "slider.mass.*crank_length"),
-    ],
-)
-def test_bounds_that_are_none_are_refused(vary, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.design.optimise(PUMP, vary, TORQUE)
-
-
-@every(
-    ("limit", "message"),
-    [
+    ),
+    *told(
+        ks.DesignError,
+        lambda vary: ks.design.optimise(PUMP, vary, TORQUE),
+        ({"slider.mass": (-10.0, -5.0)}, "no design that can be built .*mass must be at least 0, got -5"),
+        ({"coupler_length": (0.01, 0.02)}, "no design that can be built .*must not exceed the coupler length"),
+        ({"coupler_length": (-2.0, -1.0)}, "no design that can be built .*coupler length must be greater than 0"),
+    ),
+    *told(
+        ks.ParameterError,
+        lambda limit: ks.design.optimise(PUMP, VARY, TORQUE, limit if isinstance(limit, list) else [limit]),
         ("largest O", "must be an output, a relation and a value"),
         ("largest O < 3 N", "must be an output, a relation and a value"),
         ("largest O <= ", "must be an output, a relation and a value"),
@@ -58,21 +71,11 @@ def test_bounds_that_are_none_are_refused(vary, message):
         (f"ratio {TORQUE} >= 3", "needs a reference"),
         (3.0, "must be an output, a relation and a value"),
         (None, "must be an output, a relation and a value"),
-    ],
-)
-def test_limits_of_another_form_are_refused(limit, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.design.optimise(PUMP, VARY, TORQUE, [limit])
-
-
-def test_all_wrong_limits_are_told_at_once():
-    with pytest.raises(ks.ParameterError, match=r"largest O <= 3.*greatest O"):
-        ks.design.optimise(PUMP, VARY, TORQUE, ["largest O <= 3", "greatest O <= 3 N"])
-
-
-@every(
-    ("options", "message"),
-    [
+        (["largest O <= 3", "greatest O <= 3 N"], r"largest O <= 3.*greatest O"),
+    ),
+    *told(
+        ks.ParameterError,
+        lambda options: ks.design.optimise(PUMP, VARY, **options),
         ({}, "give either minimise or maximise"),
         ({"minimise": TORQUE, "maximise": TORQUE}, "give either minimise or maximise"),
         ({"minimise": "torque"}, "must be a reduction and a quantity"),
@@ -97,66 +100,36 @@ def test_all_wrong_limits_are_told_at_once():
         ({"minimise": TORQUE, "limits": 3.0}, "limits must be texts"),
         ({"minimise": TORQUE, "robust": 0.05}, "robust must be a Spread"),
         ({"minimise": TORQUE, "reference": "plain"}, "reference must be a Scene"),
-    ],
-)
-def test_options_of_another_kind_are_refused(options, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.design.optimise(PUMP, VARY, **options)
-
-
-def test_many_designs_are_no_source():
-    """Their curves, two in number, would pass for the components of a vector."""
-    batch = PUMP.varied({"slider.mass": np.array([[1.0], [2.0]])})
-    for source, reference in ((batch, None), (PUMP, batch)):
-        with pytest.raises(ks.ParameterError, match="must be one design, but has several values of slider"):
-            ks.design.optimise(source, {"coupler_length": (0.1, 0.3)}, TORQUE, reference=reference)
-
-
-@pytest.mark.parametrize(
-    ("vary", "message"),
-    [
-        ({"slider.mass": (-10.0, -5.0)}, "mass must be at least 0, got -5"),
-        ({"coupler_length": (0.01, 0.02)}, "must not exceed the coupler length"),
-        ({"coupler_length": (-2.0, -1.0)}, "coupler length must be greater than 0"),
-    ],
-)
-def test_it_is_told_why_no_design_can_be_built(vary, message):
-    with pytest.raises(ks.DesignError, match=f"no design that can be built .*{message}"):
-        ks.design.optimise(PUMP, vary, TORQUE)
-
-
-@every(
-    ("minimise", "options", "message"),
-    [
-        (None, {}, "minimise must be two outputs"),
-        ("largest O", {}, "minimise must be two outputs"),
-        (("largest O",), {}, "minimise must be two outputs"),
-        (("largest O", 5), {}, "minimise must be two outputs"),
-        (("largest O", TORQUE), {"robust": None}, "option is 'robust'"),
-        (("largest O", TORQUE), {"begin": {}}, "option is 'begin'"),
-        (("largest O", TORQUE), {"points": 1}, "points must be at least 2"),
-    ],
-)
-def test_fronts_of_another_form_are_refused(minimise, options, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.design.pareto(PUMP, VARY, minimise, **options)
-
-
-@pytest.mark.parametrize("quantity", ["forces", "cam_force", "C"])
-def test_absent_quantity_is_refused(quantity):
-    with pytest.raises(ks.QuantityError, match=quantity):
-        ks.design.optimise(PUMP, VARY, f"largest {quantity}")
-
-
-@every("source", [None, 3, "sawframe_2r63", PUMP.mechanism, PUMP.solve(12)])
-def test_what_is_no_scene_is_refused(source):
-    with pytest.raises(ks.ParameterError, match="source must be a Case"):
-        ks.design.optimise(source, VARY, TORQUE)
-
-
-@every(
-    ("make", "message"),
-    [
+    ),
+    *told(
+        ks.QuantityError,
+        lambda name: ks.design.optimise(PUMP, VARY, f"largest {name}"),
+        ("forces", "forces"),
+        ("cam_force", "cam_force"),
+        ("C", "C"),
+    ),
+    *told(
+        ks.ParameterError,
+        lambda given: ks.design.pareto(PUMP, VARY, given[0], **given[1]),
+        ((None, {}), "minimise must be two outputs"),
+        (("largest O", {}), "minimise must be two outputs"),
+        ((("largest O",), {}), "minimise must be two outputs"),
+        ((("largest O", 5), {}), "minimise must be two outputs"),
+        ((("largest O", TORQUE), {"robust": None}), "option is 'robust'"),
+        ((("largest O", TORQUE), {"begin": {}}), "option is 'begin'"),
+        ((("largest O", TORQUE), {"points": 1}), "points must be at least 2"),
+    ),
+    *each(
+        ks.ParameterError,
+        (
+            lambda source: ks.design.optimise(source, VARY, TORQUE),
+            [None, 3, "sawframe_2r63", PUMP.mechanism, PUMP.solve(12)],
+            "source must be a Case",
+        ),
+    ),
+    *told(
+        ks.ParameterError,
+        lambda make: make(),
         (lambda: ks.design.Spread(0.0, {"slider.mass": "normal 0 % +- 1 %"}), "quantile must lie"),
         (lambda: ks.design.Spread(5, {"slider.mass": "normal 0 % +- 1 %"}), "quantile must lie"),
         (lambda: ks.design.Spread(0.05, {}), "spreads must be a dict"),
@@ -173,65 +146,92 @@ def test_what_is_no_scene_is_refused(source):
         (lambda: spread({"slider.mas": "normal 0 % +- 1 %"}), "did you mean 'slider.mass'"),
         (lambda: spread({"slider.mass": "normal 0 m +- 1 m"}), "does not measure the same"),
         (lambda: spread({"slider.mass": "normal 0 % +- 1 %"}, damped=True, trim=0.1), "trim takes outputs"),
-    ],
-)
-def test_spreads_of_another_form_are_refused(make, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        make()
+    ),
+    *told(
+        ks.ParameterError,
+        lambda options: ks.design.torque_free_cam(PUMP, **options),
+        ({"cosine": 0}, "cosine"),
+        ({"cosine": 2.5}, "cosine"),
+        ({"sine": -1}, "sine"),
+        ({"sine": True}, "sine"),
+        ({"cosine": 500}, "cosine must be at most 64"),
+        ({"starts": 0}, "starts"),
+        ({"starts": "x"}, "starts"),
+        ({"seed": -1}, "seed"),
+        ({"gravity": "no"}, "gravity must be True or False"),
+        ({"guide_offset": "20 mm"}, "guide_offset"),
+        ({"vary": 5}, "vary must be a dict"),
+        ({"minimise": "harmonic_200 balancing_torque"}, "angles must be at least 401"),
+        ({"ends": (0.1,)}, "ends must be"),
+        ({"ends": "far"}, "ends must be"),
+        ({"coupler_spring": 1.0}, "none acts"),
+        ({"counterweight": 0.0}, "counterweight"),
+        ({"counterweight": -1.0}, "counterweight"),
+        ({"minimise": "largest"}, "must be a reduction"),
+    ),
+    *told(
+        ks.DesignError,
+        lambda options: ks.design.torque_free_cam(PUMP, **options),
+        ({"ends": (0.3, 0.2)}, "two ends"),
+        ({"ends": (-0.1, 0.2)}, "stay ahead of O"),
+        ({"vary": {"coupler_length": (0.3, 0.4)}}, "cannot make the stroke"),
+    ),
+    *told(
+        ks.ParameterError,
+        lambda way: ks.design.weight_options(PUMP, 2, **{way: 2}),
+        ("sine", "sine is one of the ways compared"),
+        ("coupler_spring", "coupler_spring is one of the ways compared"),
+    ),
+    *told(
+        ks.ParameterError,
+        ks.design.torque_free_cam,
+        (BARS, "takes a crank-slider"),
+    ),
+    *told(
+        ks.DesignError,
+        ks.design.torque_free_cam,
+        (ks.Scene(ks.crank_slider(0.05, 0.2), 100.0), "needs no torque to begin with"),
+    ),
+    *told(
+        ks.ParameterError,
+        crank_slider,
+        (np.timedelta64(1, "s"), r"crank length must be a number .*(a time|of timedelta64)"),
+        (np.timedelta64("NaT"), r"crank length must be a number .*(a time|of timedelta64)"),
+        (np.array([[1]], dtype="m8[s]"), r"crank length must be a number .*(a time|of timedelta64)"),
+        (None, "give the crank a length, or put a CamRoller before it"),
+    ),
+    *each(
+        ks.ParameterError,
+        (
+            lambda turns: ks.ProcessForce(1.0, period=2 * math.pi * turns),
+            [101, 1000, 10**6, 10**15],
+            "period must be at most 100 turns",
+        ),
+    ),
+    *each(
+        ValueError,
+        (
+            lambda text: to_si(text, "m"),
+            ["1e-400 m", "0.0001e-330 mm", "-3e-999 km"],
+            "too small for double precision",
+        ),
+    ),
+]
+"""Errors, calls, what they are given, and what they say to it."""
 
 
-def spread(spreads, damped=False, count=16, **options):
-    loads = [ks.TorsionDamper(0.1, on="crank")] if damped else []
-    scene = ks.Scene(PUMP.mechanism, 100.0, loads=loads)
-    return ks.design.over_spread(scene, TORQUE, ks.design.Spread(0.05, spreads, **options), samples=count)
+@every(("error", "call", "given", "words"), REFUSED)
+def test_what_no_search_can_take_is_refused(error, call, given, words):
+    with pytest.raises(error, match=words):
+        call(given)
 
 
-@every(
-    ("options", "error", "message"),
-    [
-        ({"cosine": 0}, ks.ParameterError, "cosine"),
-        ({"cosine": 2.5}, ks.ParameterError, "cosine"),
-        ({"sine": -1}, ks.ParameterError, "sine"),
-        ({"sine": True}, ks.ParameterError, "sine"),
-        ({"cosine": 500}, ks.ParameterError, "cosine must be at most 64"),
-        ({"starts": 0}, ks.ParameterError, "starts"),
-        ({"starts": "x"}, ks.ParameterError, "starts"),
-        ({"seed": -1}, ks.ParameterError, "seed"),
-        ({"gravity": "no"}, ks.ParameterError, "gravity must be True or False"),
-        ({"guide_offset": "20 mm"}, ks.ParameterError, "guide_offset"),
-        ({"vary": 5}, ks.ParameterError, "vary must be a dict"),
-        ({"minimise": "harmonic_200 balancing_torque"}, ks.ParameterError, "angles must be at least 401"),
-        ({"ends": (0.3, 0.2)}, ks.DesignError, "two ends"),
-        ({"ends": (-0.1, 0.2)}, ks.DesignError, "stay ahead of O"),
-        ({"ends": (0.1,)}, ks.ParameterError, "ends must be"),
-        ({"ends": "far"}, ks.ParameterError, "ends must be"),
-        ({"vary": {"coupler_length": (0.3, 0.4)}}, ks.DesignError, "cannot make the stroke"),
-        ({"coupler_spring": 1.0}, ks.ParameterError, "none acts"),
-        ({"counterweight": 0.0}, ks.ParameterError, "counterweight"),
-        ({"counterweight": -1.0}, ks.ParameterError, "counterweight"),
-        ({"minimise": "largest"}, ks.ParameterError, "must be a reduction"),
-    ],
-)
-def test_torque_free_cams_that_cannot_be_are_refused(options, error, message):
-    with pytest.raises(error, match=message):
-        ks.design.torque_free_cam(PUMP, **options)
-
-
-def test_machine_without_coupler_is_refused():
-    bars = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(1.0)), 10.0)
-    with pytest.raises(ks.ParameterError, match="takes a crank-slider"):
-        ks.design.torque_free_cam(bars)
-
-
-def test_a_massless_machine_is_refused():
-    with pytest.raises(ks.DesignError, match="needs no torque to begin with"):
-        ks.design.torque_free_cam(ks.Scene(ks.crank_slider(0.05, 0.2), 100.0))
-
-
-@pytest.mark.parametrize("taken", ["sine", "coupler_spring"])
-def test_ways_that_are_compared_cannot_be_given_to_all(taken):
-    with pytest.raises(ks.ParameterError, match=f"{taken} is one of the ways compared"):
-        ks.design.weight_options(PUMP, 2, **{taken: 2})
+def test_many_designs_are_no_source():
+    """Their curves, two in number, would pass for the components of a vector."""
+    batch = PUMP.varied({"slider.mass": np.array([[1.0], [2.0]])})
+    for source, reference in ((batch, None), (PUMP, batch)):
+        with pytest.raises(ks.ParameterError, match="must be one design, but has several values of slider"):
+            ks.design.optimise(source, {"coupler_length": (0.1, 0.3)}, TORQUE, reference=reference)
 
 
 def test_weight_is_blamed_only_where_it_binds():
@@ -246,10 +246,6 @@ def test_weight_is_blamed_only_where_it_binds():
 
 TURN = 2 * np.pi * np.arange(72) / 72
 BODIES = {"coupler": ks.Link(3.0, 1.5, 2.0), "rocker": ks.Link(2.0, 1.0, 1.0)}
-
-
-def crank_slider(crank_length=0.3):
-    return ks.crank_slider(crank_length, 1.1, coupler=ks.Link(2.0, 0.5, 0.2), slider=ks.Link(3.0))
 
 
 def loaded(force, **period):
@@ -277,23 +273,6 @@ def test_a_function_must_return_plain_numbers(force, words, engine):
             crank_slider(), TURN, crank_speed=5.0, loads=[ks.ProcessForce(force)], engine=engine
         ).balancing_torque
     assert words in str(found.value)
-
-
-@pytest.mark.parametrize("value", [np.timedelta64(1, "s"), np.timedelta64("NaT"), np.array([[1]], dtype="m8[s]")])
-def test_times_of_numpy_are_no_lengths(value):
-    with pytest.raises(ks.ParameterError, match=r"crank length must be a number .*(a time|of timedelta64)"):
-        crank_slider(value)
-
-
-def test_a_crank_without_length_says_what_it_is_for():
-    with pytest.raises(ks.ParameterError, match="give the crank a length, or put a CamRoller before it"):
-        crank_slider(None)
-
-
-@pytest.mark.parametrize("turns", [101, 1000, 10**6, 10**15])
-def test_a_period_is_no_longer_than_can_be_sampled(turns):
-    with pytest.raises(ks.ParameterError, match="period must be at most 100 turns"):
-        ks.ProcessForce(1.0, period=2 * math.pi * turns)
 
 
 def test_loads_must_repeat_together_soon():
@@ -353,12 +332,6 @@ def test_the_warning_names_its_cause(turns, words):
     mechanism, angle = (crank_slider(), 1.0) if turns else (ks.crank_slider(1, 1, slider=ks.Link(1)), 1.5708)
     with pytest.warns(ks.ConditionWarning, match=words):
         ks.solve(mechanism, [angle + 2 * np.pi * turns], crank_speed=5.0)
-
-
-@pytest.mark.parametrize("text", ["1e-400 m", "0.0001e-330 mm", "-3e-999 km"])
-def test_numbers_too_small_are_not_zero(text):
-    with pytest.raises(ValueError, match="too small for double precision"):
-        to_si(text, "m")
 
 
 @pytest.mark.parametrize("text", ["0 m", "0.000 mm", "0e5 km", "-0 m"])

@@ -44,6 +44,11 @@ def each(error, *rows):
     return [(error, call, given, words) for call, inputs, words in rows for given in inputs]
 
 
+def told(error, call, *rows):
+    """Rows (error, call, input, words) of one call and rows (input, words)."""
+    return [(error, call, given, words) for given, words in rows]
+
+
 def _of_all(function, axes):
     signature = inspect.signature(function)
     given = {name for axis in axes for name in axis[0][1]}
