@@ -95,7 +95,7 @@ def test_cosine_law_is_compared_where_meant(name):
 )
 def test_a_figure_of_the_study_carries_its_number(name, number, tmp_path, monkeypatch):
     seen = []
-    monkeypatch.setattr(figures, "save_figure", lambda draw, solutions, path, *_: seen.append(draw(solutions)) or path)
+    monkeypatch.setattr(figures, "save_figure", lambda figure, path, *_: seen.append(figure) or path)
     draw_case(CASE, tmp_path, only=name)
     assert [text.get_text() for text in seen[0].texts] == ([] if number is None else [number])
     plt.close(seen[0])
