@@ -50,9 +50,9 @@ what groups further out demand. ``along`` holds by slider the applied force alon
 cancel with inertia. The equilibrium of the links gives the unknown forces *on* them, linear in the loads, for friction
 asks several times. What the group needs of other links goes into ``demands``, with the sign that it has on the group.
 
-*Change points.* Most groups pass none. `groups.branches` holds what those do that pass them: ``on_crank(throws)`` sets
-the text `passage`, part of the structure; `turns`, `change_points` and `kink` follow. ``beside(groups, throws)``
-returns the group specialised for its neighbours (toggles only).
+*Change points.* Groups that pass them derive from `groups.branches.Branch`: ``on_crank(throws)`` sets the text
+`passage`, part of the structure; `turns`, `change_points` and `kink` follow from it. ``beside(groups, throws)`` returns
+the group specialised for its neighbours (toggles only).
 
 *Hand calculations.* `Solution.explain` shows what the kernels compute, under the names of their local variables. The
 module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for one kernel alone as
@@ -256,7 +256,7 @@ class Group:
     slots = _declared("slots", "Links in which a joint slides.")
     led = _declared("led", "Joints that a cam leads.")
     motions = _declared("motions", "Quantities of its motion besides those of joints and links, by `motion`.")
-    contacts = _declared("contacts", "Line contacts by the name of their pressure, each a `Touch`.")
+    contacts = _declared("contacts", "Line contacts by the name of their pressure, each a `LineContact`.")
 
     @property
     def lengths(self):
@@ -316,9 +316,10 @@ class Group:
         return [table.get(self.called(name)) for name in self.LINKS]
 
     def enter(self, placement, motion, joints=EMPTY, links=None, travels=EMPTY):
-        """Add to a placement joints by name, links and travels by name without the label, and `motion` as details.
+        """Add to a placement joints by name, links and travels by name without the label, and `motion` for `placed`.
 
-        By default the links are the first fields of `motion`, in the order of `LINKS`, with reference joints of theirs.
+        `placement.details` keeps `motion` under the name of the first link. By default the links are the first
+        fields of `motion`, in the order of `LINKS`, with reference joints of theirs.
         """
         placement.joints.update(joints)
         if links is None:

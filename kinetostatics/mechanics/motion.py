@@ -295,7 +295,7 @@ class Motion:
         return self.spot(point)
 
     def spot(self, place) -> PointMotion:
-        """Motion of a point, a `Spot`: a joint or mass centre by name, a place on a link, or a fixed point."""
+        """Motion of a point: a joint or mass centre by name, a place on a link, or a fixed point."""
         joints, links = self.placement.joints, self.placement.links
         if isinstance(place, str):
             found = self._look_up("joint or link", place, {**joints, **links})

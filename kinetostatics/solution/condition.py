@@ -426,7 +426,7 @@ def is_surely_well_conditioned(solution, margins):
 
 
 def _sufficient_margin(solution, farthest=None):
-    """Product of all groups' margins from which the condition is below `HALF`.
+    """Product of all groups' margins from which the condition is below `HALF_DIGITS_CONDITION`.
 
     A bound of the crank angles will do in place of the farthest of them.
     """
@@ -448,7 +448,7 @@ def ill_conditioned(solution, margins):
     points : array of int (M,)
         Their places in the flattened shape of the solution.
     condition : array (M,)
-        Above `HALF`, infinite where no rounding is small enough.
+        Above `HALF_DIGITS_CONDITION`, infinite where no rounding is small enough.
     """
     least = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
     closed = reduce(np.minimum, margins, np.ones(())) >= -SQUARE_TOLERANCE

@@ -1,7 +1,7 @@
 """Dyad (RRR): two links from two moving joints to a pin between them, in either assembly.
 
 Seen from the second joint it is a rocker group whose pivot stands still: the intersection of two circles, the ratios of
-both links and all forces are those of `rocker_group`, of the motion of the first joint relative to the second.
+both links and all forces are those of `rocker`, of the motion of the first joint relative to the second.
 """
 
 from dataclasses import dataclass

@@ -158,12 +158,6 @@ def piece_lines(xp, x, strokes, piece, back=None):
     return tuple(xp.asarray(part)[at] for part, at in ((x, piece), (values, place), (slopes, place)))
 
 
-def is_outside(x, place):
-    """Whether places lie beyond the rows, by more than rounding."""
-    room = TRAVEL_TOLERANCE * (x[-1] - x[0])
-    return (place < x[0] - room) | (place > x[-1] + room)
-
-
 # Kinks
 
 KINK_TOLERANCE = 1e-5
