@@ -46,6 +46,23 @@ def test_input_without_its_error_is_named():
     assert [line.split(":")[0] for line in failure(test)[1:]] == ["1"]
 
 
+def test_inputs_are_skipped_all_or_none():
+    """Where a library is missing all are skipped; one that always is would hide behind the others."""
+
+    @every("lacking", [True, True])
+    def all_skip(lacking):
+        pytest.skip("not installed")
+
+    @every("lacking", [True, False])
+    def one_skips(lacking):
+        if lacking:
+            pytest.skip("not installed")
+
+    with pytest.raises(pytest.skip.Exception, match="not installed"):
+        all_skip()
+    assert "is skipped but not all" in failure(one_skips)[0]
+
+
 def work(seconds):
     """Keep this process busy."""
     end = time.process_time() + seconds

@@ -55,20 +55,23 @@ def _of_all(function, axes):
 
     @wraps(function)
     def test(**fixtures):
-        failed, count = {}, 0
+        failed, skipped, count = {}, [], 0
         for row in product(*axes):
             count += 1
             _begin_clock()
             try:
                 function(**fixtures, **{name: value for _, values in row for name, value in values.items()})
-            except pytest.skip.Exception:
-                raise AssertionError("an input skips all others: leave it out where they are listed") from None
+            except pytest.skip.Exception as skip:
+                skipped.append(skip)
             except (Exception, pytest.fail.Exception) as error:
                 failed["-".join(label for label, _ in row)] = error
         if failed:
             told = "\n".join(f"{label}: {_told(error)}" for label, error in failed.items())
             first = next(iter(failed.values()))
             raise AssertionError(f"{len(failed)} of {count} inputs fail; the first is traced above\n{told}") from first
+        if len(skipped) == count:
+            raise skipped[0]
+        assert not skipped, "an input is skipped but not all: leave it out where they are listed"
 
     own = [parameter for name, parameter in signature.parameters.items() if name not in given]
     test.__signature__ = signature.replace(parameters=own)
