@@ -5,6 +5,11 @@ from .casefile.case import Case as Case
 from .casefile.case import load_case as load_case
 from .casefile.reading import shipped_cases as shipped_cases
 from .casefile.variant import Variant as Variant
+from .cycle.comparison import Comparison as Comparison
+from .cycle.comparison import compare as compare
+from .cycle.extremes import Extremes as Extremes
+from .cycle.extremes import extremes as extremes
+from .cycle.losses import Losses as Losses
 from .design import balancing as balancing
 from .design import linkage as linkage
 from .design.counterweights import Counterweight as Counterweight
@@ -64,11 +69,6 @@ from .machine.loads import TorsionSpring as TorsionSpring
 from .machine.mechanism import Mechanism as Mechanism
 from .mechanics.principal_points import PrincipalPoints as PrincipalPoints
 from .mechanics.principal_points import principal_points as principal_points
-from .results.comparison import Comparison as Comparison
-from .results.comparison import compare as compare
-from .results.extremes import Extremes as Extremes
-from .results.extremes import extremes as extremes
-from .results.losses import Losses as Losses
 from .solution.certainty import Uncertainty as Uncertainty
 from .solution.check_group import check as check
 from .solution.program import Program as Program

@@ -9,13 +9,13 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..cycle.comparison import Comparison
 from ..design import linkage
 from ..design.counterweights import balancing_table
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..results.comparison import Comparison
 from ..solution import parameters
 from ..solution.solution import Solution
 from . import build, reading, schema

@@ -74,8 +74,8 @@ def new(options):
 
 def run(options):
     from ..casefile.case import load_case
-    from ..results.extremes import SHOWN, extremes_by_name
-    from ..results.losses import lose
+    from ..cycle.extremes import SHOWN, extremes_by_name
+    from ..cycle.losses import lose
     from ..solution.uncertainty_table import largest_with_uncertainty
     from . import sweep_commands
 
@@ -110,8 +110,8 @@ def run(options):
 
 
 def _print_extremes(case, solutions, given, options):
-    from ..results.extremes import SHOWN, extremes_by_name
-    from ..results.losses import lose
+    from ..cycle.extremes import SHOWN, extremes_by_name
+    from ..cycle.losses import lose
     from . import sweep_commands
 
     print_folded(case.title)
@@ -294,7 +294,7 @@ RESIDUAL = "power residual"
 
 def compare(options):
     from ..casefile.case import load_case
-    from ..results.comparison import Comparison
+    from ..cycle.comparison import Comparison
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
@@ -340,7 +340,7 @@ def _with_roles(case, name, comparison):
 
 
 def _print_comparison(case, found, special):
-    from ..results.comparison import left_out
+    from ..cycle.comparison import left_out
 
     tables = {name: {row.label: row for row in comparison.rows} for name, comparison in found.items()}
     published = [case.published_of(list(table)) for table in tables.values()]

@@ -22,7 +22,7 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 def sweep(options):
     from ..casefile.case import load_case
-    from ..results.reductions import parsed
+    from ..cycle.reductions import parsed
     from ..sweeps import designs, sweeps
 
     case = load_case(options.case)

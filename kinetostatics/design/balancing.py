@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.extremes import extremes
 from ..errors import ParameterError
 from ..mechanics import assembly
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
-from ..results.extremes import extremes
 from ..solution.scene import mechanism_problem
 from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction

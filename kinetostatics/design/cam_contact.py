@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.turn import require_single
 from ..errors import ParameterError
 from ..machine.cams import roller
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak, curvature, highest, surface_curvature
@@ -18,7 +19,6 @@ from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from ..results.turn import require_single
 from .follower_speed import lift_off_speed, starting_torque
 
 

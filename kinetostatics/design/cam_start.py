@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.extremes import extrema
 from ..errors import DesignError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, crank_slider_parts
 from ..machine.cams.cam import Harmonic
@@ -14,7 +15,6 @@ from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from ..numbers.planar import cross
-from ..results.extremes import extrema
 from ..solution.scene import Scene
 
 OWNER = "torque-free cam"

@@ -4,11 +4,11 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from ..cycle.reductions import Output, parsed
 from ..errors import ParameterError
 from ..machine.loads import Table, value_of
 from ..numbers import checks
 from ..numbers.units import NUMBER, to_si
-from ..results.reductions import Output, parsed
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}

@@ -5,13 +5,13 @@ from functools import partial
 
 import numpy as np
 
+from ..cycle.extremes import extremes
+from ..cycle.rounding import zeroed
 from ..errors import ParameterError
 from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
-from ..results.extremes import extremes
-from ..results.rounding import zeroed
 from ..solution.scene import solve
 from .linkage import crank_sliders
 

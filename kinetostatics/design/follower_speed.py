@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cycle.turn import require_single
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, highest
 from ..machine.loads import Spring
 from ..numbers import checks
-from ..results.turn import require_single
 from ..solution.scene import Scene
 
 REST_SPEED_RATIO = 1e-6

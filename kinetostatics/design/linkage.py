@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.extremes import extremes
 from ..errors import ParameterError
 from ..machine.builders import four_bar
 from ..machine.group import FRAME, Bar
 from ..numbers import checks
 from ..numbers.planar import cross, dot
-from ..results.extremes import extremes
 
 
 class FourBar(NamedTuple):

@@ -1,4 +1,4 @@
-"""Reductions of curves with exact derivatives by the numbers of the design: formulas of `results.reductions`.
+"""Reductions of curves with exact derivatives by the numbers of the design: formulas of `cycle.reductions`.
 
 `Curve` has values evenly over the period, `PartedCurve` on its pieces between bends. There every reduction is, near a
 design, a sum of the values at the nodes with weights: those of the polynomial at the peak, or of the integral. Where a
@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..results.means import NODES, WEIGHTS
-from ..results.peaks import REACH, THROUGH
-from ..results.pieces import NEWTON_STEPS, PLACES, SERIES
-from ..results.reductions import gained
+from ..cycle.means import NODES, WEIGHTS
+from ..cycle.peaks import REACH, THROUGH
+from ..cycle.pieces import NEWTON_STEPS, PLACES, SERIES
+from ..cycle.reductions import gained
 
 SECTORS = 72
 """Parts of the period whose largest values are limited one by one: where peaks compete, each counts."""

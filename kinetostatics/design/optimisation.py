@@ -6,11 +6,11 @@ from functools import reduce
 
 import numpy as np
 
+from ..cycle.extremes import extrema
 from ..drive.flywheel_sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
-from ..results.extremes import extrema
 from .constraints import Constraint, parse_constraints, parse_output
 from .problem import SHARED_NUMBERS, Problem, choose_design, progress_bar, scene_of, true_value, without_ratio
 from .result import Found, active_prices

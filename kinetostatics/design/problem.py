@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import has_kinks
 from ..engines.graph import Graph, Node
 from ..engines.program import Program
 from ..engines.record import Recording
@@ -19,7 +20,6 @@ from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
 from ..numbers.units import to_si
-from ..results.kinks import has_kinks
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures

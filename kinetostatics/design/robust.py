@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import has_kinks
+from ..cycle.means import NODES
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
-from ..results.kinks import has_kinks
-from ..results.means import NODES
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
 from . import measures

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.turn import Turn, require_single
 from ..errors import ParameterError
 from ..machine.builders import with_roller_follower
 from ..machine.cams.profile import POSITIVE, Peak, highest, lowest
@@ -21,7 +22,6 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
 from ..numbers.planar import dot
-from ..results.turn import Turn, require_single
 from ..solution.scene import Scene
 from . import spring_follower
 from .follower_speed import lifted

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..cycle.comparison import Comparison
 from ..numbers import checks
-from ..results.comparison import Comparison
 from .energy_flow import HELD, ROTOR
 
 DRIVE_FIGURES = {

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import sign_changes
+from ..cycle.turn import SAMPLES
 from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
-from ..results.kinks import sign_changes
-from ..results.turn import SAMPLES
 
 ANGLE_TOLERANCE = 1e-12
 """Crank angles nearer than this to an end of the period, rad, count as 0."""

@@ -4,10 +4,10 @@ import warnings
 
 import numpy as np
 
+from ..cycle.turn import NEAR
 from ..errors import ConditionWarning
 from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import of_scene
-from ..results.turn import NEAR
 
 COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
 """Order of kinds of quantities in the table, after the positions of joints; energies are left out."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..cycle.rounding import without_rounding
 from ..engines.engines import NUMPY
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..explain.explanation import Explanation, Step
@@ -16,7 +17,6 @@ from ..mechanics import quantities
 from ..mechanics.motion import SceneParts
 from ..numbers import checks
 from ..numbers.parameter_tree import map_numbers
-from ..results.rounding import without_rounding
 from .parameters import crank_angles, leaf_by_path, tables_over_angles
 
 

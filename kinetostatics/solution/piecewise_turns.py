@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import design_kinks
+from ..cycle.pieces import GOAL, Pieces, refined
 from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
-from ..results.kinks import design_kinks
-from ..results.pieces import GOAL, Pieces, refined
 from .scene import unchecked_solution
 
 START_ANGLES = 192

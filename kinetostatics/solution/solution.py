@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.turn import Turn
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.links import Turning
@@ -25,7 +26,6 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked
-from ..results.turn import Turn
 from . import contents
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
@@ -309,7 +309,7 @@ class Solution(Certainty, Motion):
     @cached_property
     def energy_per_turn(self):
         """Work of the balancing torque in a turn of the crank, J; of one design."""
-        from ..results.means import energy_per_turn
+        from ..cycle.means import energy_per_turn
 
         return energy_per_turn(self)
 
@@ -342,8 +342,8 @@ class Solution(Certainty, Motion):
 
     @cached_property
     def losses(self):
-        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
-        from ..results.losses import losses
+        """Mean powers over the period, lost by joint and taken by loads, a `cycle.losses.Losses`; of one design."""
+        from ..cycle.losses import losses
 
         return losses(self)
 

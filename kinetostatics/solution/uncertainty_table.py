@@ -5,12 +5,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..cycle.extremes import extrema
+from ..cycle.kinks import LOAD_FREE_KINDS
+from ..cycle.rounding import AT_JUMP, BoundedExtremes
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
 from ..numbers.formatting import number, round_uncertainty_up
-from ..results.extremes import extrema
-from ..results.kinks import LOAD_FREE_KINDS
-from ..results.rounding import AT_JUMP, BoundedExtremes
 from .certainty import Doubt, doubt_text
 from .scene import Scene
 

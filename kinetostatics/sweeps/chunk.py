@@ -15,6 +15,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from ..cycle.compiled_reductions import CompiledReductions
+from ..cycle.kinks import has_kinks
+from ..cycle.peaks import lowest
+from ..cycle.reductions import Output
+from ..cycle.rounding import FLOOR
+from ..cycle.turn import NEAR, repeating_problem
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
@@ -24,12 +30,6 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import component_sizes, components, largest_term, quantity
 from ..numbers import checks
 from ..numbers.arithmetic import SQUARE_TOLERANCE
-from ..results.compiled_reductions import CompiledReductions
-from ..results.kinks import has_kinks
-from ..results.peaks import lowest
-from ..results.reductions import Output
-from ..results.rounding import FLOOR
-from ..results.turn import NEAR, repeating_problem
 from ..solution.parameters import tables_over_angles
 from ..solution.piecewise_turns import BLOCK_VALUES, START_ANGLES, PiecewiseTurns, quantity_names, unchecked_turn
 from ..solution.scene import Scene, scene_hints

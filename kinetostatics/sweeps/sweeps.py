@@ -17,13 +17,13 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
+from ..cycle.reductions import Output, parsed
 from ..engines import numba_backend
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
 from ..numbers.fingerprint import digest
 from ..numbers.formatting import parse_heading, si_columns
-from ..results.reductions import Output, parsed
 from ..solution.parameters import path_problem
 from ..solution.scene import MIN_VALUES_COMPILED, Scene
 from ..version import __version__

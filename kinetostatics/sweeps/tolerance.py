@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from ..cycle.reductions import parsed
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.files import folder_problem
 from ..numbers.formatting import parse_heading
-from ..results.reductions import parsed
 from . import designs
 from .sweeps import FAILED, can_vary, is_case, output_list, sweep, variant_and_reference
 

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cycle.extremes import extrema
+from ..cycle.rounding import PLACED
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics.quantities import label_of
 from ..numbers import checks
 from ..numbers.files import write_atomically
 from ..numbers.formatting import parse_heading
-from ..results.extremes import extrema
-from ..results.rounding import PLACED
 from ..solution.parameters import tables_over_angles
 
 

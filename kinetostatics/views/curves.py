@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..cycle.extremes import extremes
 from ..design.linkage import four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, require, single_numbers
-from ..results.extremes import extremes
 from . import canvas
 from .canvas import (
     FROM_X,

@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ..cycle.losses import lose
 from ..design.pareto_front import Front
 from ..errors import CaseError, ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
-from ..results.losses import lose
 from . import curves, drawings, drives
 from .canvas import (
     ACCENT,

@@ -11,8 +11,8 @@ import pytest
 from matplotlib.image import imread
 
 import kinetostatics as ks
+from kinetostatics.cycle.rounding import FLOOR
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.results.rounding import FLOOR
 
 pytest.importorskip("bokeh")
 pytest.importorskip("selenium")

@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.design.cam_contact import hardness_from_pressure, pressure_from_hardness
 from kinetostatics.design.problem import Problem, true_value
 from kinetostatics.machine.cams import roller
-from kinetostatics.results.reductions import parsed
 from support.cam_contacts import CAM, LOADS, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 

@@ -5,10 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.design import measures
 from kinetostatics.design.constraints import parse_output
 from kinetostatics.design.problem import Problem, true_value
-from kinetostatics.results.reductions import parsed
 from support.case_files import PLAIN, case_file, shipped
 from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
 

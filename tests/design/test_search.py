@@ -6,9 +6,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.design import problem, search
 from kinetostatics.design.constraints import Constraint, parse_constraint
-from kinetostatics.results.reductions import parsed
 from support.improved_saws import CAM, CIRCLE, ENDS, FORCE, FRONT_OF, RATIO, SAW, SPRING, TORQUE, bound, front
 
 pytestmark = pytest.mark.slow

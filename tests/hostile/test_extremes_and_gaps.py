@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.comparison import mean_absolute_torque
+from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics import assembly, quantities
-from kinetostatics.results.comparison import mean_absolute_torque
-from kinetostatics.results.extremes import extremes_frame
 from support.every import every
 
 GRAVITY = (ks.Gravity(),)

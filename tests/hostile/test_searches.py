@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.comparison import _ratio
+from kinetostatics.cycle.reductions import REDUCTIONS, parsed
 from kinetostatics.mechanics import assembly
 from kinetostatics.numbers.units import to_si
-from kinetostatics.results.comparison import _ratio
-from kinetostatics.results.reductions import REDUCTIONS, parsed
 from support.every import each, every, told
 
 PUMP = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0)

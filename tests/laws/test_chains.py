@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import kinetostatics as ks
+from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.quantities import components, of_mechanism
-from kinetostatics.results.extremes import extremes_frame
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.chains import chain, error_beside_constraints, errors_beside_full_systems
 

@@ -13,6 +13,7 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
+from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.machine.group import FRAME, Declaration, Group, Output, Point
 from kinetostatics.machine.links import Joint, LinkMotion, Sliding, Slot, Turning, Wrench
 from kinetostatics.mechanics.principal_points import principal_points
@@ -29,7 +30,6 @@ from kinetostatics.numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
-from kinetostatics.results.extremes import extremes_frame
 from kinetostatics.solution.program import compile as compiled
 from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods.global_system import newton

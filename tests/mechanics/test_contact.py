@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.dynamics import Dynamics
-from kinetostatics.results.extremes import extremes_frame
 from support.cam_contacts import CAM, LOADS, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 

@@ -257,7 +257,7 @@ def test_extremes_stand_on_both_sides_of_a_jump():
 
 
 def test_the_mean_torque_is_right_across_the_jumps():
-    from kinetostatics.results.comparison import mean_absolute_torque
+    from kinetostatics.cycle.comparison import mean_absolute_torque
 
     s = ks.solve(RUBBED, TURN, friction=JOINTS, crank_speed=30.0, loads=ks.Gravity())
     ends = np.unique(np.concatenate([[0.0, 2 * np.pi], s.sampled.kinks]))

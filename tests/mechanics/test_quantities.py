@@ -6,8 +6,8 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
+from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.quantities import of_mechanism
-from kinetostatics.results.extremes import extremes_frame
 from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)

@@ -10,10 +10,10 @@ import pint
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import REDUCTIONS
 from kinetostatics.numbers.checks import DimensionError, is_quantity, to_plain
 from kinetostatics.numbers.checks.messages import SYNONYMS, nearest
 from kinetostatics.numbers.units import to_si
-from kinetostatics.results.reductions import REDUCTIONS
 from support.every import every
 from support.units import UNITS
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.errors import NotGivenError
-from kinetostatics.results.reductions import parsed
 from kinetostatics.solution.piecewise_turns import PiecewiseTurns
 from support.every import every
 

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
+from kinetostatics.cycle.means import NODES, WEIGHTS
 from kinetostatics.machine.loads import value_of
 from kinetostatics.mechanics.quantities import component_sizes
-from kinetostatics.results.means import NODES, WEIGHTS
 from support.case_files import shipped
 
 SAW = shipped("sawframe_2r63")

@@ -14,9 +14,9 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import REDUCTIONS
 from kinetostatics.engines import numba_backend
 from kinetostatics.numbers.units import base_factor
-from kinetostatics.results.reductions import REDUCTIONS
 from kinetostatics.sweeps import chunk, sweeps
 from kinetostatics.sweeps.sweeps import FAILED, _type_problems
 from support import factories

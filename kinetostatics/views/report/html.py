@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...cycle.losses import lose
 from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty_unit
-from ...results.losses import lose
 from ...version import __version__
 from ..canvas import display_unit
 from . import figures, tables

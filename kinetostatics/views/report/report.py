@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ...casefile.case import Case, load_case
+from ...cycle.extremes import extremes_by_name
 from ...errors import ParameterError
 from ...machine.loads import period_of
 from ...numbers import checks, files
 from ...numbers.lazy import cached_property
-from ...results.extremes import extremes_by_name
 from ...solution.scene import Scene
 from ..canvas import angles_between
 from . import figures, html

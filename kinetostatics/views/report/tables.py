@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from ...casefile.variant import run_under_motors
+from ...cycle.comparison import Comparison, left_out
+from ...cycle.losses import lose
+from ...cycle.means import mean_absolute_torque
+from ...cycle.rounding import FLOOR, zeroed
 from ...errors import CaseError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
-from ...results.comparison import Comparison, left_out
-from ...results.losses import lose
-from ...results.means import mean_absolute_torque
-from ...results.rounding import FLOOR, zeroed
 from ..canvas import display_unit, drawn_limit, ordinary_size
 from .movement import to_base64
 

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.rounding import FLOOR
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.results.rounding import FLOOR
 from kinetostatics.views.report import tables
 from kinetostatics.views.report.movement import from_base64
 from kinetostatics.views.report.report import subject_of

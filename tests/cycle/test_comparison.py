@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.comparison import left_out
+from kinetostatics.cycle.comparison import left_out
 
 
 def yoke(mass, speed=10.0):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.kinks import design_kinks, has_kinks, sign_changes
-from kinetostatics.results.pieces import GOAL, MAX_ADDED, Pieces, refined
-from kinetostatics.results.reductions import parsed
+from kinetostatics.cycle.kinks import design_kinks, has_kinks, sign_changes
+from kinetostatics.cycle.pieces import GOAL, MAX_ADDED, Pieces, refined
+from kinetostatics.cycle.reductions import parsed
 from support.every import every
 
 TURN = 2 * np.pi

@@ -28,7 +28,7 @@ from math import inf, nan, pi, sqrt
 
 import numpy as np
 from kinetostatics.engines import simd_reductions
-from kinetostatics.results.peaks import between
+from kinetostatics.cycle.peaks import between
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)

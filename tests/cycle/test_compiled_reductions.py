@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
+from kinetostatics.cycle.compiled_reductions import KINDS, CompiledReductions
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.codegen import ARGUMENTS
-from kinetostatics.results.compiled_reductions import KINDS, CompiledReductions
-from kinetostatics.results.reductions import parsed
 
 pytestmark = [
     pytest.mark.slow,  # all reductions as one compiled loop

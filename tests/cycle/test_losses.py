@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.losses import losses
+from kinetostatics.cycle.losses import losses
 from support.every import every
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.means import (
+from kinetostatics.cycle.means import (
     NODES,
     _mean_of_absolute_torque,
     closed_turn,
@@ -16,7 +16,7 @@ from kinetostatics.results.means import (
     mean_absolute_torque_errors,
     means,
 )
-from kinetostatics.results.rounding import BoundedExtremes, without_rounding
+from kinetostatics.cycle.rounding import BoundedExtremes, without_rounding
 
 TURN = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=3.0).sampled
 WHOLE = 2 * np.pi
@@ -95,7 +95,7 @@ def test_unbounded_torque_has_infinite_mean(monkeypatch):
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
     found = ks.extremes(s, "balancing_torque")
     growing = replace(found, value=np.where(found.maximum, np.inf, found.value))
-    monkeypatch.setattr("kinetostatics.results.means.extrema", lambda *_: growing)
+    monkeypatch.setattr("kinetostatics.cycle.means.extrema", lambda *_: growing)
     with pytest.warns(ks.ConditionWarning, match="grows without bound"):
         assert mean_absolute_torque(s) == np.inf
     assert mean_absolute_torque_errors(s) == (np.inf, np.inf)

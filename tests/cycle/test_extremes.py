@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
 
 import kinetostatics as ks
+from kinetostatics.cycle.extremes import extremes_by_name, extremes_frame, frames
+from kinetostatics.cycle.turn import Turn
 from kinetostatics.errors import NotGivenError
-from kinetostatics.results.extremes import extremes_by_name, extremes_frame, frames
-from kinetostatics.results.turn import Turn
 from support import sweeping as spikes
 from support.every import every
 from support.machines import ANGLES, KINDS, Machine, largest

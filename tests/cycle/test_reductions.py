@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.cycle.reductions import REDUCTIONS, parsed
 from kinetostatics.mechanics import quantities
-from kinetostatics.results.reductions import REDUCTIONS, parsed
 
 
 def wave(order=3):
