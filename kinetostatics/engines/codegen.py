@@ -265,6 +265,7 @@ _IN_LINE = {
     "cos": "cosine",
     "held": "{}",
     "sign": "copysign(1.0, {})",
+    **{f"if {sign}": f"{{2}} if {{0}} {sign} {{1}} else {{3}}" for sign in ("<", "<=", "==", ">=")},
 }
 """Text of inputs, and of operations that are not functions of the same name, in a line."""
 _IN_LOOP = {

@@ -1,5 +1,6 @@
 """Compiled loops: bits, threads, gaps, memory, and reductions by vectors."""
 
+import itertools
 import math
 import sys
 import threading
@@ -260,12 +261,15 @@ def jitted(intrinsic, arguments):
 
 @pytest.mark.slow_start
 def test_bits_are_set_exactly_where_conditions_hold(numba):
-    conditions = [getattr(simd_reductions, name) for name in SCANS]
-    own, expected = jitted(simd_reductions.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
-    for size in ROWS:
+    rising, falling, negative = (getattr(simd_reductions, name) for name in SCANS)
+    loops = {
+        conditions: (jitted(simd_reductions.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions))
+        for conditions in ((rising, falling), (negative,))
+    }
+    for size, (conditions, (own, expected)) in itertools.product(ROWS, loops.items()):
         results = np.zeros((2, 3, size))
         results[1, 2] = values_of(size)
-        words, wanted = np.full((2, 3, size // 64 + 1), 2**64 - 1, np.uint64)
+        words, wanted = np.full((2, len(conditions), size // 64 + 1), 2**64 - 1, np.uint64)
         own(results, 1, 2, words)
         expected(results, 1, 2, wanted)
         filled = (size + 63) // 64
@@ -274,17 +278,14 @@ def test_bits_are_set_exactly_where_conditions_hold(numba):
 
 
 def test_what_holds_is_what_reductions_mean():
-    values = np.array([0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0])
-    after = np.roll(values, -1)
-    found = {name: getattr(simd_reductions, name)(by_arrays.WRITER, values, after) for name in SCANS}
-    places = {name: np.flatnonzero(mask).tolist() for name, mask in found.items()}
+    values = [0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0]
+    steps = list(enumerate(zip(values, [*values[1:], values[0]], strict=True)))
+    places = {name: [k for k, step in steps if getattr(simd_reductions, name)(*step)] for name in SCANS}
     assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
 @pytest.mark.slow_start
 def test_columns_of_a_table_become_a_function_of_them(numba):
-    """Up to the next multiple of so many, and not beyond."""
-
     def function(parts, chosen, sqrt):
         one, other, *_ = parts
         return chosen("<", one, other, 2.0 * one, 3.0), sqrt(abs(one - other))
@@ -296,8 +297,7 @@ def test_columns_of_a_table_become_a_function_of_them(numba):
         own(found, count)
         expected(wanted, count)
         assert np.array_equal(found[:, :count], wanted[:, :count])
-        beyond = -(-count // simd_reductions.COLUMNS) * simd_reductions.COLUMNS
-        assert np.array_equal(found[:, beyond:], table[:, beyond:])
+        assert np.array_equal(found[:, count:], table[:, count:])
         assert np.array_equal(found[2], table[2])
 
 

@@ -1,24 +1,21 @@
-"""What numba is given by `engines.simd_reductions`, done by NumPy: for programs run without numba."""
+"""The loops of `engines.simd_reductions`, done by NumPy: for programs run without numba."""
 
 import operator
-from types import SimpleNamespace
 
 import numpy as np
 
 COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
-WRITER = SimpleNamespace(
-    holds=lambda sign, one, other: COMPARED[sign](one, other),
-    builder=SimpleNamespace(not_=operator.invert),
-)
 
 
 def bits_of_steps(*conditions):
     def bits(results, design, row, words):
-        values = results[design, row]
-        found = [condition(WRITER, values, np.roll(values, -1)) for condition in conditions]
+        values = results[design, row].tolist()
+        steps = list(zip(values, [*values[1:], values[0]], strict=True))
+        found = [[condition(*step) for step in steps] for condition in conditions]
         packed = np.packbits(found, axis=-1, bitorder="little")
-        words.view(np.uint8)[:] = 0
-        words.view(np.uint8)[:, : packed.shape[1]] = packed
+        words = words[: len(conditions)].view(np.uint8)
+        words[:] = 0
+        words[:, : packed.shape[1]] = packed
 
     return bits
 
