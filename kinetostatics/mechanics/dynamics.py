@@ -178,7 +178,7 @@ class Dynamics(Motion):
 
     @property
     def friction_loss(self):
-        """Power lost by friction at all joints, (..., N), W."""
+        """Power lost by friction at all joints, (..., N), W, not negative."""
         return self._scalar(product(self.crank_speed, _work_of(self.friction_by_joint)))
 
     @property
@@ -188,9 +188,11 @@ class Dynamics(Motion):
 
     @property
     def friction_margin(self):
-        """Margin from jamming, (..., N): 1 without friction; where it is not positive, friction is NaN.
+        """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
 
-        Exact for a guide or pin alone, a bound for several joints: see `Solution.friction_margin`.
+        Of a single guide or pin with friction it is ``1 - |kappa|``, exactly: where it is 0 or less there is no state,
+        or there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where
+        it is 0 or less there may still be one state; none is looked for, and friction is NaN.
         """
         return self._scalar(reduce(smaller, self._friction_list("margins"), 1.0))
 
@@ -225,7 +227,7 @@ class Dynamics(Motion):
 
     @property
     def balancing_torque_by_power(self):
-        """Balancing torque from the balance of powers, independent of reactions, N m."""
+        """Balancing torque from the balance of powers, without any reaction, (..., N), N m."""
         return self._scalar(self._torque_with(self.friction_by_joint))
 
     def _torque_with(self, friction):
@@ -258,12 +260,12 @@ class Dynamics(Motion):
 
     @cached_property
     def largest_torque_term(self):
-        """Largest torque of a single load or inertia, the terms of the balancing torque, N m."""
+        """Largest torque that one load alone would take, N m; the balancing torque is a sum of such terms."""
         return reduce(np.maximum, (self.largest(part) for part in self.powers), 0.0)
 
     @cached_property
     def largest_force_term(self):
-        """Largest force of a single load, weight or inertia, the terms of a reaction, N."""
+        """Largest load on one link, weight, inertia or applied, N; a reaction is a sum of such terms."""
         wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in self.wrenches)]
         forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
@@ -336,7 +338,7 @@ class Dynamics(Motion):
 
     @cached_property
     def closed(self):
-        """Whether the mechanism closes at each angle."""
+        """Whether the mechanism closes, (..., N) of bool."""
         parts = (np.asarray(part, dtype=float) for part in coordinates(self.placement, self.mechanism.parts))
         return np.isfinite(reduce(plus, parts))
 

@@ -25,29 +25,35 @@ from .load_values import evaluate_load, slider_push
 
 
 def reduced_inertia(motion):
-    """Reduced inertia of all links, kg m2; None without mass."""
+    """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
     return _sum(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
 
 
 def reduced_inertia_slope(motion):
-    """Derivative of the reduced inertia by the crank angle, kg m2; None if it is constant."""
+    """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
     slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
     return product(2.0, _sum(slopes))
 
 
 def kinetic_energy(motion):
-    """Kinetic energy of all links, J."""
+    """Kinetic energy of all links, (..., N), J."""
     square, _ = motion.accelerating
     return product(0.5 * square, reduced_inertia(motion))
 
 
 def potential_energy(motion):
-    """Potential energy of the loads that have one, J."""
+    """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
+
+    Loads without potential, as process forces and dampers, count nothing.
+    """
     return _sum(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
 
 
 def load_torque(motion):
-    """Torque on the crank that holds weight and loads, without inertia, N m."""
+    """Torque on the crank that balances weight and loads at their speed, without any inertia, (..., N), N m.
+
+    With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
+    """
     links = motion.placement.links
     weights = (
         product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))

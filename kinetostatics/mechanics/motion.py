@@ -265,7 +265,10 @@ class Motion:
 
     @property
     def crank_sense(self):
-        """Sense of rotation of the crank: +1 counter-clockwise, -1 clockwise; +1 at rest without acceleration."""
+        """Sense of rotation of the crank: +1 counter-clockwise, -1 clockwise, float or array.
+
+        `sense` if given, else the sign of the crank speed, at rest of the crank acceleration; +1 where both are 0.
+        """
         return sense_of(self.crank_speed, self.crank_acceleration) if self.sense is None else self.sense
 
     @cached_property

@@ -43,18 +43,10 @@ MAX_PAIRWISE_INPUTS = 3
 
 
 class LargeSecondOrder(NamedTuple):
-    """Where the second order is not small beside the first.
+    """Where the second order is not small beside the first: at how many values of how many, and at the worst of them.
 
-    Attributes
-    ----------
-    values, of : int
-        How many values, of how many.
-    angle : float
-        Crank angle where it is worst, rad.
-    paths : tuple of str
-        The input, or the two inputs, with the largest second order there.
-    first, second : float
-        Both orders there; the second is NaN where the quantity has no value with these inputs moved.
+    `paths` are the input, or the two inputs, with the largest second order there; the second order is NaN where the
+    quantity has no value with these inputs moved.
     """
 
     values: int
@@ -98,57 +90,6 @@ def doubt_text(doubts):
     )
 
 
-class SecondOrderTerms:
-    """Terms of second order by differences, each (components, *shape); zero where there is no value.
-
-    Parameters
-    ----------
-    run : function
-        ``run(leaves)`` gives the values.
-    plain : array
-        Values of the unchanged leaves.
-    leaves : Leaves
-    places : dict of path to int
-        Leaf of each input.
-    deviations : dict of path to float
-    """
-
-    def __init__(self, run, plain, leaves, places, deviations):
-        self._run, self._plain, self._leaves, self._places, self._deviations = run, plain, leaves, places, deviations
-        gap = np.isnan(plain)
-        self._gap = gap if gap.any() else None
-        with np.errstate(all="ignore"):
-            self._by_one = {sign: {path: self._moved({path: sign}) for path in places} for sign in (1.0, -1.0)}
-
-    def _moved(self, signs):
-        """Change of the values with some inputs larger or smaller by their deviations."""
-        numbers = list(self._leaves.numbers)
-        for path, sign in signs.items():
-            numbers[self._places[path]] = numbers[self._places[path]] + sign * self._deviations[path]
-        change = self._run(self._leaves.with_numbers(numbers)) - self._plain
-        return change if self._gap is None else np.where(self._gap, 0.0, change)
-
-    def _together(self, signs):
-        """The same less the changes by each input alone."""
-        return self._moved(signs) - sum(self._by_one[sign][path] for path, sign in signs.items())
-
-    def of_one(self):
-        """1/2 f_ii u_i^2 by (path,)."""
-        ahead, behind = self._by_one.values()
-        return {(path,): 0.5 * (ahead[path] + behind[path]) for path in self._places}
-
-    def of_two(self):
-        """f_ij u_i u_j by (path, other)."""
-        return {pair: self._together(dict.fromkeys(pair, 1.0)) for pair in combinations(self._places, 2)}
-
-    def of_all(self):
-        """Sums of all products of two, with signs so that no two products cancel in every sum."""
-        codes = dict(zip(self._places, _codes(len(self._places)), strict=True))
-        bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
-        signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
-        return {("all", str(row)): self._together(part) for row, part in enumerate(signs)}
-
-
 @lru_cache(maxsize=64)
 def _codes(count):
     """Integers of few bits whose pairwise differences (exclusive or) are all distinct."""
@@ -163,13 +104,37 @@ def _codes(count):
             known |= differences
 
 
-def find_second_order(terms, count, angle, first, rounding) -> LargeSecondOrder | None:
-    """Where the second order is not small, or None; of many inputs sums of products are tried first."""
+def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None:
+    """Where the second order, by differences, is not small; None if nowhere.
+
+    Of many inputs sums of all products of two are computed before each product, with signs so that no two products
+    cancel in every sum.
+
+    Parameters
+    ----------
+    change : function
+        ``change(signs)`` gives the change of the values, (components, ..., N), with inputs by path larger, 1, or
+        smaller, -1, by their uncertainty.
+    angle, first, rounding
+        As for `large_second_order`.
+    """
+    paths = tuple(first)
     with np.errstate(all="ignore"):
-        squares = terms.of_one()
-        if count > MAX_PAIRWISE_INPUTS and large_second_order(angle, first, squares | terms.of_all(), rounding) is None:
-            return None
-        return large_second_order(angle, first, squares | terms.of_two(), rounding)
+        alone = {sign: {path: change({path: sign}) for path in paths} for sign in (1.0, -1.0)}
+
+        def products(signs):
+            return change(signs) - sum(alone[sign][path] for path, sign in signs.items())
+
+        squares = {(path,): 0.5 * (alone[1.0][path] + alone[-1.0][path]) for path in paths}
+        if len(paths) > MAX_PAIRWISE_INPUTS:
+            codes = dict(zip(paths, _codes(len(paths)), strict=True))
+            bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
+            signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
+            sums = {("all", str(row)): products(part) for row, part in enumerate(signs)}
+            if large_second_order(angle, first, squares | sums, rounding) is None:
+                return None
+        pairs = {pair: products(dict.fromkeys(pair, 1.0)) for pair in combinations(paths, 2)}
+        return large_second_order(angle, first, squares | pairs, rounding)
 
 
 def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | None:
@@ -180,7 +145,7 @@ def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | Non
     angle : array (..., N)
     first : dict of path to array (components, ..., N)
     second : dict of tuple of paths to array (components, ..., N)
-        As of `Terms`.
+        1/2 f_ii u_i^2 by (path,), and f_ij u_i u_j by (path, other).
     rounding : array (components, ..., N)
         Bound on the rounding of values.
     """
@@ -328,9 +293,7 @@ class Certainty(Parameters):
         True
         """
         checks.require("error_bound", checks.quantity(quantity), checks.truth("tight", tight))
-        name = quantities.without_bars(self, quantity)
-        values, bounds = self._with_bounds(name, tight)
-        return _rounding_bound(values, bounds, name != quantity)
+        return self._values_and_bound(quantity, tight)[1]
 
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
@@ -390,9 +353,8 @@ class Certainty(Parameters):
         given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.single_numbers("uncertainty", **given)
         checks.require("uncertainty", checks.quantity(quantity))
+        values, rounding = self._values_and_bound(quantity)
         name = quantities.without_bars(self, quantity)
-        values, bounds = self._with_bounds(name)
-        rounding = _rounding_bound(values, bounds, name != quantity)
         found, doubt = self._slopes(name, inputs, values, rounding) if inputs else ({}, None)
         if name != quantity:
             vector = quantities.components(self, name)
@@ -412,28 +374,28 @@ class Certainty(Parameters):
         values, rounding = (np.reshape(part, (-1, *self.shape)) for part in (values, rounding))
         tabled = bool(program.recording.tables)  # rows of tables are read where the moved machine is
 
-        def run(moved):
-            placed = state_of(state.kind.structure, moved, state.crank_angle) if tabled else state
-            return backend.run(program, placed, moved)
+        def change(signs):
+            moved = list(leaves.numbers)
+            for path, sign in signs.items():
+                moved[by[path]] = moved[by[path]] + sign * inputs[path]
+            others = leaves.with_numbers(moved)
+            placed = state_of(state.kind.structure, others, state.crank_angle) if tabled else state
+            return np.where(np.isnan(values), 0.0, backend.run(program, placed, others) - values)
 
         try:
-            terms = SecondOrderTerms(run, values, leaves, by, inputs)
-            beyond = find_second_order(terms, len(by), self.crank_angle, first, rounding)
+            beyond = find_second_order(change, self.crank_angle, first, rounding)
             doubt = None if beyond is None else beyond.doubt(name, quantities.unit_of(self, name), inputs)
         except ParameterError as why:  # a slider beyond its table, for one
             doubt = Doubt(name, "and may be more", f"with them moved, {why}")
         return found, doubt
 
-    def _with_bounds(self, name, tight=False):
-        """Values of a quantity and bounds on their errors, a list of two arrays."""
-        return [found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight)]
-
-
-def _rounding_bound(values, bounds, of_its_magnitude):
-    """Bound on the error of a quantity, or of the magnitude of a vector."""
-    if of_its_magnitude:
-        values, bounds = np.hypot(*values), of_magnitude(values, bounds)
-    return read_only(where_known(values, bounds))[()]
+    def _values_and_bound(self, quantity, tight=False):
+        """Values of a quantity, of a vector its components, and a bound on the rounding of it or of its magnitude."""
+        name = quantities.without_bars(self, quantity)
+        values, bounds = (found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight))
+        if name == quantity:
+            return values, read_only(where_known(values, bounds))[()]
+        return values, read_only(where_known(np.hypot(*values), of_magnitude(values, bounds)))[()]
 
 
 def _magnitude_slope(vector, slope):

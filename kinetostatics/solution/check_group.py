@@ -114,8 +114,28 @@ def check(group):
     if getattr(group, "passes", False):
         group = replace(group)  # its joint is moved by hand, and on no crank it has no change points
     stage = _stage(group)
-    errors = _of_shape(stage) | _of_links(stage) | _of_derivatives(stage) | _of_forces(stage)
+    errors: dict[str, float] = {}
+    for compare in (_shape, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
+        for what, found, expected, unit in compare(stage, stage.place_joints()):
+            errors[what] = max(errors.get(what, 0.0), _error(found, expected, unit))
     return GroupReport(type(group).__name__, errors)
+
+
+def _error(found, expected, unit):
+    """Largest difference over the largest value, or over `unit` if larger, of the worst component.
+
+    It is infinite if not finite; an absent value is zero.
+    """
+    errors = []
+    for pair in zip(_components(found), _components(expected), strict=False):
+        one, other = (np.asarray(number_or_zero(part), dtype=float) for part in pair)
+        error = np.max(np.abs(one - other)) / max(np.max(np.abs(one)), np.max(np.abs(other)), unit)
+        errors.append(float(error) if np.isfinite(error) else np.inf)
+    return max(errors)
+
+
+def _components(value):
+    return value if isinstance(value, tuple) else (value, value)
 
 
 class _Stage(NamedTuple):
@@ -192,187 +212,62 @@ def _stage(group):
     return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
 
 
-def _of_shape(stage):
-    """Errors of lengths of bars, unit vectors, reference joints, and what groups declare of travels and courses."""
-    group, placement = stage.group, stage.place_joints()
-    errors = {}
+# Comparisons: name of the check, two values that must agree, and a size below which neither counts
+
+
+def _shape(stage, placement):
+    """Lengths of bars, unit vectors, reference joints, and what groups declare of travels and courses."""
+    group, size = stage.group, stage.size
     for bar in group.bars:
         ends = (vector_or_zero(placement.joints[name].position) for name in (bar.end, bar.start))
-        errors[f"length of {bar.link}"] = _error(length(subtract_vectors(*ends)), bar.length, stage.size)
+        yield f"length of {bar.link}", length(subtract_vectors(*ends)), bar.length, size
     for name, joint in group.references.items():
         motion = placement.links[name]
-        errors[f"direction of {name}"] = _error(length(motion.direction), 1.0, 1.0)
-        pairs = zip(motion.joint.position, placement.joints[joint].position, strict=True)
-        errors[f"reference joint of {name}"] = max(_error(*pair, stage.size) for pair in pairs)
+        yield f"direction of {name}", length(motion.direction), 1.0, 1.0
+        yield f"reference joint of {name}", motion.joint.position, placement.joints[joint].position, size
     for name, travel in placement.travels.items() if hasattr(group, "elongation") else ():
-        free = 0.7 * stage.size
+        free = 0.7 * size
         elongation = group.elongation(placement, free)
-        errors[f"elongation of {name}"] = _error(elongation, travel.position - free, stage.size)
+        yield f"elongation of {name}", elongation, travel.position - free, size
         departure = group.departure(placement, free) if hasattr(group, "departure") else None
         if departure is not None:
-            errors[f"departure of {name}"] = _error(departure, travel.second + travel.position - free, stage.size)
+            yield f"departure of {name}", departure, travel.second + travel.position - free, size
         outward = group.outward(placement, free) if hasattr(group, "outward") else None
         if outward is not None:
-            errors[f"outward part of {name}"] = _error(abs(sum(outward)), abs(elongation), stage.size)
+            yield f"outward part of {name}", abs(sum(outward)), abs(elongation), size
     for name in group.joints:
         joint, course = placement.joints[name], placement.course(name)
         if course.orbit is not None:
-            reached = scale_vector(sum(course.orbit), placement.ray)
-            errors[f"orbit of {name}"] = _error(reached, joint.position, stage.size)
+            yield f"orbit of {name}", scale_vector(sum(course.orbit), placement.ray), joint.position, size
         if course.departure is not None:
             departure = add_vectors(vector_or_zero(joint.second), joint.position)
-            errors[f"departure of {name}"] = _error(course.departure, departure, stage.size)
+            yield f"departure of {name}", course.departure, departure, size
         if course.swing is not None:
-            reached = add_vectors(course.swing.centre, scale_vector(course.swing.radius, course.swing.direction))
-            errors[f"swing of {name}"] = _error(reached, joint.position, stage.size)
-    return errors
+            centre, radius, direction = course.swing.centre, course.swing.radius, course.swing.direction
+            yield f"swing of {name}", add_vectors(centre, scale_vector(radius, direction)), joint.position, size
+            parts = (*centre, radius)
+            yield f"centre and radius of the swing of {name}", parts, tuple(map(np.mean, parts)), size
 
 
-def _of_derivatives(stage):
-    """Errors of derivatives by crank angle against differences."""
-    steps = range(1, len(WEIGHTS) + 1)
-    beside = {k: _rates(stage.place_joints(k * ANGLE_STEP), stage) for step in steps for k in (step, -step)}
-    here, again = (_rates(stage.place_joints(), stage) for _ in range(2))
-    errors = {"place called twice": max(_error(again[what][0], values[0], values[2]) for what, values in here.items())}
-    for what, (_, claimed, unit) in here.items():
-        slope = sum(
-            weight * (beside[step][what][0] - beside[-step][what][0]) / ANGLE_STEP
-            for step, weight in zip(steps, WEIGHTS, strict=True)
-        )
-        errors[what] = _error(claimed, slope, unit)
-    return errors
-
-
-def _rates(placement, stage):
-    """Value, claimed derivative, and a size below which neither counts, by name."""
-    found = {}
-
-    def add(name, joint):
-        first, second = (0.0 if part is None else part for part in (joint.first, joint.second))
-        found[f"first derivative of {name}"] = joint.position, first, stage.size
-        found[f"second derivative of {name}"] = first, second, stage.size
-
-    for name in placement.joints.keys() - {"O", *stage.carrying_joints}:
-        add(f"joint {name}", placement.joints[name])
-    for name, travel in placement.travels.items():
-        add(f"travel of {name}", travel)
-    for name in stage.group.links:
-        motion = placement.links[name]
-        add(f"reference joint of {name}", motion.joint)
-        x, y = motion.direction
-        ratio, slope = number_or_zero(motion.ratio), number_or_zero(motion.ratio_slope)
-        found[f"ratio of {name}"] = (x, y), (-ratio * y, ratio * x), 1.0
-        found[f"ratio_slope of {name}"] = ratio, slope, 1.0
-    shape = np.shape(placement.angle)
-    return {
-        name: (*(np.array([np.broadcast_to(part, shape) for part in _parts(value)]) for value in values), unit)
-        for name, (*values, unit) in sorted(found.items())
-    }
-
-
-def _parts(value):
-    return value if isinstance(value, tuple) else (value, value)
-
-
-def _of_forces(stage):
-    """Errors of the forces, from their work and that of the loads on small motions of each joint."""
-    if not stage.group.links:
-        return {}
-    random = np.random.default_rng(0)
-
-    def any_vector():
-        return tuple(random.uniform(-1.0, 1.0, (2, stage.angle.size)))
-
-    still = stage.place_joints()
-    wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
-    pushes = {name: any_vector()[0] for name in still.travels}
-    ways: dict[str, Any] = {
-        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"way": way, "alone": name}
-        for name in stage.carrying_joints
-        for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
-    }
-    errors = {
-        f"work of the forces along {name}": _work_error(stage, stage.place_joints(**way), wrenches, pushes)
-        for name, way in (ways or {"the turn": {}}).items()
-    }
-    inertia = {
-        name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))
-        for name, link in stage.group.links.items()
-    }
-    if any(wrench.force is not None or wrench.moment is not None for wrench in inertia.values()):
-        errors["power of weight and inertia"] = _work_error(stage, still, inertia, {})
-    return errors
-
-
-def _work_error(stage, placement, wrenches, pushes):
-    """Sum of all work, relative to its largest part."""
-    resolved = stage.group.resolve(placement, wrenches, pushes)
-    if not stage.group.trusted:
-        checks.require("check", *output_problems(stage.group, resolved))
-    parts = [virtual_work(placement.links[name], wrench) for name, wrench in wrenches.items()]
-    parts += [product(push, placement.travels[name].first) for name, push in pushes.items()]
-    for name, demand in resolved.demands.items():
-        of_link = name in placement.links
-        parts.append(
-            virtual_work(placement.links[name], demand) if of_link else work(demand.force, placement.joints[name].first)
-        )
-    sizes = [np.max(np.abs(number_or_zero(part))) for part in parts]
-    return _error(sum(number_or_zero(part) for part in parts), 0.0, max(sizes) or 1.0)
-
-
-def _error(found, expected, unit):
-    """Largest difference over the largest value, or over `unit` if larger; infinite if not finite."""
-    found, expected = (np.asarray(values, dtype=float) for values in (found, expected))
-    error = np.max(np.abs(found - expected)) / max(np.max(np.abs(found)), np.max(np.abs(expected)), unit)
-    return float(error) if np.isfinite(error) else np.inf
-
-
-# States of links against those of joints, guides and slots
-
-
-class Comparison(NamedTuple):
-    """Two values that must agree, and a size below which neither counts."""
-
-    found: object
-    expected: object
-    unit: float
-
-
-def _of_links(stage):
-    """Errors of states of links against those of joints, guides and slots."""
-    group, placement, size = stage.group, stage.place_joints(), stage.size
-    parts = (_points, _fixed_joints, _guides, _slots, _slidings, _courses)
-    return {
-        what: max(_error(*both, unit) for both in zip(_parts(found), _parts(expected), strict=False))
-        for part in parts
-        for what, (found, expected, unit) in part(group, placement, size).items()
-    }
-
-
-def _points(group, placement, size):
+def _points(stage, placement):
     """Joints that are points of links, by position, velocity and acceleration."""
-    found = {}
-    for name, (link, along, across) in group.joints.items():
-        joint = placement.joints[name]
+    for name, (link, along, across) in stage.group.joints.items():
+        owner, states = link, ((along, across), None, None)
         if link == FRAME:
-            for what, part, fixed in zip(STATE_NAMES, joint, ((along, across), (0.0, 0.0), (0.0, 0.0)), strict=True):
-                found[f"{what} of {name} as a point of the frame"] = Comparison(vector_or_zero(part), fixed, size)
-            continue
-        motion = placement.links[link]
-        spot = PointMotion(motion.joint, arm(motion.direction, along, across), motion)
-        for what, part, by_link in zip(STATE_NAMES, joint, _states(spot), strict=True):
-            found[f"{what} of {name} as a point of {link}"] = Comparison(
-                vector_or_zero(by_link), vector_or_zero(part), size
-            )
-    return found
+            owner = "the frame"
+        else:
+            motion = placement.links[link]
+            states = _states(PointMotion(motion.joint, arm(motion.direction, along, across), motion))
+        for what, by_link, part in zip(STATE_NAMES, states, placement.joints[name], strict=True):
+            yield f"{what} of {name} as a point of {owner}", by_link, part, stage.size
 
 
-def _fixed_joints(group, placement, size):
+def _fixed_joints(stage, placement):
     """Joints that a link keeps at one place in its own axes: the end of a bar at its length, other pins anywhere."""
+    group = stage.group
     fixed = {(pair.link, pair.joint): None for pair in _declared(group, "pairs").values() if type(pair) is Turning}
     for bar in group.bars:
         fixed |= {(bar.link, bar.start): (0.0, 0.0), (bar.link, bar.end): (bar.length, 0.0)}
-    found = {}
     for (link, name), at in fixed.items():
         if link not in group.links:
             continue
@@ -380,76 +275,52 @@ def _fixed_joints(group, placement, size):
         to_joint = subtract_vectors(joint.position, motion.joint.position)
         seen = rotate_back(to_joint, motion.direction)
         expected = tuple(np.mean(part) for part in seen) if at is None else at
-        found[f"place of {name} in the axes of {link}"] = Comparison(seen, expected, size)
+        yield f"place of {name} in the axes of {link}", seen, expected, stage.size
         _, first, second = _states(PointMotion(motion.joint, to_joint, motion))
-        found[f"velocity of {name} by {link}"] = Comparison(vector_or_zero(first), vector_or_zero(joint.first), size)
-        found[f"acceleration of {name} by {link}"] = Comparison(
-            vector_or_zero(second), vector_or_zero(joint.second), size
-        )
-    return found
+        yield f"velocity of {name} by {link}", first, joint.first, stage.size
+        yield f"acceleration of {name} by {link}", second, joint.second, stage.size
 
 
-def _guides(group, placement, size):
+def _guides(stage, placement):
     """Sliders: the pin on the guide, the direction of the guide, and the travel along it."""
-    found = {}
-    for link, guide in _declared(group, "guides").items():
+    for link, guide in _declared(stage.group, "guides").items():
         motion, direction = placement.links[link], guide.direction
-        position = motion.joint.position
-        found[f"distance of {link} from its guide"] = Comparison(cross(direction, position), guide.guide_offset, size)
-        found[f"direction of {link} along its guide"] = Comparison(motion.direction, direction, 1.0)
+        yield (
+            f"distance of {link} from its guide",
+            cross(direction, motion.joint.position),
+            guide.guide_offset,
+            stage.size,
+        )
+        yield f"direction of {link} along its guide", motion.direction, direction, 1.0
         travel = placement.travels.get(link)
         for what, claimed, part in zip(STATE_NAMES, travel, motion.joint, strict=True) if travel else ():
-            found[f"{what} of the travel of {link}"] = Comparison(
-                number_or_zero(claimed), dot(direction, vector_or_zero(part)), size
-            )
-    return found
+            yield f"{what} of the travel of {link}", claimed, dot(direction, vector_or_zero(part)), stage.size
 
 
-def _slots(group, placement, size):
+def _slots(stage, placement):
     """Joints that slide in the slot of a link: on the line of the slot."""
-    found = {}
-    for slot in _declared(group, "slots"):
+    for slot in _declared(stage.group, "slots"):
         motion = placement.links[slot.link]
         axis = rotate((np.cos(slot.angle), np.sin(slot.angle)), motion.direction)
         away = subtract_vectors(placement.joints[slot.joint].position, motion.joint.position)
-        found[f"distance of {slot.joint} from the slot of {slot.link}"] = Comparison(
-            cross(axis, away), slot.offset, size
-        )
+        yield f"distance of {slot.joint} from the slot of {slot.link}", cross(axis, away), slot.offset, stage.size
         if slot.rod:
             aside = cross(axis, placement.links[slot.rod].direction)
-            found[f"direction of {slot.rod} along {slot.link}"] = Comparison(aside, 0.0, 1.0)
-    return found
+            yield f"direction of {slot.rod} along {slot.link}", aside, 0.0, 1.0
 
 
-def _slidings(group, placement, size):
+def _slidings(stage, placement):
     """Rates of sliding pairs, which give the sense of friction, as velocities of one link against the other."""
-    found = {}
-    for name, pair in _declared(group, "pairs").items():
+    for name, pair in _declared(stage.group, "pairs").items():
         if type(pair) is not Sliding:
             continue
-        slide, joint = group.sliding(name, placement), placement.joints[pair.joint]
+        slide, joint = stage.group.sliding(name, placement), placement.joints[pair.joint]
         direction = (1.0, 0.0) if slide.direction is None else slide.direction
         first = subtract_vectors(_velocity(placement, pair.link, joint), _velocity(placement, pair.against, joint))
-        found[f"rate of sliding of {name}"] = Comparison(
-            number_or_zero(slide.rate), dot(direction, vector_or_zero(first)), size
-        )
+        yield f"rate of sliding of {name}", slide.rate, dot(direction, vector_or_zero(first)), stage.size
         if pair.against != FRAME:
             away = subtract_vectors(joint.position, placement.links[pair.against].joint.position)
-            found[f"moment of sliding of {name}"] = Comparison(
-                number_or_zero(slide.moment), cross(away, direction), size
-            )
-    return found
-
-
-def _courses(group, placement, size):
-    """Centre and radius of a joint that swings about a fixed place."""
-    found = {}
-    for name in group.joints:
-        swing = placement.course(name).swing
-        if swing is not None:
-            parts = (*swing.centre, swing.radius)
-            found[f"centre and radius of the swing of {name}"] = Comparison(parts, tuple(map(np.mean, parts)), size)
-    return found
+            yield f"moment of sliding of {name}", slide.moment, cross(away, direction), stage.size
 
 
 def _declared(group, name):
@@ -467,3 +338,81 @@ def _velocity(placement, link, joint):
         return None
     motion = placement.links[link]
     return PointMotion(motion.joint, subtract_vectors(joint.position, motion.joint.position), motion).first
+
+
+def _derivatives(stage, placement):
+    """Derivatives by crank angle against differences."""
+    here, again = (_rates(stage, each) for each in (placement, stage.place_joints()))
+    beside = {
+        step: [_rates(stage, stage.place_joints(side * step * ANGLE_STEP)) for side in (1, -1)]
+        for step in range(1, len(WEIGHTS) + 1)
+    }
+    for what, (value, claimed, unit) in here.items():
+        yield "place called twice", again[what][0], value, unit
+        slopes = ((ahead[what][0] - behind[what][0]) / ANGLE_STEP for ahead, behind in beside.values())
+        yield what, claimed, sum(weight * slope for weight, slope in zip(WEIGHTS, slopes, strict=True)), unit
+
+
+def _rates(stage, placement):
+    """Value, its derivative as the group gives it, and a size below which neither counts, by name."""
+    moving = placement.joints.keys() - {"O", *stage.carrying_joints}
+    joints = {f"joint {name}": placement.joints[name] for name in moving}
+    joints |= {f"travel of {name}": travel for name, travel in placement.travels.items()}
+    joints |= {f"reference joint of {name}": placement.links[name].joint for name in stage.group.links}
+    found = {}
+    for name, joint in joints.items():
+        found[f"first derivative of {name}"] = joint.position, joint.first, stage.size
+        found[f"second derivative of {name}"] = joint.first, joint.second, stage.size
+    for name in stage.group.links:
+        motion = placement.links[name]
+        (x, y), ratio = motion.direction, number_or_zero(motion.ratio)
+        found[f"ratio of {name}"] = (x, y), (-ratio * y, ratio * x), 1.0
+        found[f"ratio_slope of {name}"] = ratio, motion.ratio_slope, 1.0
+    shape = np.shape(placement.angle)
+
+    def array(value):
+        return np.array([np.broadcast_to(number_or_zero(part), shape) for part in _components(value)])
+
+    return {name: (array(value), array(claimed), unit) for name, (value, claimed, unit) in sorted(found.items())}
+
+
+def _forces(stage, still):
+    """Work of the forces and of the loads on small motions of each joint, which must be zero together."""
+    if not stage.group.links:
+        return
+    random = np.random.default_rng(0)
+
+    def any_vector():
+        return tuple(random.uniform(-1.0, 1.0, (2, stage.angle.size)))
+
+    wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
+    pushes = {name: any_vector()[0] for name in still.travels}
+    ways: dict[str, Any] = {
+        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"way": way, "alone": name}
+        for name in stage.carrying_joints
+        for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
+    }
+    for name, way in (ways or {"the turn": {}}).items():
+        yield f"work of the forces along {name}", *_work(stage, stage.place_joints(**way), wrenches, pushes)
+    inertia = {
+        name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))
+        for name, link in stage.group.links.items()
+    }
+    if any(wrench.force is not None or wrench.moment is not None for wrench in inertia.values()):
+        yield "power of weight and inertia", *_work(stage, still, inertia, {})
+
+
+def _work(stage, placement, wrenches, pushes):
+    """Sum of all work, zero, and its largest part."""
+    resolved = stage.group.resolve(placement, wrenches, pushes)
+    if not stage.group.trusted:
+        checks.require("check", *output_problems(stage.group, resolved))
+    parts = [virtual_work(placement.links[name], wrench) for name, wrench in wrenches.items()]
+    parts += [product(push, placement.travels[name].first) for name, push in pushes.items()]
+    for name, demand in resolved.demands.items():
+        of_link = name in placement.links
+        parts.append(
+            virtual_work(placement.links[name], demand) if of_link else work(demand.force, placement.joints[name].first)
+        )
+    parts = [number_or_zero(part) for part in parts]
+    return sum(parts), 0.0, max(np.max(np.abs(part)) for part in parts) or 1.0

@@ -138,28 +138,19 @@ def leaf_by_path(places, state):
 
 
 def keep_numbers(scene, places, wanted):
-    """The scene with the wanted numbers kept in its programs, though they are zero or of an axis."""
+    """The scene with the wanted numbers kept in its programs, though they are zero or of an axis; unchecked."""
+    kept = {}
     for path in wanted:
         place = places[path]
-        owner = place._replace(steps=place.steps[:-1])
-        if isinstance(owner.value(scene), Axis) or is_zero(place.value(scene)):
-            scene = _keep_number(scene, place.steps)
-    return scene
+        value, owner = place.value(scene), place._replace(steps=place.steps[:-1]).value(scene)
+        if isinstance(owner, Axis) or is_zero(value):
+            kept[place.steps] = KeptZero(0.0) if is_zero(value) else value
+    return paths.with_values(scene, kept, replace_unchecked) if kept else scene
 
 
 def is_zero(value):
     """Whether a value is the plain number zero, which is absent from a program unless it is kept."""
     return isinstance(value, int | float) and value == 0
-
-
-def _keep_number(item, steps):
-    """Copy of a tree with the number at the end of the steps kept, unchecked."""
-    if not steps:
-        return KeptZero(0.0) if item == 0 else item
-    step, *rest = steps
-    if isinstance(step, int):
-        return tuple(_keep_number(part, rest) if place == step else part for place, part in enumerate(item))
-    return replace_unchecked(item, **{step: _keep_number(getattr(item, step), rest)})
 
 
 def has_joint_rule(item, steps):
@@ -212,27 +203,17 @@ def passage_paths(places, mechanism, groups):
 
 
 class PlausibleNumber(NamedTuple):
-    """A number of a structure of scenes whose rule has usual values.
-
-    Attributes
-    ----------
-    path : str
-    leaf : int
-        Its place among the leaves.
-    usual : PlausibleRange
-    is_own : bool
-        Whether it belongs to the mechanism.
-    """
+    """A number of a structure of scenes whose rule has usual values, by its place among the leaves."""
 
     path: str
     leaf: int
     usual: PlausibleRange
-    is_own: bool
+    is_of_mechanism: bool
 
 
 def scene_plausibility_test(kind):
     """Fast test of a structure, see `plausibility_test`; it looks at all lengths of the mechanism together."""
-    numbers = (item for item in kind.answer(plausible_numbers) if not (item.is_own and item.usual.unit == "m"))
+    numbers = (item for item in kind.answer(plausible_numbers) if not (item.is_of_mechanism and item.usual.unit == "m"))
     return plausibility_test(kind, [(item.leaf, item.usual) for item in numbers])
 
 

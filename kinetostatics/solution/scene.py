@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
+from ..engines.engines import COMPILED, FASTEST, is_plain
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import HintWarning, ParameterError
@@ -318,20 +318,15 @@ def unchecked_solution(scene, crank_angle, engine=None):
         checks.require("solve", checks.broadcast_problem(**_shapes(scene, angle)))
         values = math.prod(solution.shape)
         checks.require("solve", values and checks.count("designs times crank angles", values, size=BYTES_PER_VALUE))
-    vars(solution)["engine"] = _engine(engine, angle, solution)
-    return solution
-
-
-def _engine(name, angle, solution):
-    """The engine of that name, by default the one that suits the number of values."""
-    if name == "compiled":
+    is_large = math.prod(solution.shape) >= MIN_VALUES_COMPILED
+    if engine == "compiled":
         if not is_plain(angle):
             raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
         require_numba()
-        return COMPILED
-    if name is None and is_plain(angle) and math.prod(solution.shape) >= MIN_VALUES_COMPILED and numba_available():
-        return FASTEST
-    return NUMPY
+        vars(solution)["engine"] = COMPILED
+    elif engine is None and is_large and is_plain(angle) and numba_available():
+        vars(solution)["engine"] = FASTEST
+    return solution
 
 
 def _sense(owner, given, speed):

@@ -26,7 +26,6 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked
-from . import contents
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .parameters import (
@@ -41,11 +40,93 @@ MAX_VALUES_TOGETHER = 100_000
 """Values over designs and angles up to which all forces are computed together."""
 
 
+def _member(name):
+    """Member of `Dynamics` with its docstring; a quantity is computed by the engine when first read, and kept."""
+    return property(lambda self: self._found(name), doc=getattr(Dynamics, name).__doc__)
+
+
+def _scalar(name, text):
+    """Force or moment that the forces of a mechanism have by a name."""
+    return property(lambda self: self.scalar(name), doc=text)
+
+
 @dataclass(frozen=True, eq=False)
 class Solution(Certainty, Motion):
-    """Motion and forces of a mechanism; every result is computed when first read, and kept."""
+    """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
-    __doc__ = contents.__doc__
+    Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
+    counter-clockwise from +x. Arrays end with the crank angles, N of them; batch axes of designs come before: (..., N).
+    A vector has (x, y) as its first axis: (2, ..., N).
+
+    A group's `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup`
+    with ``label="2"``; its `pin` and `pivot_name` name its joints. `reactions` and `scalars` list all names. Where the
+    mechanism does not close, `solve` raises, or with ``on_gap="nan"`` gives NaN for the open group, groups attached to
+    it, and forces of groups that carry it.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    crank_angle : array (..., N)
+        phi, rad.
+    crank_speed, crank_acceleration : float or array
+        omega, rad/s, and alpha, rad/s2, counter-clockwise positive.
+    sense : None, float or array
+        Way that a crank at rest is about to turn, as given: +1 counter-clockwise, -1 clockwise.
+    loads : tuple
+    friction : mapping of joint to friction
+    engine, silent
+        Engine that computes it; whether it warns no more.
+    shape, period, crank_sense, closed, closure
+    reactions, scalars
+    slider_position, slider_velocity, slider_acceleration, pressure_angle
+    balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
+    guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
+    shaking_force, shaking_moment
+    reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
+    friction_loss, friction_torque, friction_margin, friction_residual, converged, losses, efficiency
+    condition, largest_force_term, largest_torque_term
+
+    Methods
+    -------
+    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link)
+    friction_at(joint), friction_loss_at(joint)
+    position(point), velocity(point), acceleration(point)
+    rate(link), angular_acceleration(link)
+    travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
+    measure(name)
+    at(crank_angle)
+    condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
+    explain(quantity, angle, design), frame()
+
+    Notes
+    -----
+    A reaction acts on the body named last, on the other body the other way round:
+
+    - "O": ground on crank.
+    - "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
+      block of a cam roller. Of a group hung on another joint, "C": on its coupler, from what carries C.
+    - "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
+    - "O2", a fixed pivot: ground on rocker, on lever, on cylinder, on arm.
+    - "guide": ground on slider, or on follower; friction included.
+
+    For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
+    `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
+    `places`, `PATHS`, `RULES`, `first_look`, `with_doubt`, `proportion`, `farthest`, `loads_are_given`, `is_given` and
+    `check`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+    >>> s.reactions, s.scalars
+    (('A', 'B', 'guide', 'O'), ('guide_force', 'guide_moment', 'balancing_torque'))
+    >>> print(f"{s.balancing_torque[30] * s.crank_speed / 1e3:.0f} kW from the drive at 30 deg")
+    1269 kW from the drive at 30 deg
+    >>> back = ks.Scene(saw, -33.5, loads=[ks.Gravity()]).solve(360)  # the other way round: the same forces
+    >>> bool(abs(back.balancing_torque - s.balancing_torque).max() < 1e-9)
+    True
+    """
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
@@ -87,10 +168,7 @@ class Solution(Certainty, Motion):
         """Sum of all lengths over the shortest, the largest of a batch."""
         return self.first_look[0] if self.first_look else self.mechanism.proportion
 
-    @property
-    def closed(self):
-        """Whether the mechanism closes, (..., N) of bool."""
-        return self.dynamics.closed
+    closed = _member("closed")
 
     @property
     def is_given(self):
@@ -122,7 +200,10 @@ class Solution(Certainty, Motion):
 
     @property
     def period(self):
-        """Crank angle after which motion and loads repeat, rad; extremes, means and tables cover one period."""
+        """Crank angle after which motion and loads repeat, rad: a turn unless loads or passed change points take more.
+
+        Extremes, means and tables cover one period.
+        """
         return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
@@ -156,10 +237,7 @@ class Solution(Certainty, Motion):
         >>> print(f"{s.reaction('guide')[1, 90]:.0f} N")  # upward, by the ground on the slider at 90 deg
         702 N
         """
-        found = self._force("reaction", joint, True)
-        if self.mechanism.passes:
-            self._warn_of_growth(joint, found)
-        return found
+        return self._force("reaction", joint, self.reactions)
 
     @property
     def scalars(self):
@@ -167,21 +245,23 @@ class Solution(Certainty, Motion):
         return tuple(name for name, output in self.mechanism.outputs.items() if not output.vector)
 
     def scalar(self, name):
-        """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
-        found = self._force("quantity", name, False)
-        if self.mechanism.passes:
-            self._warn_of_growth(name, found)
-        return found
+        """A force or moment by name, (..., N), N or N m.
 
-    @property
-    def balancing_torque(self):
-        """Torque on the crank that the drive must give, counter-clockwise positive, N m; times omega its power, W."""
-        return self.scalar("balancing_torque")
+        "balancing_torque", "guide_force", "guide_moment", "cam_force", "slot_force", "slot_moment", "cylinder_force",
+        "cylinder_moment", "contact_force" ...
+        """
+        return self._force("quantity", name, self.scalars)
 
-    @property
-    def balancing_torque_by_power(self):
-        """The same torque from the balance of powers, without any reaction, N m."""
-        return self._found("balancing_torque_by_power")
+    balancing_torque = _scalar(
+        "balancing_torque",
+        """Torque M on the crank that the drive gives to keep the prescribed motion, counter-clockwise positive, N m.
+
+        Its power is M omega, whichever way the crank turns: with omega > 0 the drive pushes where M > 0 and brakes
+        where M < 0; with omega < 0 it pushes where M < 0 and brakes where M > 0.
+        M = J alpha + J' omega^2 / 2 + load torque, with the reduced inertia J.
+        """,
+    )
+    balancing_torque_by_power = _member("balancing_torque_by_power")
 
     @cached_property
     def power_residual(self):
@@ -192,35 +272,25 @@ class Solution(Certainty, Motion):
         difference = self.dynamics.largest(self.balancing_torque - self.balancing_torque_by_power)
         return np.where(scale > 0, difference / np.where(scale > 0, scale, 1.0), 0.0 * difference)[()]
 
-    @property
-    def largest_torque_term(self):
-        """Largest torque that one load alone would take, N m; the balancing torque is a sum of such terms."""
-        return self.dynamics.largest_torque_term
+    largest_torque_term = _member("largest_torque_term")
+    largest_force_term = _member("largest_force_term")
+    guide_force = _scalar("guide_force", "Force of the guide on the slider along the guide's left normal, (..., N), N.")
+    guide_moment = _scalar("guide_moment", "Moment of the guide on the slider about the slider pin, (..., N), N m.")
+    cam_force = _scalar(
+        "cam_force",
+        """Force of the cam on the roller along the normal, (..., N), N.
 
-    @property
-    def largest_force_term(self):
-        """Largest load on one link, weight, inertia or applied, N; a reaction is a sum of such terms."""
-        return self.dynamics.largest_force_term
+        Positive toward the inside of the pitch curve, as a ring around it pushes; negative outward, as a disk does.
+        """,
+    )
+    slot_force = _scalar(
+        "slot_force",
+        """Force of a slot on its block, (..., N), N.
 
-    @property
-    def guide_force(self):
-        """Force of the guide on the slider along the guide's left normal, N."""
-        return self.scalar("guide_force")
-
-    @property
-    def guide_moment(self):
-        """Moment of the guide on the slider about the slider pin, N m."""
-        return self.scalar("guide_moment")
-
-    @property
-    def cam_force(self):
-        """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
-        return self.scalar("cam_force")
-
-    @property
-    def slot_force(self):
-        """Force of the slotted crank on the block across the ray, positive with growing crank angle, N."""
-        return self.scalar("slot_force")
+        Of a slotted crank across the ray, positive with growing crank angle; of a lever, and on the block of a yoke's
+        slider, along the left normal of the slot.
+        """,
+    )
 
     def pin_load(self, joint):
         """Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint."""
@@ -240,14 +310,11 @@ class Solution(Certainty, Motion):
         known = of_scene(self)
         return self._found(name) if name in known and known[name].kind == "contact" else self.dynamics.pressure(name)
 
-    @property
-    def contact_pressure(self):
-        """Largest Hertz pressure between cam and roller, Pa, of a cam that has a `Roller`."""
-        return self.pressure()
+    contact_pressure = property(pressure)
 
     @property
     def pressure_angle(self):
-        """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
+        """Pressure angle of the cam pair, atan(r'/r), (..., N), rad, positive where r grows with the crank angle."""
         return self.measure("pressure_angle")
 
     # Inertia and energy
@@ -265,46 +332,13 @@ class Solution(Certainty, Motion):
         """
         return self.dynamics.inertia_force(link)
 
-    @property
-    def shaking_force(self):
-        """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
-        return self._found("shaking_force")
-
-    @property
-    def shaking_moment(self):
-        """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
-        return self._found("shaking_moment")
-
-    @property
-    def reduced_inertia(self):
-        """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
-        return self._found("reduced_inertia")
-
-    @property
-    def reduced_inertia_slope(self):
-        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-        return self._found("reduced_inertia_slope")
-
-    @property
-    def kinetic_energy(self):
-        """Kinetic energy of all links, (..., N), J."""
-        return self._found("kinetic_energy")
-
-    @property
-    def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
-
-        Loads without potential, as process forces and dampers, count nothing.
-        """
-        return self._found("potential_energy")
-
-    @property
-    def load_torque(self):
-        """Torque on the crank that balances weight and loads at their speed, without any inertia, (..., N), N m.
-
-        With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
-        """
-        return self._found("load_torque")
+    shaking_force = _member("shaking_force")
+    shaking_moment = _member("shaking_moment")
+    reduced_inertia = _member("reduced_inertia")
+    reduced_inertia_slope = _member("reduced_inertia_slope")
+    kinetic_energy = _member("kinetic_energy")
+    potential_energy = _member("potential_energy")
+    load_torque = _member("load_torque")
 
     @cached_property
     def energy_per_turn(self):
@@ -317,28 +351,21 @@ class Solution(Certainty, Motion):
 
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
-        return self._of_friction(f"{joint}_friction")
+        return self._at_joint(joint, "_friction")
 
     def friction_loss_at(self, joint):
         """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 without friction there."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
-        return self._of_friction(f"{joint}_friction_loss")
+        return self._at_joint(joint, "_friction_loss")
 
     @property
     def guide_friction(self):
-        """Friction of the guide on the slider along the guide, N; 0 without friction."""
-        return self._of_friction("guide_friction")
+        """Friction of the guide on the slider along the guide, N, against its velocity; 0 without friction."""
+        return self.friction_at("guide") if "guide" in self.mechanism.pairs else self._scalar(None)
 
-    @property
-    def friction_loss(self):
-        """Power lost by friction at all joints, (..., N), W, not negative."""
-        return self._of_friction("friction_loss")
-
-    @property
-    def friction_torque(self):
-        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
-        return self._of_friction("friction_torque")
+    friction_loss = _member("friction_loss")
+    friction_torque = _member("friction_torque")
+    friction_margin = _member("friction_margin")
+    friction_residual = _member("friction_residual")
 
     @cached_property
     def losses(self):
@@ -351,21 +378,6 @@ class Solution(Certainty, Motion):
     def efficiency(self):
         """Mechanical efficiency over the period: work taken by loads over work taken by loads and lost at joints."""
         return self.losses.efficiency
-
-    @property
-    def friction_margin(self):
-        """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
-
-        Of a single guide or pin with friction it is ``1 - |kappa|``, exactly: where it is 0 or less there is no state,
-        or there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where
-        it is 0 or less there may still be one state; none is looked for, and friction is NaN.
-        """
-        return self._of_friction("friction_margin") if self.friction else self._scalar(1.0)
-
-    @property
-    def friction_residual(self):
-        """How much forces would change by one more pass over friction, relative to the largest of a group."""
-        return self._of_friction("friction_residual")
 
     @property
     def converged(self):
@@ -492,43 +504,40 @@ class Solution(Certainty, Motion):
             way=getattr(self.engine, "way", None),
         )
 
-    @property
-    def placement(self):
-        """Joints and links by name, as kinematic coefficients."""
-        return self.dynamics.placement
+    placement = _member("placement")
 
     @cached_property
     def _values(self):
         return {}
 
-    def _force(self, kind, name, vector):
-        """A force by name; all are computed together if they are not too many."""
-        if isinstance(name, str) and name in self._values:
-            return self._values[name]
-        self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
-        return self._found(name)
+    def _force(self, kind, name, names):
+        """A force by name; warns once where it grows without bound at a change point that is passed."""
+        self._look_up(kind, name, dict.fromkeys(names))
+        found = self._found(name)
+        if self.mechanism.passes and not self.silent and self.mechanism.grows(name):
+            is_plain = isinstance(found, np.ndarray) and found.dtype == float
+            text = assembly.unbounded_force_problem(self, name, found) if is_plain else None
+            if text:
+                object.__setattr__(self, "silent", True)
+                warnings.warn(text, ConditionWarning, stacklevel=3)
+        return found
 
-    def _of_friction(self, name):
-        """A quantity of friction by name; 0 without friction there."""
-        return self._found(name) if name in of_scene(self) else self._scalar(None)
+    def _at_joint(self, joint, ending):
+        """A quantity of friction at a joint; 0 without friction there."""
+        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        return self._found(joint + ending) if joint in self.friction else self._scalar(None)
 
     def _found(self, name):
-        """Any quantity by its name in the table of quantities, or "closure"."""
+        """A quantity by its name in the table, or "closure", by the engine; another member of `dynamics` as it is.
+
+        Quantities of friction are in the table of scenes with friction alone.
+        """
         if name not in self._values:
+            if name != "closure" and name not in of_scene(self):
+                return getattr(self.dynamics, name)
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
             of_all = self.is_given if name == "closure" else name in resolved_names(self)
             together = of_all and math.prod(self.shape) <= MAX_VALUES_TOGETHER
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]
-
-    def _warn_of_growth(self, name, values):
-        """Say once that forces grow without bound at a change point that is passed."""
-        if self.silent or not self.mechanism.grows(name):
-            return
-        if not isinstance(values, np.ndarray) or values.dtype != float:
-            return
-        text = assembly.unbounded_force_problem(self, name, values)
-        if text:
-            object.__setattr__(self, "silent", True)
-            warnings.warn(text, ConditionWarning, stacklevel=3)

@@ -1,7 +1,7 @@
 """Table of the largest values of a machine with their uncertainty from tolerances of its numbers and from rounding."""
 
 import warnings
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -60,9 +60,16 @@ def largest_with_uncertainty(solution, inputs):
         name: item for name, item in of_scene(solution).items() if item.kind in TABLE_KINDS and name != SECOND_TORQUE
     }
     known = BoundedExtremes(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
-    moved, rows, doubts = _ShiftedScenes(solution, inputs), [], []
+    scene, rows, doubts = Scene.of(solution), [], []
+
+    @cache
+    def moved(path):
+        """Solutions with an input smaller and larger by its uncertainty."""
+        given, by = scene.parameters[path], inputs[path]
+        return [scene.varied({path: given + side * by}).unsolved(solution.crank_angle) for side in (-1.0, 1.0)]
+
     for name in known.found:
-        row, doubt = _row(known, name, quantities[name], moved)
+        row, doubt = _row(known, name, quantities[name], inputs, moved)
         rows.append(row)
         doubts += [] if doubt is None else [doubt]
     if doubts:
@@ -70,14 +77,14 @@ def largest_with_uncertainty(solution, inputs):
     return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
 
 
-def _row(known, name, quantity, moved):
+def _row(known, name, quantity, inputs, moved):
     """A row of the table, and the doubt that its uncertainty is too small, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
     at_kink = np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP)
     if at_kink and quantity.kind not in SMOOTH_KINDS:
-        parts, doubt = moved.parts(name, rounding)
+        parts, doubt = _parts_at_kink(name, rounding, inputs, moved)
     else:
-        sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, moved.inputs)
+        sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, inputs)
         parts = {path: float(part) for path, part in sure.inputs.items()}
     tolerance = float(np.sqrt(sum(part**2 for part in parts.values())))
     most = max(parts, key=parts.__getitem__) if tolerance > 0.0 else ""
@@ -85,28 +92,17 @@ def _row(known, name, quantity, moved):
     return (quantity.label, quantity.unit, value, np.degrees(angle), tolerance, rounding, most, share), doubt
 
 
-class _ShiftedScenes:
-    """The machine with each input smaller and larger by its uncertainty."""
-
-    def __init__(self, solution, inputs):
-        self.inputs, self._scene, self._angle = inputs, Scene.of(solution), solution.crank_angle
-        self._sides = lru_cache(None)(self._made)
-
-    def _made(self, path):
-        given, by = self._scene.parameters[path], self.inputs[path]
-        return [self._scene.varied({path: given + way * by}).unsolved(self._angle) for way in (-1.0, 1.0)]
-
-    def parts(self, name, rounding):
-        """Half the difference of the largest magnitude by path, 0 within rounding; and the doubt or None."""
-        found, doubt = {}, None
-        for path in self.inputs:
-            try:
-                low, high = (_largest(side, name) for side in self._sides(path))
-                half = 0.5 * abs(high - low)
-                found[path] = 0.0 if half <= rounding else half
-            except ParameterError as why:  # a slider beyond its table, for one
-                doubt = Doubt(name, "and may be more", f"with {path} moved, {why}")
-        return found, doubt
+def _parts_at_kink(name, rounding, inputs, moved):
+    """Half the difference of the largest magnitude by path, 0 within rounding; and the doubt or None."""
+    found, doubt = {}, None
+    for path in inputs:
+        try:
+            low, high = (_largest(side, name) for side in moved(path))
+            half = 0.5 * abs(high - low)
+            found[path] = 0.0 if half <= rounding else half
+        except ParameterError as why:  # a slider beyond its table, for one
+            doubt = Doubt(name, "and may be more", f"with {path} moved, {why}")
+    return found, doubt
 
 
 def _largest(solution, name):

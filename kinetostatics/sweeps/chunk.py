@@ -54,7 +54,7 @@ def compute_batch(scene, job, count, outputs):
         Numbers that the crank angles do not resolve.
     nearest : array (designs,)
         Crank angle, rad, nearest to a limit position; NaN if none is near.
-    parted : array (outputs,) of bool
+    kinked : array (outputs,) of bool
         Outputs whose turn is split at kinks.
     """
     solution = unchecked_turn(scene, job.angles)
@@ -67,12 +67,12 @@ def compute_batch(scene, job, count, outputs):
         )
     if count == solution.shape[-1] > 1 and tables_over_angles(scene):  # ambiguous; the caller tries fewer designs
         raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
-    parted = np.array([has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs])
-    even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
-    numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)
+    kinked = np.array([has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs])
+    smooth = [item for item, split in zip(outputs, kinked, strict=True) if not split]
+    numbers, gaps = np.empty((len(smooth), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    way = _compiled_filler if job.engine == "compiled" else _numpy_filler
-    fill, step = way(solution, even, made, (numbers, rough, gaps, nearest), job.threads)
+    filler = _compiled_filler if job.engine == "compiled" else _numpy_filler
+    fill, step = filler(solution, smooth, made, (numbers, rough, gaps, nearest), job.threads)
     starts = range(0, made, step)
     if job.threads == 1 or len(starts) == 1:
         for start in starts:
@@ -84,14 +84,13 @@ def compute_batch(scene, job, count, outputs):
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
         reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
-    if parted.any():
-        apart = [item for item in outputs if item not in even]
+    if kinked.any():
+        split = [item for item in outputs if item not in smooth]
         found = np.empty((2, len(outputs), made))
-        found[:, ~parted], found[:, parted] = (numbers, rough), _split_turn(scene, job, apart).estimated(apart)
+        found[:, ~kinked], found[:, kinked] = (numbers, rough), _split_turns(scene, job, split).estimated(split)
         numbers, rough = found[0], found[1] > 0
-    shape = len(outputs), count
-    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
-    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest, parted
+    for_all = (np.broadcast_to(part, (*part.shape[:-1], count)) for part in (numbers, reasons, rough, nearest))
+    return *map(np.array, for_all), kinked
 
 
 def _compiled_filler(solution, outputs, count, found, threads):
@@ -144,24 +143,8 @@ def _numpy_filler(solution, outputs, count, found, threads):
     return fill, step
 
 
-def _split_turn(scene, job, outputs):
+def _split_turns(scene, job, outputs):
     return PiecewiseTurns.of(scene, outputs, job.angles, job.kink_tolerance, job.engine)
-
-
-def rounding_noise(scene, job, outputs):
-    """Whether the quantities of outputs are constant over the turn but for rounding, (outputs, designs or 1)."""
-    solution = unchecked_turn(scene, job.angles)
-    if any(has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs):
-        solution = unchecked_turn(scene, _split_turn(scene, job, outputs).pieces.angle)
-    with np.errstate(all="ignore"):
-        found = [_is_noise(solution, item.quantity) for item in outputs]
-    return np.array(found)
-
-
-def _is_noise(solution, name):
-    values = component_sizes(solution, name)[0]
-    size = np.maximum(largest_term(solution, name), np.abs(values).max(axis=-1))
-    return np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
 
 
 MAX_PROBED_DESIGNS = 64
@@ -268,11 +251,10 @@ def dry_run(job, designs, engines):
         checks.require("sweep", *problems)
         hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in scene_hints(solutions[0]))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
-        engine = _first_engine(job, solutions, engines)
-        streams = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
-        parted = any(has_kinks(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
-        angles = max(job.angles, (START_ANGLES if parted else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
-        return replace(job, engine=engine, outputs=outputs, streams=streams, kinked=parted, angles=angles, hints=hints)
+        engine, streams = _engine_of(pairs, engines)
+        kinked = any(has_kinks(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
+        angles = max(job.angles, (START_ANGLES if kinked else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
+        return replace(job, engine=engine, outputs=outputs, streams=streams, kinked=kinked, angles=angles, hints=hints)
     return None
 
 
@@ -285,25 +267,23 @@ def scene_of(make, values):
     return scene
 
 
-def _first_engine(job, solutions, engines):
-    first, *others = engines
-    if first == "numpy":
-        return first
+def _engine_of(pairs, engines):
+    """First engine that supports the mechanism, and whether its loop needs no tables.
+
+    `pairs` are a solution and (maker, outputs) of the designs and of the reference.
+    """
+    if engines[0] == "numpy":
+        return "numpy", False
     try:
-        _programs(job, solutions)
+        programs = [
+            program_of(solution.dynamics, (*quantity_names(outputs), "closure"), sizes=True)[0]
+            for solution, (_, outputs) in pairs
+        ]
     except NotGivenError:
-        if not others:
+        if len(engines) == 1:
             raise
-        return _first_engine(job, solutions, others)
-    return first
-
-
-def _programs(job, solutions):
-    """Compiled programs of the designs and of the reference."""
-    return [
-        program_of(solution.dynamics, (*quantity_names(outputs), "closure"), sizes=True)[0]
-        for solution, (_, outputs) in zip(solutions, job.sides, strict=True)
-    ]
+        return engines[1], False
+    return "compiled", not any(program.recording.rows for program in programs)
 
 
 NEGLIGIBLE_SHARE = 1e-12
@@ -326,8 +306,23 @@ def run_chunk(job, frame) -> pd.DataFrame:
     given = job.given(frame)
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
-        numbers[:, part], reasons[part] = _with_ratios(job, given[part])
+        (numbers[:, part], reasons[part]), *reference = (
+            _compute_designs(make, job, given[part], outputs) for make, outputs in job.sides
+        )
+        for above, failing in reference:
+            numbers[job.ratios, part] = _ratios(above, numbers[job.ratios, part])
+            reasons[part] = np.where((reasons[part] == "") & (failing != ""), "reference: " + failing, reasons[part])
+    for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
+        wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))
+        reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
     return result_table(job, frame, numbers, reasons)
+
+
+def _ratios(above, below):
+    """Numbers of the reference over those of designs; infinite where these count as zero, NaN for 0/0 and inf/inf."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.where(abs(below) <= NEGLIGIBLE_SHARE * abs(above), np.inf, above / below)
+    return np.where(((above == 0) & (below == 0)) | (np.isinf(above) & np.isinf(below)), np.nan, ratios)
 
 
 def result_table(job, frame, numbers, reasons):
@@ -342,49 +337,30 @@ def result_table(job, frame, numbers, reasons):
 # Designs that fail are separated
 
 
-def _with_ratios(job, given):
-    """Numbers (outputs, designs), with ratios to the reference, and reasons (designs,), empty if there are numbers."""
-    (own, reasons), *reference = (_compute_designs(make, job, given, outputs) for make, outputs in job.sides)
-    numbers, reasons = np.array(own), np.array(reasons)
-    for above, failing in reference:
-        below = numbers[job.ratios]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = np.where(abs(below) <= NEGLIGIBLE_SHARE * abs(above), np.inf, above / below)
-        unknown = ((above == 0) & (below == 0)) | (np.isinf(above) & np.isinf(below))
-        numbers[job.ratios] = np.where(unknown, np.nan, ratios)
-        reasons = np.where((reasons == "") & (failing != ""), "reference: " + failing, reasons)
-    for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
-        wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))
-        reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
-    return numbers, reasons
-
-
-def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
+def _compute_designs(make, job, given, outputs, earlier=None, refused=False):
     """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved.
 
-    `earlier` are the numbers from half as many crank angles; `wrong` means that arrays of a single design fail.
+    A single design is an array of one, so that results do not depend on the batch. `earlier` are the numbers from half
+    as many crank angles; `refused` means that arrays of a single design fail.
     """
-    count = len(given)
-    if count == 1:
-        return _compute_one(make, job, given, outputs, earlier, wrong)
-    (values,) = job.values(given)
-    try:
-        scene = scene_of(make, values)
-    except Exception as error:
-        wrong = _designs_at_fault(error, count)
-        if wrong is None:
-            wrong = _find_unbuildable(make, job, given)
-        apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # if all fail as arrays, each is computed alone
-        parts = [np.delete(np.arange(count), apart), *apart[:, None]]
-    else:
+    count, scene = len(given), None
+    for values in job.values(given)[refused:]:
         try:
+            scene = scene_of(make, values)
             return _refine_angles(make, job, given, outputs, compute_batch(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
-        except Exception as error:
-            wrong = _designs_at_fault(error, count)
-            halves = np.array_split(np.arange(count), 2)
-            parts = halves if wrong is None else [np.flatnonzero(~wrong), *np.flatnonzero(wrong)[:, None]]
+        except Exception as caught:
+            error = caught
+    if count == 1:
+        return np.full((len(outputs), 1), np.nan), np.array([str(error) or type(error).__name__], dtype=object)
+    wrong = _designs_at_fault(error, count)
+    if wrong is None and scene is not None:
+        parts = np.array_split(np.arange(count), 2)
+    else:
+        wrong = _find_unbuildable(make, job, given) if wrong is None else wrong
+        alone = np.flatnonzero(wrong if wrong.any() else ~wrong)  # if all fail as arrays, each is computed alone
+        parts = [np.delete(np.arange(count), alone), *alone[:, None]]
     numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
     for part in parts:
         if part.size:
@@ -394,31 +370,16 @@ def _compute_designs(make, job, given, outputs, earlier=None, wrong=False):
     return numbers, reasons
 
 
-def _compute_one(make, job, given, outputs, earlier, wrong):
-    """The same for a single design, as an array of one, so that results do not depend on the batch."""
-    for values in job.values(given)[wrong:]:
-        try:
-            return _refine_angles(
-                make, job, given, outputs, compute_batch(scene_of(make, values), job, 1, outputs), earlier
-            )
-        except (MissingLibraryError, OSError):
-            raise
-        except Exception as error:
-            reason = str(error) or type(error).__name__
-    return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
-
-
 def _refine_angles(make, job, given, outputs, found, earlier):
     """Numbers and reasons; designs that the crank angles do not resolve are computed with twice as many."""
-    numbers, reasons, rough, nearest, parted = found
-    numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
+    numbers, reasons, rough, nearest, kinked = found
     near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
     narrow = np.zeros(len(given), dtype=bool)
     if near.size:
         reasons[near], narrow[near] = _check_near_limits(make, job, given[near], nearest[near], outputs)
     if earlier is not None:  # agreement proves nothing for split turns: their pieces stay the same
         with np.errstate(invalid="ignore"):
-            rough &= parted[:, None] | (abs(numbers - earlier) > ANGLES_TOLERANCE * abs(numbers))
+            rough &= kinked[:, None] | (abs(numbers - earlier) > ANGLES_TOLERANCE * abs(numbers))
     rough &= (reasons == "") & ~narrow
     if rough.any():
         rough &= ~_noise_by_design(make, job, given, outputs, rough)
@@ -442,13 +403,19 @@ def _refine_angles(make, job, given, outputs, found, earlier):
 
 def _noise_by_design(make, job, given, outputs, asked):
     """Which of the outputs asked for, (outputs, designs), are constant over the turn but for rounding."""
-    found = np.zeros(asked.shape, dtype=bool)
-    rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
-    wanted = [outputs[row] for row in rows]
+    found, designs = np.zeros(asked.shape, dtype=bool), np.flatnonzero(asked.any(axis=0))
+    wanted = {row: outputs[row] for row in np.flatnonzero(asked.any(axis=1))}
     for start in range(0, designs.size, MAX_SPLIT_DESIGNS):
         some = designs[start : start + MAX_SPLIT_DESIGNS]
         scene = scene_of(make, job.values(given[some])[-1])
-        found[np.ix_(rows, some)] = rounding_noise(scene, job, wanted)
+        solution = unchecked_turn(scene, job.angles)
+        if any(has_kinks(solution, item.quantity, job.kink_tolerance) for item in wanted.values()):
+            solution = unchecked_turn(scene, _split_turns(scene, job, wanted.values()).pieces.angle)
+        with np.errstate(all="ignore"):
+            for row, item in wanted.items():
+                values = component_sizes(solution, item.quantity)[0]
+                size = np.maximum(largest_term(solution, item.quantity), np.abs(values).max(axis=-1))
+                found[row, some] = np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
     return found
 
 

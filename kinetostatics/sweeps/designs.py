@@ -95,33 +95,13 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     """
     from scipy.stats import qmc
 
-    require_mapping(spreads)
-    _require_table_size(count, len(spreads), checks.seed("seed", seed))
-    return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
+    return _seeded_sample(spreads, count, seed, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
 
 def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """Designs of a scrambled Sobol sequence, evenly spread over all parameters together.
 
-    Parameters
-    ----------
-    spreads : dict of parameter to text or quantities
-        As for `sample`.
-    count : int
-        Designs, best a power of two.
-    seed : int
-        Of the random numbers.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A column for each parameter, with its unit.
-
-    Raises
-    ------
-    ParameterError
-        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
-        there are more designs than a table can hold.
+    Arguments `spreads`, `count`, best a power of two, and `seed`, and errors as for `latin_hypercube`.
 
     Examples
     --------
@@ -132,33 +112,13 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """
     from scipy.stats import qmc
 
-    require_mapping(spreads)
-    _require_table_size(count, len(spreads), checks.seed("seed", seed))
-    return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
+    return _seeded_sample(spreads, count, seed, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
 
 def random(spreads, count, seed=0) -> pd.DataFrame:
     """Independent random designs.
 
-    Parameters
-    ----------
-    spreads : dict of parameter to text or quantities
-        As for `sample`.
-    count : int
-        Designs.
-    seed : int
-        Of the random numbers.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A column for each parameter, with its unit.
-
-    Raises
-    ------
-    ParameterError
-        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
-        there are more designs than a table can hold.
+    Arguments `spreads`, `count` and `seed`, and errors as for `latin_hypercube`.
 
     Examples
     --------
@@ -167,9 +127,13 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     >>> bool(table["slider.mass [kg]"].between(500.0, 700.0).all())
     True
     """
+    return _seeded_sample(spreads, count, seed, lambda size: np.random.default_rng(seed).random((count, size)))
+
+
+def _seeded_sample(spreads, count, seed, uniform):
     require_mapping(spreads)
     _require_table_size(count, len(spreads), checks.seed("seed", seed))
-    return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
+    return sample(spreads, uniform)
 
 
 def sample(spreads, uniform) -> pd.DataFrame:
@@ -214,22 +178,20 @@ def sample(spreads, uniform) -> pd.DataFrame:
         ) from None
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
-    inside = (numbers >= 0.0) & (numbers <= 1.0)
-    checks.require("designs", None if inside.all() else _range_problem(numbers[~inside], numbers.size))
+    wrong = numbers[~((numbers >= 0.0) & (numbers <= 1.0))]
+    checks.require(
+        "designs",
+        f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of "
+        f"{numbers.size} are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
+        if wrong.size
+        else None,
+    )
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
     unbounded = [name for name, column in zip(found, values, strict=True) if not np.isfinite(column).all()]
     checks.require(
         "designs", *(f"{name} is infinite where its number is 0 or 1; keep the numbers between" for name in unbounded)
     )
     return _design_table(np.transpose(values), found)
-
-
-def _range_problem(wrong, count):
-    """Text of the error for numbers outside 0 to 1."""
-    return (
-        f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of {count} "
-        f"are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
-    )
 
 
 def _require_table_size(count, parameters, *problems):

@@ -34,10 +34,7 @@ from .workers import MAX_CHUNK_RUNS, Workers, run_chunks
 
 def job_of(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
     """The checked job, the engines to try, and the source and reference (only the source without ratios)."""
-    _require_kinds(source, designs)
-    if not is_case(source):
-        checks.require("sweep", *_case_option_problems(source, variant, reference))
-    compared = variant_and_reference(source, variant, reference) if is_case(source) else (source, reference)
+    compared = _source_and_reference(source, designs, variant, reference)
     known = compared[0].units if can_vary(compared[0]) else None
     wanted, problems = _outputs(outputs)
     columns, wrong = si_columns(
@@ -45,64 +42,64 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     )
     problems += [
         *wrong,
-        *_name_problems(designs.columns, wanted),
-        *_type_problems(designs),
+        *_column_problems(designs, wanted),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
         checks.count("angles", angles, size=checks.BYTES_PER_ANGLE),
         None if chunk is None else checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
-        _executor_problem(executor),
-        _workers_problem(workers, executor),
-        *_order_problems(wanted, angles),
+        *_worker_problems(executor, workers),
+        *(
+            f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
+            for item in wanted
+            if item.order and isinstance(angles, int) and 2 * item.order >= angles
+        ),
     ]
     ratios = any(item.ratio for item in wanted)
     if ratios and not _is_scene(compared[1]):
         problems.append(f"ratios need a reference: a Scene, got {checks.shown(compared[1])}")
     checks.require("sweep", *problems)
+    make, make_reference = partial(_call, source), partial(_return_fixed, reference)
     if known is not None:
+        make, make_reference = (partial(_vary, item) for item in compared)
         wanted = tuple(item.of(compared[0]) for item in wanted)
-
-    engines = _engines(engine, len(designs) * max(angles, MIN_ANGLES_PER_TURN))
+    if engine == "compiled":
+        numba_backend.require_numba()
+    is_large = len(designs) * max(angles, MIN_ANGLES_PER_TURN) >= MIN_VALUES_COMPILED
+    engines = [engine or "numpy"]
+    if engine is None and is_large and numba_backend.numba_available():
+        engines = ["compiled", "numpy"]
     threads = numba_backend.core_count() if executor is None and workers is None else 1
-    make, make_reference = _makers(known, *compared)
     job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
     _require_portable(job, executor, workers)
     return job, engines, compared if ratios else compared[:1]
 
 
-def _require_kinds(source, designs):
-    """Raise an error for a source or designs of the wrong type."""
+def _source_and_reference(source, designs, variant, reference):
+    """What designs vary, and the reference of ratios; an error for arguments of the wrong kind."""
     if not isinstance(designs, pd.DataFrame):
         raise ParameterError(
             f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
         )
-    if not (is_case(source) or can_vary(source) or callable(source)):
+    if is_case(source):
+        return variant_and_reference(source, variant, reference)
+    if not (can_vary(source) or callable(source)):
         raise ParameterError(
             "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
             f"{checks.shown(source)}"
         )
-
-
-def _case_option_problems(source, variant, reference):
-    """Problems with `variant` and `reference` of a source without variants."""
     kind = "a Scene" if can_vary(source) else "a function"
-    if variant is not None:
-        yield (
-            f"variant names one of a case's variants, and {kind} has none, got {checks.shown(variant)}; leave it out, "
-            "or give a Case"
-        )
-    if reference is not None and not _is_scene(reference):
-        yield f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}"
-
-
-def _engines(engine, values):
-    """Engines to try in turn for a number of values."""
-    if engine == "compiled":
-        numba_backend.require_numba()
-    if engine:
-        return [engine]
-    return ["compiled", "numpy"] if values >= MIN_VALUES_COMPILED and numba_backend.numba_available() else ["numpy"]
+    checks.require(
+        "sweep",
+        None
+        if variant is None
+        else f"variant names one of a case's variants, and {kind} has none, got {checks.shown(variant)}; leave it out, "
+        "or give a Case",
+        None
+        if reference is None or _is_scene(reference)
+        else f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}",
+    )
+    return source, reference
 
 
 def is_case(source):
@@ -128,13 +125,6 @@ def variant_and_reference(case, variant=None, reference=None):
 
 def _is_scene(item):
     return isinstance(getattr(item, "scene", item), Scene)
-
-
-def _makers(known, source, reference):
-    """Functions that make the varied source and the reference of ratios from values."""
-    if known is None:
-        return partial(_call, source), partial(_return_fixed, reference)
-    return partial(_vary, source), partial(_vary, reference)
 
 
 def _vary(item, values):
@@ -171,16 +161,12 @@ def _outputs(outputs):
     return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
 
 
-def _name_problems(columns, wanted):
-    """Problems with columns of the designs that have the name of an output."""
+def _column_problems(designs, wanted):
+    """Problems with columns of the designs: the name of an output, or values other than plain numbers."""
     taken = {*map(str, wanted), FAILED}
-    for name in columns:
-        if parse_heading(name)[0] in taken:
-            yield f"column {name!r} of the designs has the name of an output; rename it"
-
-
-def _type_problems(designs):
     for column, kind in designs.dtypes.items():
+        if parse_heading(column)[0] in taken:
+            yield f"column {column!r} of the designs has the name of an output; rename it"
         if hasattr(kind, "units"):  # of pint-pandas
             yield f"column {column!r} must hold plain numbers, with the unit {kind.units} in its heading"
         elif not pd.api.types.is_any_real_numeric_dtype(kind):
@@ -197,27 +183,18 @@ def _signature_problem(function, names):
     return None
 
 
-def _executor_problem(executor):
-    if isinstance(executor, Executor | None):
-        return None
-    found = type(executor).__name__
-    return f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
-
-
-def _workers_problem(workers, executor):
-    """Problem with the number of workers; each costs 100 MB, so many more than cores are an error."""
-    most = max(64, 4 * numba_backend.core_count())
+def _worker_problems(executor, workers):
+    """Problems with the executor or the number of workers; each costs 100 MB, so many more than cores are an error."""
+    if not isinstance(executor, Executor | None):
+        found = type(executor).__name__
+        yield f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
     if workers is None:
-        return None
+        return
+    most = max(64, 4 * numba_backend.core_count())
     if isinstance(workers, bool) or not isinstance(workers, int | np.integer) or not 1 <= workers <= most:
-        return f"workers must be a whole number of processes from 1 to {most} here, got {workers!r}"
-    return None if executor is None else "give workers or an executor, not both"
-
-
-def _order_problems(wanted, angles):
-    for item in wanted:
-        if item.order and isinstance(angles, int) and 2 * item.order >= angles:
-            yield f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
+        yield f"workers must be a whole number of processes from 1 to {most} here, got {workers!r}"
+    elif executor is not None:
+        yield "give workers or an executor, not both"
 
 
 def _require_portable(job, executor, workers):

@@ -88,7 +88,9 @@ class Workers:
         if not self._count:
             return self._given.submit(*call)
         if self._pool is None:
-            self._pool = _pool(self._count)
+            from loky import ProcessPoolExecutor
+
+            self._pool = ProcessPoolExecutor(self._count, initializer=_start_worker, initargs=(os.getpid(),))
         with _signals_blocked():  # new processes inherit the mask
             return self._pool.submit(*call)
 
@@ -107,26 +109,20 @@ class _SameProcess(Executor):
         return future
 
 
-def _pool(count):
-    from loky import ProcessPoolExecutor
-
-    return ProcessPoolExecutor(count, initializer=_start_worker, initargs=(os.getpid(),))
-
-
 def _start_worker(parent):
     """Let a worker ignore signals, which the parent handles, and end with the parent.
 
     A worker that ended on a signal while it sends a result would block the parent, which waits for the rest.
     """
+
+    def exit_with_parent():
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
-    threading.Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()
-
-
-def _exit_with_parent(parent):
-    while os.getppid() == parent:
-        time.sleep(0.5)
-    os._exit(1)
+    threading.Thread(target=exit_with_parent, daemon=True).start()
 
 
 @contextmanager

@@ -3,14 +3,13 @@
 import re
 import warnings
 from itertools import permutations
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError, ParameterError, QuantityError
-from kinetostatics.solution.certainty import SecondOrderTerms, find_second_order
+from kinetostatics.solution.certainty import find_second_order
 from kinetostatics.solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
 from support.every import every
 
@@ -207,11 +206,14 @@ def test_designs_of_a_batch_are_told_together():
     assert "of 240 crank angles" in text
 
 
-def terms_of(compute, deviations, numbers=(0.0,) * 9):
-    """Terms of a function of the numbers of a scene, one for each path that is given."""
-    leaves = SimpleNamespace(numbers=list(numbers), with_numbers=lambda moved: SimpleNamespace(numbers=moved))
-    places = {path: place for place, path in enumerate(deviations)}
-    return SecondOrderTerms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
+def second_order(compute, paths):
+    """Second order of a function of the numbers of a scene, one for each path, all uncertain by 0.5."""
+
+    def change(signs):
+        return compute(*(0.5 * signs.get(path, 0.0) for path in paths))
+
+    zero = np.zeros((1, 1))
+    return find_second_order(change, np.zeros(1), dict.fromkeys(paths, zero), zero)
 
 
 @pytest.mark.slow
@@ -225,8 +227,7 @@ def test_products_with_common_input_are_all_seen(count, signs):
         def compute(*given, one=one, other=other, common=common):
             return np.array([[given[common] * (signs[0] * given[one] + signs[1] * given[other])]])
 
-        terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = second_order(compute, paths)
         assert paths[common] in told.paths
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
@@ -243,8 +244,7 @@ def test_products_without_common_input_are_all_seen(count):
             first, second = (given[i] * given[j] for i, j in pairs)
             return np.array([[first - second]])
 
-        terms = terms_of(compute, dict.fromkeys(paths, 0.5))
-        told = find_second_order(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        told = second_order(compute, paths)
         assert set(told.paths) in ({paths[one], paths[other]}, {paths[third], paths[fourth]})
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 

@@ -50,20 +50,12 @@ ROUNDING = 1e-12
 # what is computed
 
 
-def of_case(name):
-    """Results of every variant of a shipped case."""
+def of_case(name, kinds=None):
+    """Results of every variant of a shipped case, by default of all kinds."""
     found = {}
     for variant, made in ks.load_case(name).variants.items():
-        for kind in (values, extremes, bounds):
+        for kind in kinds or (values, extremes, bounds):
             found |= _below(variant, kind(made.scene))
-    return found
-
-
-def values_of_case(name):
-    """The values alone."""
-    found = {}
-    for variant, made in ks.load_case(name).variants.items():
-        found |= _below(variant, values(made.scene))
     return found
 
 

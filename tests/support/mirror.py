@@ -1,13 +1,14 @@
 """Scenes mirrored in the x axis, and how their results compare."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
 import kinetostatics as ks
+from kinetostatics.mechanics.quantities import ENERGIES
 
 TURN = 2 * np.pi
 ODD_UNITS = ("N m", "rad", "rad/s", "rad/s2")
@@ -33,39 +34,12 @@ def at_point(point):
     return (*point[:-1], negated(point[-1]))
 
 
-@singledispatch
 def mirrored(item) -> Any:
     """The mirror image of a scene or of anything that a scene is made of."""
-    raise TypeError(f"no mirror image is known of {item!r}")
-
-
-@mirrored.register(ks.Scene)
-def _(scene):
-    return ks.Scene(
-        mirrored(scene.mechanism),
-        negated(scene.crank_speed),
-        negated(scene.crank_acceleration),
-        tuple(map(mirrored, scene.loads)),
-        dict(scene.friction),
-        sense=None if scene.sense is None else negated(scene.sense),
-    )
-
-
-@mirrored.register(ks.Mechanism)
-def _(mechanism):
-    crank = replace(mechanism.crank, link=mirrored(mechanism.crank.link))
-    return ks.Mechanism(mechanism.name, crank, tuple(map(mirrored, mechanism.groups)))
-
-
-@mirrored.register(ks.Link)
-def _(link):
-    return replace(link, centre=across(link.centre))
-
-
-@mirrored.register(ks.Guide)
-def _(guide):
-    angle, exact = (None, across(guide.exact)) if guide.angle is None else (negated(guide.angle), None)
-    return replace(guide, angle=angle, guide_offset=negated(guide.guide_offset), exact=exact)
+    kind = next((kind for kind in type(item).__mro__ if kind in IMAGES), None)
+    if kind is None:
+        raise TypeError(f"no mirror image is known of {item!r}")
+    return IMAGES[kind](item)
 
 
 # Groups
@@ -91,88 +65,6 @@ def other_branch(group):
 def other_side(assembly):
     """An assembly that is named by the side on which something lies: left is right in the mirror."""
     return assembly if isinstance(assembly, str) else -assembly
-
-
-@mirrored.register(ks.SliderGroup)
-def _(group):
-    return with_mirrored_links(group, guide=mirrored(group.guide))
-
-
-@mirrored.register(ks.YokeGroup)
-def _(group):
-    return with_mirrored_links(group, guide=mirrored(group.guide), slot_angle=negated(group.slot_angle))
-
-
-@mirrored.register(ks.RockerGroup)
-def _(group):
-    return with_mirrored_links(group, pivot=across(group.pivot), assembly=other_side(group.assembly))
-
-
-@mirrored.register(ks.Dyad)
-def _(group):
-    return with_mirrored_links(group, assembly=other_side(group.assembly))
-
-
-@mirrored.register(ks.LeverGroup)
-def _(group):
-    pivot, offset = across(group.pivot), negated(group.offset)
-    return with_mirrored_links(group, pivot=pivot, offset=offset, assembly=other_branch(group))
-
-
-@mirrored.register(ks.CylinderGroup)
-def _(group):
-    return with_mirrored_links(group, pivot=across(group.pivot))
-
-
-@mirrored.register(ks.Pin)
-def _(pin):
-    return replace(pin, at=across(pin.at))
-
-
-@mirrored.register(ks.CamRoller)
-def _(group):
-    return with_mirrored_links(group, cam=mirrored(group.cam))
-
-
-@mirrored.register(ks.RollerFollower)
-@mirrored.register(ks.FlatFollower)
-def _(group):
-    return with_mirrored_links(group, guide=mirrored(group.guide), cam=reversed_law(group.cam.law))
-
-
-@mirrored.register(ks.SwingingFollower)
-def _(group):
-    pivot, assembly = across(group.pivot), other_side(group.assembly)
-    return with_mirrored_links(group, pivot=pivot, assembly=assembly, cam=reversed_law(group.cam.law))
-
-
-# Cams and laws
-
-
-@mirrored.register(ks.cams.Circle)
-def _(cam):
-    return ks.cams.Circle(cam.pitch_radius, across(cam.centre))
-
-
-@mirrored.register(ks.cams.CosineLaw)
-def _(cam):
-    return ks.cams.CosineLaw(cam.amplitude, cam.mean, negated(cam.guide_angle))
-
-
-@mirrored.register(ks.cams.Harmonic)
-def _(cam):
-    return ks.cams.Harmonic(cam.cosine, tuple(map(negated, cam.sine)), negated(cam.guide_angle))
-
-
-@mirrored.register(ks.cams.Sampled)
-def _(cam):
-    return ks.cams.Sampled(*reversed_rows(cam.angle, cam.samples))
-
-
-@mirrored.register(ks.cams.LawCam)
-def _(cam):
-    law = reversed_law(cam.law)
-    return ks.cams.from_law(law, None, guide_angle=negated(cam.guide_angle), guide_offset=negated(cam.guide_offset))
 
 
 def reversed_rows(angle, *values, period=TURN):
@@ -268,60 +160,92 @@ def reflected_table(table, sign=1.0):
     return ks.Table(table.x, sign * table.y, over="travel", back=back, slider=table.slider)
 
 
-@mirrored.register(ks.Gravity)
-def _(load):
-    return replace(load, direction=negated(load.direction))
+def _of_scene(scene):
+    return ks.Scene(
+        mirrored(scene.mechanism),
+        negated(scene.crank_speed),
+        negated(scene.crank_acceleration),
+        tuple(map(mirrored, scene.loads)),
+        dict(scene.friction),
+        sense=None if scene.sense is None else negated(scene.sense),
+    )
 
 
-@mirrored.register(ks.Spring)
-@mirrored.register(ks.TorsionDamper)
-def _(load):
-    return load
+def _of_mechanism(mechanism):
+    crank = replace(mechanism.crank, link=mirrored(mechanism.crank.link))
+    return ks.Mechanism(mechanism.name, crank, tuple(map(mirrored, mechanism.groups)))
 
 
-@mirrored.register(ks.ProcessForce)
-def _(load):
-    return replace(load, force=reflected_value(load.force))
+def _of_guide(guide):
+    angle, exact = (None, across(guide.exact)) if guide.angle is None else (negated(guide.angle), None)
+    return replace(guide, angle=angle, guide_offset=negated(guide.guide_offset), exact=exact)
 
 
-@mirrored.register(ks.Force)
-def _(load):
+def _of_lever(group):
+    pivot, offset = across(group.pivot), negated(group.offset)
+    return with_mirrored_links(group, pivot=pivot, offset=offset, assembly=other_branch(group))
+
+
+def _of_guided_follower(group):
+    return with_mirrored_links(group, guide=mirrored(group.guide), cam=reversed_law(group.cam.law))
+
+
+def _of_swinging_follower(group):
+    pivot, assembly = across(group.pivot), other_side(group.assembly)
+    return with_mirrored_links(group, pivot=pivot, assembly=assembly, cam=reversed_law(group.cam.law))
+
+
+def _of_law_cam(cam):
+    law = reversed_law(cam.law)
+    return ks.cams.from_law(law, None, guide_angle=negated(cam.guide_angle), guide_offset=negated(cam.guide_offset))
+
+
+def _of_force(load):
     return replace(load, value=reflected_value(load.value), at=at_point(load.at), direction=negated(load.direction))
 
 
-@mirrored.register(ks.PointForce)
-def _(load):
+def _of_point_force(load):
     return replace(load, value=reflected_value(load.value), between=tuple(map(at_point, load.between)))
 
 
-@mirrored.register(ks.PointSpring)
-@mirrored.register(ks.PointDamper)
-def _(load):
-    return replace(load, between=tuple(map(at_point, load.between)))
-
-
-@mirrored.register(ks.Torque)
-def _(load):
-    return replace(load, value=reflected_value(load.value, -1.0))
-
-
-@mirrored.register(ks.TorsionSpring)
-def _(load):
-    return replace(load, free_angle=negated(load.free_angle), moment=negated(load.moment))
-
-
-# Drives and counterweights
-
-
-@mirrored.register(ks.drive.Motor)
-def _(motor):
-    """The motor turns the crank the other way."""
-    return replace(motor, transmission=-motor.transmission)
-
-
-@mirrored.register(ks.Counterweight)
-def _(weight):
-    return weight
+IMAGES: dict[type, Callable] = {
+    ks.Scene: _of_scene,
+    ks.Mechanism: _of_mechanism,
+    ks.Link: lambda link: replace(link, centre=across(link.centre)),
+    ks.Guide: _of_guide,
+    ks.SliderGroup: lambda group: with_mirrored_links(group, guide=mirrored(group.guide)),
+    ks.YokeGroup: lambda group: with_mirrored_links(
+        group, guide=mirrored(group.guide), slot_angle=negated(group.slot_angle)
+    ),
+    ks.RockerGroup: lambda group: with_mirrored_links(
+        group, pivot=across(group.pivot), assembly=other_side(group.assembly)
+    ),
+    ks.Dyad: lambda group: with_mirrored_links(group, assembly=other_side(group.assembly)),
+    ks.LeverGroup: _of_lever,
+    ks.CylinderGroup: lambda group: with_mirrored_links(group, pivot=across(group.pivot)),
+    ks.Pin: lambda pin: replace(pin, at=across(pin.at)),
+    ks.CamRoller: lambda group: with_mirrored_links(group, cam=mirrored(group.cam)),
+    ks.RollerFollower: _of_guided_follower,
+    ks.FlatFollower: _of_guided_follower,
+    ks.SwingingFollower: _of_swinging_follower,
+    ks.cams.Circle: lambda cam: ks.cams.Circle(cam.pitch_radius, across(cam.centre)),
+    ks.cams.CosineLaw: lambda cam: ks.cams.CosineLaw(cam.amplitude, cam.mean, negated(cam.guide_angle)),
+    ks.cams.Harmonic: lambda cam: ks.cams.Harmonic(cam.cosine, tuple(map(negated, cam.sine)), negated(cam.guide_angle)),
+    ks.cams.Sampled: lambda cam: ks.cams.Sampled(*reversed_rows(cam.angle, cam.samples)),
+    ks.cams.LawCam: _of_law_cam,
+    ks.Gravity: lambda load: replace(load, direction=negated(load.direction)),
+    ks.Spring: lambda load: load,
+    ks.TorsionDamper: lambda load: load,
+    ks.ProcessForce: lambda load: replace(load, force=reflected_value(load.force)),
+    ks.Force: _of_force,
+    ks.PointForce: _of_point_force,
+    ks.PointSpring: lambda load: replace(load, between=tuple(map(at_point, load.between))),
+    ks.PointDamper: lambda load: replace(load, between=tuple(map(at_point, load.between))),
+    ks.Torque: lambda load: replace(load, value=reflected_value(load.value, -1.0)),
+    ks.TorsionSpring: lambda load: replace(load, free_angle=negated(load.free_angle), moment=negated(load.moment)),
+    ks.drive.Motor: lambda motor: replace(motor, transmission=-motor.transmission),  # the crank turns the other way
+    ks.Counterweight: lambda weight: weight,
+}
 
 
 # Results
@@ -347,15 +271,6 @@ def values_of(solution):
     for name, unit in ENERGIES.items():
         found[name] = (np.array(getattr(solution, name)), unit)
     return found
-
-
-ENERGIES = {
-    "reduced_inertia": "kg m2",
-    "reduced_inertia_slope": "kg m2",
-    "kinetic_energy": "J",
-    "potential_energy": "J",
-    "load_torque": "N m",
-}
 
 
 def differences(solution, image, without_sign=()):

@@ -230,52 +230,48 @@ class _Draw:
         force, torque = self.either(20.0, 300.0), self.either(2.0, 30.0)
         place = (link, self.real(-0.1, 0.1), self.real(-0.1, 0.1))
         fixed = (self.either(0.8, 1.2), self.either(0.8, 1.2))
-        if kind == "gravity":
-            return ks.Gravity(self.real(1.0, 20.0), self.real(-3.1, 3.1))
-        if kind == "force":
-            return ks.Force(force, at=place, direction=self.real(-3.1, 3.1))
-        if kind == "turning force":
-            return ks.Force(force, at=place, direction=self.real(-3.1, 3.1), along=other)
-        if kind == "force by table":
-            return ks.Force(self.table_over_angle(force), at=place, direction=self.real(-3.1, 3.1))
-        if kind == "torque":
-            return ks.Torque(torque, on=link)
-        if kind == "torque by table":
-            return ks.Torque(self.table_over_angle(torque), on=link)
-        if kind == "torque by function":
-            return ks.Torque(self.wave(torque), on=link)
-        if kind == "point force":
-            return ks.PointForce(force, between=(place, fixed))
-        if kind == "point spring":
-            return ks.PointSpring(self.real(100.0, 3000.0), self.real(0.5, 1.0), between=(place, fixed))
-        if kind == "point damper":
-            return ks.PointDamper(self.real(1.0, 20.0), between=(place, fixed))
-        if kind == "torsion damper":
-            return ks.TorsionDamper(self.real(0.01, 0.3), on=link)
-        if kind == "torsion spring":
-            return self.torsion_spring(still)
-        if slider is None:
+        made = {
+            "gravity": lambda: ks.Gravity(self.real(1.0, 20.0), self.angle()),
+            "force": lambda: ks.Force(force, at=place, direction=self.angle()),
+            "turning force": lambda: ks.Force(force, at=place, direction=self.angle(), along=other),
+            "force by table": lambda: ks.Force(self.table_over_angle(force), at=place, direction=self.angle()),
+            "torque": lambda: ks.Torque(torque, on=link),
+            "torque by table": lambda: ks.Torque(self.table_over_angle(torque), on=link),
+            "torque by function": lambda: ks.Torque(self.wave(torque), on=link),
+            "point force": lambda: ks.PointForce(force, between=(place, fixed)),
+            "point spring": lambda: ks.PointSpring(self.stiffness(), self.real(0.5, 1.0), between=(place, fixed)),
+            "point damper": lambda: ks.PointDamper(self.real(1.0, 20.0), between=(place, fixed)),
+            "torsion damper": lambda: ks.TorsionDamper(self.real(0.01, 0.3), on=link),
+            "torsion spring": lambda: self.torsion_spring(still),
+        }
+        along = {
+            "spring": lambda: ks.Spring(self.stiffness(), self.travel(still, slider)[0], slider),
+            "cubic spring": lambda: self.cubic_spring(still, slider),
+            "process": lambda: ks.ProcessForce(force, slider),
+            "table over angle": lambda: ks.ProcessForce(self.table_over_angle(force), slider),
+            "table over travel": lambda: ks.ProcessForce(self.table_over_travel(force, still, slider, False), slider),
+            "table with back": lambda: ks.ProcessForce(self.table_over_travel(force, still, slider, True), slider),
+            "torque by table with back": lambda: ks.Torque(
+                self.table_over_travel(torque, still, slider, True, slider), on=link
+            ),
+            "function": lambda: ks.ProcessForce(self.wave(force), slider),
+            "function of speed": lambda: ks.ProcessForce(
+                Drag(slider, self.real(1.0, 20.0), self.either(0.1, 2.0)), slider
+            ),
+        }
+        if kind in along and slider is None:
             return None
-        if kind == "spring":
-            return ks.Spring(self.real(100.0, 3000.0), self.travel(still, slider)[0], slider)
-        if kind == "cubic spring":
-            middle, stroke = self.travel(still, slider)
-            return ks.Spring(self.real(100.0, 3000.0), middle, slider, self.real(0.0, 3e3) / stroke**2)
-        if kind == "process":
-            return ks.ProcessForce(force, slider)
-        if kind == "table over angle":
-            return ks.ProcessForce(self.table_over_angle(force), slider)
-        if kind == "table over travel":
-            return ks.ProcessForce(self.table_over_travel(force, still, slider, False), slider)
-        if kind == "table with back":
-            return ks.ProcessForce(self.table_over_travel(force, still, slider, True), slider)
-        if kind == "torque by table with back":
-            return ks.Torque(self.table_over_travel(torque, still, slider, True, slider), on=link)
-        if kind == "function":
-            return ks.ProcessForce(self.wave(force), slider)
-        if kind == "function of speed":
-            return ks.ProcessForce(Drag(slider, self.real(1.0, 20.0), self.either(0.1, 2.0)), slider)
-        raise ValueError(kind)
+        return (made | along)[kind]()
+
+    def angle(self):
+        return self.real(-3.1, 3.1)
+
+    def stiffness(self):
+        return self.real(100.0, 3000.0)
+
+    def cubic_spring(self, still, slider):
+        middle, stroke = self.travel(still, slider)
+        return ks.Spring(self.stiffness(), middle, slider, self.real(0.0, 3e3) / stroke**2)
 
     def wave(self, size):
         return Wave(size, size * self.real(0.2, 0.9), int(self.rng.integers(1, 4)), self.real(-3.0, 3.0))

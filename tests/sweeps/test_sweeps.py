@@ -18,7 +18,7 @@ from kinetostatics.cycle.reductions import REDUCTIONS
 from kinetostatics.engines import numba_backend
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.sweeps import chunk, sweeps
-from kinetostatics.sweeps.sweeps import FAILED, _type_problems
+from kinetostatics.sweeps.sweeps import FAILED, _column_problems
 from support import factories
 from support.case_files import shipped, written
 from support.every import every
@@ -275,7 +275,7 @@ def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
 
 
 def test_columns_of_quantities_name_their_unit():
-    (problem,) = _type_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}))
+    (problem,) = _column_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}), ())
     assert "with the unit kilogram in its heading" in problem
 
 
