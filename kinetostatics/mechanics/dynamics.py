@@ -290,8 +290,7 @@ class Dynamics(Motion):
             return self.mass_loads
         found = dict(self.mass_loads)
         for name, wrench in self.wrenches:
-            own = found[name]
-            found[name] = Wrench(add_vectors(own.force, wrench.force), plus(own.moment, wrench.moment))
+            found[name] = found[name].plus(wrench)
         return found
 
     def _mass_loads(self, gravity):

@@ -17,8 +17,7 @@ import numpy as np
 from ....errors import NotGivenError
 from ....machine.followers.translating import FlatFollower
 from ....machine.group import FRAME
-from ....machine.loads import Gravity, Spring
-from ....mechanics.load_values import evaluate_load, slider_push
+from ....machine.loads import Gravity
 from ....numbers.lazy import cached_property
 from ....numbers.planar import left
 from ..structures import FrictionForces, LoadForces, structure
@@ -334,16 +333,7 @@ class Configuration:
         gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
         force = model.mass * (self.plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
-        acting = _LoadForces(self, rates)
-        for item in solution.loads:
-            if hasattr(item, "push"):
-                link, along = model.names.index(item.on), model.guides[item.on]
-                coordinate = (self.plane(self.q)[..., link] * along.conjugate()).real
-                is_spring = isinstance(item, Spring)
-                push = acting.spring_push(item, coordinate) if is_spring else slider_push(item, solution)
-                force[..., link] -= push * along
-            elif not isinstance(item, Gravity):
-                self._take(acting.of(evaluate_load(item, solution)), force, moment)
+        self._take(_LoadForces(self, rates, solution).effects(), force, moment)
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _take(self, effects, force, moment):
@@ -368,7 +358,7 @@ class Configuration:
             parts = {name: part @ multipliers.T for name, part in readings.items()}
             return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
 
-        friction = FrictionForces(_LoadForces(self, rates), solution)
+        friction = FrictionForces(_LoadForces(self, rates, solution))
         found = named(
             friction.converge(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE)
         )
@@ -390,8 +380,8 @@ class Configuration:
 class _LoadForces(LoadForces):
     """Loads in a configuration with velocities `rates`."""
 
-    def __init__(self, configuration, rates):
-        self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
+    def __init__(self, configuration, rates, solution):
+        self.mechanism, self.solution, self._at, self._rates = solution.mechanism, solution, configuration, rates
 
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""

@@ -154,7 +154,7 @@ def _collocate(flint, driven, angles, points):
     edges = np.unique(np.concatenate([np.linspace(0.0, driven.period, MIN_PIECES + 1), driven.kinks]))
     middle, half = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
     nodes = middle[:, None] - half[:, None] * np.cos(np.pi * (np.arange(points) + 0.5) / points)
-    pieces = [_CollocationPiece(flint, *ends, row) for *ends, row in zip(edges, edges[1:], nodes, strict=False)]
+    pieces = [_CollocationPiece(flint, *piece) for piece in zip(edges[:-1], edges[1:], nodes, strict=True)]
     integrals = [piece.integrals([*row, high]) for piece, row, high in zip(pieces, nodes, edges[1:], strict=True)]
     inertia, load = (part.reshape(nodes.shape) for part in _inertia_and_load(flint.arb, driven, nodes.ravel()))
 

@@ -25,7 +25,7 @@ from ....machine.groups.rocker import RockerGroup
 from ....machine.groups.slider import SliderGroup
 from ....machine.groups.yoke import YokeGroup
 from ....machine.laws.laws import Cosine
-from ....machine.loads import Gravity, Load, Spring
+from ....machine.loads import Gravity, Load
 from ....mechanics.quantities import RATES
 from ....numbers import checks
 from ..method import require_moving
@@ -269,20 +269,12 @@ class Machine(Posture, LoadForces):
         items = (item for item in self.solution.loads if isinstance(item, Gravity))
         pulls = (self.number(item.acceleration) * mp.expj(self.number(item.direction)) for item in items)
         gravity = sum(pulls, mp.mpc(0))
-        acting, shaking = [], {}
+        acting, shaking = [*self.effects()], {}
         for name, link in links.items():
             mass, centre = self.number(link.mass), self.position["centre", name]
             turning = cross(self.position["direction", name], self.acceleration["direction", name])
             shaking[name] = -mass * self.acceleration["centre", name], -self.number(link.inertia) * turning
             acting.append((name, shaking[name][0] + mass * gravity, centre, shaking[name][1]))
-        for item in self.solution.loads:
-            if hasattr(item, "push"):
-                pin, along = self.at(item.on)[:2]
-                is_spring = isinstance(item, Spring)
-                push = self.spring_push(item, dot(along, pin)) if is_spring else self.value(item)
-                acting.append((item.on, push * along, pin, 0))
-            elif not isinstance(item, Gravity):
-                acting += self.of(item)
         triangles, order = mp.LU_decomp(matrix)
 
         def solve(effects):
@@ -295,7 +287,7 @@ class Machine(Posture, LoadForces):
                 forces[name] = forces.get(name, 0) + size * force if name in self.solution.reactions else size
             return forces
 
-        friction = FrictionForces(self, self.solution)
+        friction = FrictionForces(self)
         found = named(friction.converge(solve, named, lambda sizes: mp.norm(sizes, mp.inf), self.step))
         along = friction.along(found)
         for group in self.mechanism.groups:
