@@ -6,7 +6,6 @@ from html import escape
 from typing import NamedTuple
 
 from ..numbers.formatting import number, shortest_exact
-from .formulas import CALLS
 
 
 class Symbol(NamedTuple):
@@ -118,8 +117,10 @@ class Style(NamedTuple):
     quotient: str
     power: str
     brackets: str
+    call: str
+    """Of a function's name and its arguments; of some functions another, in `calls`."""
+    comma: str
     calls: dict[str, str]
-    sign: str
     stands_alone: bool
     """Whether a quotient is a fraction with a bar, which needs no brackets."""
 
@@ -146,12 +147,12 @@ def _write(tree, style, name):
         return style.number(parts[0], True), _binding(parts[0])
     if kind == "sum":
         (sign, first), *rest = parts
-        text = style.sign + inner(first, PRODUCT) if sign < 0 else inner(first, NEGATIVE)
+        text = style.minus.strip() + inner(first, PRODUCT) if sign < 0 else inner(first, NEGATIVE)
         for sign, part in rest:
             text += (style.plus if sign > 0 else style.minus) + inner(part, PRODUCT)
         return text, SUM
     if kind == "negative":
-        return style.sign + inner(parts[0], PRODUCT), NEGATIVE
+        return style.minus.strip() + inner(parts[0], PRODUCT), NEGATIVE
     if kind == "product":
         later = PRODUCT if style.stands_alone else POWER
         return style.times.join((inner(parts[0], PRODUCT), *(inner(part, later) for part in parts[1:]))), PRODUCT
@@ -160,7 +161,8 @@ def _write(tree, style, name):
         return style.quotient.format(inner(parts[0], over), inner(parts[1], under)), PRODUCT
     if kind == "power":
         return style.power.format(inner(parts[0], ATOM), parts[1]), POWER
-    return style.calls[parts[0]].format(*(_write(part, style, name)[0] for part in parts[1:])), ATOM
+    arguments = style.comma.join(_write(part, style, name)[0] for part in parts[1:])
+    return style.calls.get(parts[0], style.call).format(arguments, name=parts[0]), ATOM
 
 
 def _binding(value):
@@ -198,13 +200,11 @@ def _below(symbol):
 
 
 def _mathml_number(value, exactly=False):
-    digits, found, power = format_number(value, exactly).replace("-", "−").partition("e")
+    digits, found, power = format_number(value, exactly).partition("e")
+    text = f"<mn>{digits}</mn>"
     if found:
-        power = int(power.replace("−", "-"))
-        return (
-            f"<mrow><mn>{digits}</mn><mo>·</mo><msup><mn>10</mn><mn>{str(power).replace('-', '−')}</mn></msup></mrow>"
-        )
-    return f"<mn>{digits}</mn>"
+        text = f"<mrow>{text}<mo>·</mo><msup><mn>10</mn><mn>{int(power)}</mn></msup></mrow>"
+    return text.replace("-", "−")
 
 
 def _mathml_symbol(symbol):
@@ -227,8 +227,9 @@ TEXT = Style(
     "{}/{}",
     "{}^{}",
     "({})",
-    {**{name: f"{name}({{}})" for name in CALLS.values()}, "max": "max({}, {})"},
-    "-",
+    "{name}({})",
+    ", ",
+    {},
     False,
 )
 LATEX = Style(
@@ -240,16 +241,14 @@ LATEX = Style(
     r"\frac{{{}}}{{{}}}",
     "{}^{{{}}}",
     r"\left({}\right)",
+    r"\{name}\left({}\right)",
+    ", ",
     {
         "sqrt": r"\sqrt{{{}}}",
-        "sin": r"\sin\left({}\right)",
-        "cos": r"\cos\left({}\right)",
         "atan": r"\arctan\left({}\right)",
         "abs": r"\left|{}\right|",
         "sign": r"\operatorname{{sign}}\left({}\right)",
-        "max": r"\max\left({}, {}\right)",
     },
-    "-",
     True,
 )
 MATHML = Style(
@@ -261,13 +260,12 @@ MATHML = Style(
     "<mfrac><mrow>{}</mrow><mrow>{}</mrow></mfrac>",
     "<msup><mrow>{}</mrow><mn>{}</mn></msup>",
     "<mrow><mo>(</mo>{}<mo>)</mo></mrow>",
+    "<mrow><mi>{name}</mi><mo>(</mo>{}<mo>)</mo></mrow>",
+    "<mo>,</mo>",
     {
-        **{name: f"<mrow><mi>{name}</mi><mo>(</mo>{{}}<mo>)</mo></mrow>" for name in ("sin", "cos", "sign")},
         "atan": "<mrow><mi>arctan</mi><mo>(</mo>{}<mo>)</mo></mrow>",
         "sqrt": "<msqrt><mrow>{}</mrow></msqrt>",
         "abs": "<mrow><mo>|</mo>{}<mo>|</mo></mrow>",
-        "max": "<mrow><mi>max</mi><mo>(</mo>{}<mo>,</mo>{}<mo>)</mo></mrow>",
     },
-    "<mo>−</mo>",
     True,
 )

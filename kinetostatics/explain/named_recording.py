@@ -17,17 +17,17 @@ import numpy as np
 
 from ..engines.graph import INPUTS, Node
 from ..engines.record import Recorder
-from ..machine.group import FRAME, Resolved
+from ..machine.group import Resolved
 from ..machine.kinematic_state import place as placed
 from ..machine.kinematic_state import sense_of
-from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
+from ..machine.links import Joint, Wrench, arm, first_at, second_at
 from ..machine.loads import value_of
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import FrictionSolver, size_of
-from ..mechanics.load_values import evaluate_load, slider_push, title_of
+from ..mechanics.load_values import title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
-from ..numbers.planar import number_or_zero, plus, product
+from ..numbers.planar import number_or_zero, product
 from .formats import Symbol, load_keys, path_symbol, quantity_symbol
 
 KERNELS = (
@@ -326,15 +326,10 @@ class NamedDynamics(Dynamics):
         with self.names.under(WEIGHT):
             return self.names.vector(super().gravity, Symbol("g"), "acceleration by weight", "m/s2")
 
-    def _mass_loads(self, gravity):
-        links = self.placement.links
-        found = {}
-        what = "inertia" if gravity is None else "inertia and weight"
-        for name, link in self.mechanism.links.items():
-            with self.names.under(f"{what} of the {name}".capitalize()):
-                wrench = load(links[name], link.body, *self.accelerating, gravity)
-                found[name] = self._wrench(wrench, ("P", "K"), name, f"{what} of the {name}")
-        return found
+    def _mass_load(self, link, gravity):
+        what = f"{'inertia' if gravity is None else 'inertia and weight'} of the {link}"
+        with self.names.under(what.capitalize()):
+            return self._wrench(super()._mass_load(link, gravity), ("P", "K"), link, what)
 
     def _wrench(self, wrench, letters, owner, words):
         force, moment = letters
@@ -343,30 +338,23 @@ class NamedDynamics(Dynamics):
             self.names.number(wrench.moment, Symbol(moment, "", owner), f"moment of {words}", "N m"),
         )
 
-    @cached_property
-    def wrenches(self):
-        """Pairs of a link and a wrench on it, of all loads that act so."""
-        found = []
-        for item, (title, key) in zip(self.loads, self.heads, strict=True):
-            if hasattr(item, "wrenches"):
-                with self.names.under(title):
-                    for link, wrench in evaluate_load(item, self).wrenches(self):
-                        if link != FRAME:
-                            words = f"{key.replace('_', ' ')} on the {link}"
-                            found.append((link, self._wrench(wrench, ("L", "K"), f"{key}_{link}", words)))
-        return found
+    def _head(self, item):
+        """Title of a load and its name in paths."""
+        return next(head for known, head in zip(self.loads, self.heads, strict=True) if known is item)
 
-    @cached_property
-    def pushes(self):
-        """Applied force along its guide by slider, N."""
-        pushes: dict[str, Any] = {}
-        for item, (title, key) in zip(self.loads, self.heads, strict=True):
-            if hasattr(item, "push"):
-                with self.names.under(title):
-                    words = f"{key.replace('_', ' ')} along the guide of the {item.on}"
-                    push = self.names.number(slider_push(item, self), Symbol("L", "", key), words, "N")
-                    pushes[item.on] = plus(pushes.get(item.on), push)
-        return pushes
+    def _wrenches_of(self, item):
+        title, key = self._head(item)
+        with self.names.under(title):
+            return [
+                (link, self._wrench(wrench, ("L", "K"), f"{key}_{link}", f"{key.replace('_', ' ')} on the {link}"))
+                for link, wrench in super()._wrenches_of(item)
+            ]
+
+    def _push_of(self, item):
+        title, key = self._head(item)
+        with self.names.under(title):
+            words = f"{key.replace('_', ' ')} along the guide of the {item.on}"
+            return self.names.number(super()._push_of(item), Symbol("L", "", key), words, "N")
 
     @property
     def acting(self):

@@ -74,6 +74,13 @@ class Wrench(NamedTuple):
     force: Any
     moment: Any
 
+    def plus(self, other):
+        """Sum with another wrench on the same link."""
+        return Wrench(add_vectors(self.force, other.force), plus(self.moment, other.moment))
+
+    def times(self, factor):
+        return Wrench(scale_vector(factor, self.force), product(factor, self.moment))
+
 
 @dataclass(frozen=True, eq=False)
 class Link(checks.Checked):

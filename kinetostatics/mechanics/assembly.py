@@ -51,7 +51,7 @@ def check(solution):
             if margin.ndim > 1:
                 where = tuple(int(i) for i in np.argwhere(gap.any(axis=-1))[0])
                 design = f" (first in design {where[0] if len(where) == 1 else where})"
-            gaps = group_gaps(solution.mechanism, group, where, np.ravel(placement.angle))
+            gaps = ClosureMargin(solution.mechanism, group, where).gaps(np.ravel(placement.angle))
             place = f"at {int(gap.sum())} of {margin.size} crank angles{design}"
             raise _assembly_error(solution.mechanism, group, placement, place, gaps)
     return margins if in_double_precision else []
@@ -62,11 +62,7 @@ def unbounded_force_problem(solution, name, values):
     sizes = np.abs(values) if values.shape == solution.shape else np.abs(values).max(axis=0)
     terms = np.maximum(solution.largest_force_term, solution.largest_torque_term)
     with np.errstate(invalid="ignore"):
-        beyond = (
-            sizes > HALF_DIGITS_CONDITION * np.broadcast_to(terms, sizes.shape[:-1])[..., None]
-            if sizes.ndim
-            else sizes > HALF_DIGITS_CONDITION * terms
-        )
+        beyond = sizes > HALF_DIGITS_CONDITION * np.expand_dims(terms, -1)
     if not np.any(beyond):
         return None
     worst = int(np.argmax(np.where(beyond, sizes, 0.0)))
@@ -89,47 +85,74 @@ def _assembly_error(mechanism, group, placement, where, gaps, *remedy):
     )
 
 
-def group_gaps(mechanism, group, design=(), angles=()):
-    """Crank-angle intervals where a group does not close, rad, to rounding.
+class ClosureMargin:
+    """Closure margin of a group, in one design of a batch, as a function of the crank angle."""
 
-    Candidates are a grid of half a degree, the given angles and the minima of the margin between them. Each end is a
-    root of the margin.
-    """
-    margin, whole = _margin(mechanism, group, design), TURN * mechanism.turns
-    grid = np.concatenate([_grid(mechanism), np.mod(angles, whole)])
-    with np.errstate(invalid="ignore"):
-        grid = np.unique(np.concatenate([grid, np.mod(_margin_minima(margin, mechanism, 0.0), whole)]))
-        gap = margin(grid) < 0
+    def __init__(self, mechanism, group, design=()):
+        self.mechanism, self.group, self.design = mechanism, group, design
+        self.period = TURN * mechanism.turns
+        self.grid = np.linspace(0.0, self.period, MARGIN_SAMPLES * mechanism.turns, endpoint=False)
+
+    def __call__(self, angle):
+        with np.errstate(invalid="ignore"):
+            found = self.group.closure(self.mechanism.place(angle))
+        return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), angle.shape))[self.design]
+
+    def minima(self, below):
+        """Crank angles of the local minima that are less than `below`, rad."""
+        samples = self(self.grid)
+        before, after = np.roll(samples, 1), np.roll(samples, -1)
+        bend = np.abs(before - 2.0 * samples + after)
+        place = self.grid[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
+        if not place.size:
+            return place
+        step = TURN / MARGIN_SAMPLES
+        found = find_minima(lambda angle, _: self(angle), (place - step, place, place + step))
+        lowest = np.where(self(found) < self(place) - SQUARE_TOLERANCE, found, place)
+        return lowest[self(lowest) < below]
+
+    def open_angles(self):
+        """Crank angles half a degree apart, and minima between them, if the group is open at one; or None."""
+        angle = np.concatenate([self.grid, self.minima(0.0)])
+        return angle if (self(angle) < -SQUARE_TOLERANCE).any() else None
+
+    def gaps(self, angles=()):
+        """Crank-angle intervals where the group does not close, rad, to rounding.
+
+        Candidates are a grid of half a degree, the given angles and the minima between them. Each end is a root.
+        """
+        grid = np.unique(np.mod(np.concatenate([self.grid, angles, self.minima(0.0)]), self.period))
+        gap = self(grid) < 0
         if gap.all():
-            return ((0.0, whole),)
-        ends = np.append(grid, grid[0] + whole)
+            return ((0.0, self.period),)
+        ends = np.append(grid, grid[0] + self.period)
         change = np.flatnonzero(gap != np.roll(gap, -1))
         if not change.size:
-            return tuple((float(angle), float(angle)) for angle in angles[margin(angles) < 0])
-        edges = find_roots(lambda angle, _: margin(angle), ends[change], ends[change + 1])
-    starts, stops = edges[~gap[change]], edges[gap[change]]
-    if stops.size and stops[0] < starts[0]:
-        stops = np.roll(stops, -1)
-        stops[-1] += whole
-    with np.errstate(invalid="ignore"):
+            return tuple((float(angle), float(angle)) for angle in angles[self(angles) < 0])
+        edges = find_roots(lambda angle, _: self(angle), ends[change], ends[change + 1])
+        starts, stops = edges[~gap[change]], edges[gap[change]]
+        if stops.size and stops[0] < starts[0]:
+            stops = np.roll(stops, -1)
+            stops[-1] += self.period
         # the others are change points, open by rounding only
-        real = margin((starts + stops) / 2) < -SQUARE_TOLERANCE
-    kept = real if real.any() else ~real
-    return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
+        real = self((starts + stops) / 2) < -SQUARE_TOLERANCE
+        kept = real if real.any() else ~real
+        return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
+
+
+def _margins(mechanism):
+    return [ClosureMargin(mechanism, group) for group in mechanism.groups]
 
 
 def limit_angles(mechanism, below):
     """Crank angles, rad, at which the closure margin of a group has a minimum less than `below`."""
-    found = [_margin_minima(_margin(mechanism, group), mechanism, below) for group in mechanism.groups]
+    found = [margin.minima(below) for margin in _margins(mechanism)]
     return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 
 
 def gap_intervals(mechanism):
     """Crank-angle intervals where some group does not close, rad, in order and without overlap."""
-    found = []
-    for group in mechanism.groups:
-        if _open_angles(mechanism, group) is not None:
-            found += group_gaps(mechanism, group)
+    found = [gap for margin in _margins(mechanism) if margin.open_angles() is not None for gap in margin.gaps()]
     whole = TURN * mechanism.turns
     united: list[tuple[float, float]] = []
     for start, stop in sorted(found):
@@ -145,49 +168,8 @@ def gap_intervals(mechanism):
 
 def require_turn(mechanism):
     """Raise `AssemblyError` if the mechanism does not close all round the turn, between samples too."""
-    for group in mechanism.groups:
-        angle = _open_angles(mechanism, group)
+    for margin in _margins(mechanism):
+        angle = margin.open_angles()
         if angle is not None:
-            placement, where = mechanism.place(angle), group_gaps(mechanism, group)
-            raise _assembly_error(
-                mechanism, group, placement, "all round the turn", where, " so that the crank turns all round"
-            )
-
-
-def _open_angles(mechanism, group):
-    """Crank angles half a degree apart, and minima of the margin between them, if a group is open at one; or None."""
-    margin = _margin(mechanism, group)
-    with np.errstate(invalid="ignore"):
-        angle = np.concatenate([_grid(mechanism), _margin_minima(margin, mechanism, 0.0)])
-        return angle if (margin(angle) < -SQUARE_TOLERANCE).any() else None
-
-
-def _margin(mechanism, group, design=()):
-    """Closure margin of a group in one design of a batch, as a function of the crank angle."""
-
-    def margin(angle):
-        found = group.closure(mechanism.place(angle))
-        return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), angle.shape))[design]
-
-    return margin
-
-
-def _grid(mechanism):
-    """Crank angles half a degree apart over the period of the motion, rad."""
-    return np.linspace(0.0, TURN * mechanism.turns, MARGIN_SAMPLES * mechanism.turns, endpoint=False)
-
-
-def _margin_minima(margin, mechanism, below):
-    """Crank angles of the local minima of a margin that are less than `below`, rad."""
-    grid = _grid(mechanism)
-    samples = margin(grid)
-    before, after = np.roll(samples, 1), np.roll(samples, -1)
-    bend = np.abs(before - 2.0 * samples + after)
-    place = grid[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
-    if not place.size:
-        return place
-    step = TURN / MARGIN_SAMPLES
-    with np.errstate(invalid="ignore"):
-        found = find_minima(lambda angle, _: margin(angle), (place - step, place, place + step))
-    lowest = np.where(margin(found) < margin(place) - SQUARE_TOLERANCE, found, place)
-    return lowest[margin(lowest) < below]
+            where, remedy = "all round the turn", " so that the crank turns all round"
+            raise _assembly_error(mechanism, margin.group, mechanism.place(angle), where, margin.gaps(), remedy)

@@ -292,22 +292,23 @@ class Dynamics(Motion):
             return self.mass_loads
         found = dict(self.mass_loads)
         for name, wrench in self.wrenches:
-            own = found[name]
-            found[name] = Wrench(add_vectors(own.force, wrench.force), plus(own.moment, wrench.moment))
+            found[name] = found[name].plus(wrench)
         return found
 
     def _mass_loads(self, gravity):
-        links = self.placement.links
-        return {
-            name: load(links[name], link.body, *self.accelerating, gravity)
-            for name, link in self.mechanism.links.items()
-        }
+        return {name: self._mass_load(name, gravity) for name in self.mechanism.links}
+
+    def _mass_load(self, link, gravity):
+        body = self.mechanism.links[link].body
+        return load(self.placement.links[link], body, *self.accelerating, gravity)
 
     @cached_property
     def wrenches(self):
         """Pairs of a link and an applied wrench on it, without those on the frame."""
-        evaluated = (evaluate_load(item, self) for item in self.loads if hasattr(item, "wrenches"))
-        return [pair for item in evaluated for pair in item.wrenches(self) if pair[0] != FRAME]
+        return [pair for item in self.loads if hasattr(item, "wrenches") for pair in self._wrenches_of(item)]
+
+    def _wrenches_of(self, item):
+        return [pair for pair in evaluate_load(item, self).wrenches(self) if pair[0] != FRAME]
 
     @cached_property
     def pushes(self):
@@ -315,8 +316,11 @@ class Dynamics(Motion):
         pushes: dict[str, Any] = {}
         for item in self.loads:
             if hasattr(item, "push"):
-                pushes[item.on] = plus(pushes.get(item.on), slider_push(item, self))
+                pushes[item.on] = plus(pushes.get(item.on), self._push_of(item))
         return pushes
+
+    def _push_of(self, item):
+        return slider_push(item, self)
 
     @cached_property
     def powers(self):

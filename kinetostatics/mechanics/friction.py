@@ -72,6 +72,10 @@ class FrictionLaw(NamedTuple):
     kind: str
     effects: tuple
 
+    def magnitude(self, parts):
+        """Size of a reaction, or of its change, without its sign."""
+        return size_of("size" if self.kind == "itself" else self.kind, parts)
+
 
 class PairFriction(NamedTuple):
     """Friction of a pair: moment, N m, or force, N, positive with the motion of the pair, and the rate of that motion.
@@ -278,9 +282,7 @@ class FrictionSolver:
                 )
             for link, wrench in channel.wrenches:
                 if link not in own:
-                    old = demands.get(link, Wrench(None, None))
-                    given = scale_vector(-amount, wrench.force), product(-amount, wrench.moment)
-                    demands[link] = Wrench(add_vectors(old.force, given[0]), plus(old.moment, given[1]))
+                    demands[link] = demands.get(link, Wrench(None, None)).plus(wrench.times(-amount))
         return Resolved(reactions, resolved.scalars, demands)
 
 
@@ -294,9 +296,7 @@ def _with_friction(loads, along, acting, own):
     for channel, amount in acting:
         for link, wrench in channel.wrenches:
             if link in own:
-                old = loads[link]
-                force, moment = scale_vector(amount, wrench.force), product(amount, wrench.moment)
-                loads[link] = Wrench(add_vectors(old.force, force), plus(old.moment, moment))
+                loads[link] = loads[link].plus(wrench.times(amount))
         for link, push in channel.pushes:
             along[link] = plus(along.get(link), amount * push)
     return loads, along
@@ -334,12 +334,14 @@ class FrictionEquations:
         self._count = len(used)
         self.margin = self.residual = None
         if used:
-            matrix: list[list] = [[None] * self._count for _ in used]
-            for law, ways, effects in zip(laws, self._slopes, self._effects, strict=True):
-                kind = "size" if law.kind == "itself" else law.kind
-                sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in ways]
-                for place, _ in effects:
-                    matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
+            columns = [
+                [
+                    product(abs(law.factor), law.magnitude(slopes[place]))
+                    for law, slopes in zip(laws, self._slopes, strict=True)
+                ]
+                for place in range(self._count)
+            ]
+            matrix = list(zip(*(self._totals(column, all_positive=True) for column in columns), strict=True))
             above, _, _ = _triangle(matrix, [None] * self._count)
             self.margin = reduce(smaller, (row[place] for place, row in enumerate(above)))  # the pivots of I - matrix
 
@@ -352,20 +354,20 @@ class FrictionEquations:
         all_signs = all(law.kind != "length" for law in self._laws)  # signs need one pass less
         for step in range(passes - all_signs):
             unknowns = self._by_directions(reactions) if step else self._totals(amounts)
-            reactions = []
-            for free, slopes in zip(self._free, self._slopes, strict=True):
-                parts = list(free)
-                for slope, unknown in zip(slopes, unknowns, strict=True):
-                    parts = [plus(part, product(unknown, one)) for part, one in zip(parts, slope, strict=True)]
-                reactions.append(tuple(parts))
+            reactions = [
+                tuple(
+                    _weighted(unknowns, slope, part)
+                    for part, slope in zip(free, zip(*slopes, strict=True), strict=True)
+                )
+                for free, slopes in zip(self._free, self._slopes, strict=True)
+            ]
         amounts = self._amounts(reactions)
         changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
         moved, sizes = [], []
         for law, slopes, parts in zip(self._laws, self._slopes, reactions, strict=True):
             shifts = [_weighted(changes, column) for column in zip(*slopes, strict=True)]
-            kind = "size" if law.kind == "itself" else law.kind
-            moved.append(size_of(kind, shifts))
-            sizes.append(size_of(kind, parts))
+            moved.append(law.magnitude(shifts))
+            sizes.append(law.magnitude(parts))
         given = [[part for part in found if part is not None] for found in (moved, sizes)]
         change, largest = (reduce(larger, found, 0.0) for found in given)
         self.residual = change / (largest + MIN_FORCE)
@@ -377,12 +379,12 @@ class FrictionEquations:
         sizes = (size_of(law.kind, parts) for law, parts in zip(self._laws, reactions, strict=True))
         return [number_or_zero(product(law.factor, size)) for law, size in zip(self._laws, sizes, strict=True)]
 
-    def _totals(self, amounts):
+    def _totals(self, amounts, all_positive=False):
         """Friction by channel from the friction of each law."""
         found: list[Any] = [None] * self._count
         for amount, effects in zip(amounts, self._effects, strict=True):
             for place, way in effects:
-                found[place] = (plus if way > 0 else minus)(found[place], amount)
+                found[place] = (plus if way > 0 or all_positive else minus)(found[place], amount)
         return found
 
     def _by_directions(self, reactions):
@@ -391,15 +393,9 @@ class FrictionEquations:
         They are solved by elimination without pivoting, as the pivots are near 1.
         """
         directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
-        matrix: list[list] = [[None] * self._count for _ in range(self._count)]
-        right: list[Any] = [None] * self._count
-        for law, weights in enumerate(directed):
-            constant = _weighted(weights, self._free[law])
-            row = [_weighted(weights, slope) for slope in self._slopes[law]]
-            for place, way in self._effects[law]:
-                add = plus if way > 0 else minus
-                right[place] = add(right[place], constant)
-                matrix[place] = [add(one, other) for one, other in zip(matrix[place], row, strict=True)]
+        right = self._totals(map(_weighted, directed, self._free))
+        columns = [self._totals(map(_weighted, directed, slopes)) for slopes in zip(*self._slopes, strict=True)]
+        matrix = list(zip(*columns, strict=True))
         above, right, inverse = _triangle(matrix, right)
         found: list[Any] = [None] * self._count
         for i in reversed(range(self._count)):
@@ -408,8 +404,9 @@ class FrictionEquations:
         return [number_or_zero(one) for one in found]
 
 
-def _weighted(weights, parts):
-    return reduce(plus, (product(weight, part) for weight, part in zip(weights, parts, strict=True)))
+def _weighted(weights, parts, start=None):
+    """A start value plus the sum of parts times weights."""
+    return reduce(plus, map(product, weights, parts), start)
 
 
 def _triangle(matrix, right):

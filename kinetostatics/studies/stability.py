@@ -29,6 +29,7 @@ from .methods.method import circumstances
 from .precision import METHODS
 
 CRANK_SPEED = 320 * math.pi / 30
+BALANCING_SPRING = Spring.balancing(600.0, CRANK_SPEED, 2.0)
 DISTANCES = tuple(10.0**k for k in range(-17, 0))
 
 
@@ -91,6 +92,12 @@ def _chain_unit(crank=0.1, coupler=0.4, rocker=0.3, pivot=(0.35, 0.1)):
     )
 
 
+def _cam_saw(cam, coupler_length, share=1.0):
+    """Sawframe with a cam, and a share of the coupler's mass."""
+    coupler = Link(150.0 * share, 1.0, 20.5 * share)
+    return cam_crank_slider(cam, coupler_length, coupler=coupler, slider=Link(600.0))
+
+
 def _around(angle, distance, count=200):
     return angle + distance * np.linspace(-1.0, 1.0, count)
 
@@ -118,20 +125,18 @@ def _limit_position(distance):
 def _barely_long_enough(distance):
     coupler = 0.5 * (1.0 + distance)
     mechanism = _saw(crank_length=0.3, coupler_length=coupler, guide_offset=0.2)
-    return _solution(mechanism, np.radians(270.0) + np.linspace(-0.5, 0.5, 21))
+    return _solution(mechanism, _around(1.5 * math.pi, 0.5, 21))
 
 
 def _singular_angle(distance):
     cam = CosineLaw(0.3, 2.0)
-    mechanism = cam_crank_slider(cam, cam.coupler_length, coupler=Link(150.0, 1.0, 20.5), slider=Link(600.0))
-    spring = Spring.balancing(600.0, CRANK_SPEED, 2.0)
-    return _solution(mechanism, _around(float(cam.singular_angle), distance, 60), [Gravity(), spring])
+    angle = _around(float(cam.singular_angle), distance, 60)
+    return _solution(_cam_saw(cam, cam.coupler_length), angle, [Gravity(), BALANCING_SPRING])
 
 
 def _pressure_angle(distance):
     cam = Circle(0.3, (-0.3 * (1.0 - distance), 0.0))
-    mechanism = cam_crank_slider(cam, 2.0, coupler=Link(150.0, 1.0, 20.5), slider=Link(600.0))
-    return _solution(mechanism, np.radians(90.0) + np.linspace(-0.01, 0.01, 21))
+    return _solution(_cam_saw(cam, 2.0), _around(math.pi / 2, 0.01, 21))
 
 
 def _toggle(distance):
@@ -146,31 +151,28 @@ def _just_turning(distance):
     """Crank and ground in one line are little shorter than coupler and rocker: the crank only just turns."""
     crank, coupler, ground = 0.3, 0.45, 0.7
     mechanism = _chain_unit(crank, coupler, (crank + ground - coupler) * (1.0 + distance), (ground, 0.0))
-    return _solution(mechanism, math.pi + math.sqrt(distance) * np.linspace(-2.0, 2.0, 21))
+    return _solution(mechanism, _around(math.pi, 2.0 * math.sqrt(distance), 21))
 
 
 def _just_sliding(distance):
     """The block of a slotted lever almost reaches the foot of the pivot on the slot."""
     lever, block = Link(3.0, 0.2, 5e-2), Link(1.0)
     mechanism = slotted_lever(0.1, pivot=(0.2, 0.0), offset=0.1 * (1.0 - distance), lever=lever, block=block)
-    return _solution(mechanism, math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
+    return _solution(mechanism, _around(0.0, 2.0 * math.sqrt(distance), 22))
 
 
-def _folding(crank, coupler, rocker, frame, *angles, count=10):
-    """Four-bar scene by distance, before and after its links are in one line at these crank angles."""
+def _folding(mechanism, *angles, count=10):
+    """Scene by distance, before and after links are in one line at these crank angles."""
 
     def scene(distance):
-        mechanism = _chain_unit(crank, coupler, rocker, (frame, 0.0))
         steps = np.concatenate([_before(0.0, distance, count), -_before(0.0, distance, count)])
         return _solution(mechanism, np.concatenate([angle + steps for angle in angles]))
 
     return scene
 
 
-def _equal_links(distance):
-    """Crank as long as the coupler: across the guide they are folded onto each other."""
-    mechanism = _saw(crank_length=0.3, coupler_length=0.3)
-    return _solution(mechanism, 0.5 * math.pi + np.concatenate([_before(0.0, distance), -_before(0.0, distance)]))
+def _folding_four_bar(crank, coupler, rocker, ground, *angles, count=10):
+    return _folding(_chain_unit(crank, coupler, rocker, (ground, 0.0)), *angles, count=count)
 
 
 def _mass_ratio(ratio):
@@ -182,61 +184,47 @@ def _mass_ratio(ratio):
 def _nearly_balanced(share):
     """Spring and slider cancel; the torque of a coupler with a small share of its mass remains."""
     cam = CosineLaw(0.3, 2.0)
-    coupler = Link(150.0 * share, 1.0, 20.5 * share)
-    mechanism = cam_crank_slider(cam, cam.coupler_length, coupler=coupler, slider=Link(600.0))
-    return _solution(mechanism, _TURN, [Spring.balancing(600.0, CRANK_SPEED, 2.0)])
+    return _solution(_cam_saw(cam, cam.coupler_length, share), _TURN, [BALANCING_SPRING])
+
+
+def _of_size(size):
+    return _solution(_saw(size, guide_offset=0.1), _TURN, ())
+
+
+def _after_turns(angle):
+    return _solution(_saw(guide_offset=0.1), angle + _TURN)
+
+
+def _powers_of_ten(first, last, step=1):
+    return tuple(10.0**k for k in range(first, last + 1, step))
 
 
 _DISTANCE = "crank angle from there [rad]"
 _IN_LINE = "crank angle from all links in line [rad]"
+_ON_PIVOT = "crank angle from A on O2 [rad]"
+_SHORT = "excess of the coupler's length [1]"
+_PITCH_CIRCLE = "distance of O from the pitch circle [radii]"
+_MASSES = "mass of coupler and crank over slider's [1]"
+_EQUAL_LINKS = _folding(_saw(coupler_length=0.3), 0.5 * math.pi, count=20)
+_CHANGE_POINT = _folding_four_bar(0.2, 0.5, 0.2, 0.5, 0.0, count=20)
 PLACES = (
     Place("dead centres, inclined guide", _DISTANCE, DISTANCES, _dead_centre, "slider_position"),
     Place("limit position", _DISTANCE, DISTANCES, _limit_position, "O"),
-    Place("coupler barely long enough", "excess of the coupler's length [1]", DISTANCES, _barely_long_enough, "O"),
+    Place("coupler barely long enough", _SHORT, DISTANCES, _barely_long_enough, "O"),
     Place("singular angle of the cosine cam", _DISTANCE, DISTANCES, _singular_angle, "cam_force"),
-    Place(
-        "pressure angle toward 90 deg",
-        "distance of O from the pitch circle [radii]",
-        DISTANCES[2:],
-        _pressure_angle,
-        "cam_force",
-    ),
+    Place("pressure angle toward 90 deg", _PITCH_CIRCLE, DISTANCES[2:], _pressure_angle, "cam_force"),
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
-    Place("four-bar change point", _IN_LINE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, 0.0, count=20), "O"),
+    Place("four-bar change point", _IN_LINE, DISTANCES, _CHANGE_POINT, "O"),
     Place("four-bar that only just turns", "excess of the rocker's length [1]", DISTANCES[2:], _just_turning, "O"),
     Place("slotted lever that only just turns", "what the slot's offset lacks [1]", DISTANCES[2:], _just_sliding, "O"),
-    Place("rhombus", _IN_LINE, DISTANCES, _folding(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
-    Place("kite", _IN_LINE, DISTANCES, _folding(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
-    Place(
-        "kite, A passing O2",
-        "crank angle from A on O2 [rad]",
-        DISTANCES,
-        _folding(0.2, 0.5, 0.5, 0.2, 0.0),
-        "balancing_torque",
-    ),
-    Place("parallelogram, folded", _IN_LINE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
-    Place("coupler as long as the crank", _IN_LINE, DISTANCES, _equal_links, "O"),
-    Place(
-        "size",
-        "size, times the sawframe's [1]",
-        tuple(10.0**k for k in range(-9, 10)),
-        lambda size: _solution(_saw(size, guide_offset=0.1), _TURN, ()),
-        "O",
-    ),
-    Place(
-        "unequal masses",
-        "mass of coupler and crank over slider's [1]",
-        tuple(10.0**k for k in range(-24, 1, 4)),
-        _mass_ratio,
-        "balancing_torque",
-    ),
-    Place(
-        "many turns",
-        "crank angle [rad]",
-        tuple(10.0**k for k in range(8)),
-        lambda angle: _solution(_saw(guide_offset=0.1), angle + _TURN),
-        "balancing_torque",
-    ),
+    Place("rhombus", _IN_LINE, DISTANCES, _folding_four_bar(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
+    Place("kite", _IN_LINE, DISTANCES, _folding_four_bar(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
+    Place("kite, A passing O2", _ON_PIVOT, DISTANCES, _folding_four_bar(0.2, 0.5, 0.5, 0.2, 0.0), "balancing_torque"),
+    Place("parallelogram, folded", _IN_LINE, DISTANCES, _folding_four_bar(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
+    Place("coupler as long as the crank", _IN_LINE, DISTANCES, _EQUAL_LINKS, "O"),
+    Place("size", "size, times the sawframe's [1]", _powers_of_ten(-9, 9), _of_size, "O"),
+    Place("unequal masses", _MASSES, _powers_of_ten(-24, 0, 4), _mass_ratio, "balancing_torque"),
+    Place("many turns", "crank angle [rad]", _powers_of_ten(0, 7), _after_turns, "balancing_torque"),
     Place("nearly balanced", "share of the coupler's mass [1]", DISTANCES, _nearly_balanced, "balancing_torque"),
 )
 

@@ -16,9 +16,7 @@ from kinetostatics.mechanics.friction import (
     FrictionLaw,
     direction_of,
     kink_functions,
-    larger,
     size_of,
-    smaller,
 )
 from support.every import every
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
@@ -27,6 +25,11 @@ TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)
 STEEP = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0), coupler=ks.Link(1.0, (0.05, 0.02), 0.01))
 DRIVE = {"crank_speed": 30.0, "crank_acceleration": 5.0, "loads": (ks.Gravity(), ks.ProcessForce(200.0))}
+SCENE = ks.Scene(RUBBED, friction=JOINTS, **DRIVE)
+
+
+def rubbed(friction=JOINTS, **drive):
+    return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -35,11 +38,7 @@ def test_forces_obey_newton_for_all_bodies(kind):
     assert difference < 1e-13
     assert solution.converged
     assert solution.power_residual < 1e-13
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_so_they_are_with_four_times_the_friction(kind):
-    assert differences(kind, 100, 4.0)[0] < 1e-13
+    assert differences(kind, 100, 4.0)[0] < 1e-13  # with four times the friction
 
 
 def _from_rest(drawn):
@@ -90,12 +89,12 @@ def test_tilted_shoe_has_more_friction():
 
 
 def test_losses_are_extra_drive_power():
-    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    s = rubbed()
     assert s.power_residual < 1e-14
     assert (s.friction_loss >= 0.0).all()
     parts = sum(s.friction_loss_at(name) for name in JOINTS)
     assert np.allclose(parts, s.friction_loss, rtol=1e-14)
-    free = ks.solve(RUBBED, TURN, **DRIVE)
+    free = rubbed({})
     gained = (s.balancing_torque - free.balancing_torque) * 30.0
     assert np.allclose(gained, s.friction_loss, rtol=0, atol=1e-13 * np.abs(free.balancing_torque).max() * 30.0)
 
@@ -110,9 +109,9 @@ def test_cam_friction_feeds_on_itself():
 
 
 def test_guide_reaction_includes_friction():
-    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    s = rubbed()
     assert np.array_equal(s.reaction("guide"), [s.guide_friction, s.guide_force])
-    outer = ks.solve(RUBBED, TURN, **DRIVE)
+    outer = rubbed({})
     assert not outer.guide_friction.any()
     assert not outer.friction_loss.any()
     assert outer.converged.all()
@@ -127,22 +126,21 @@ def test_a_pin_carries_all_its_rods():
 
 def test_without_friction_no_bit_changes():
     none = {"O": ks.PinFriction(0.0, 0.02), "guide": ks.GuideFriction(0.0, 0.1)}
-    free, s = (ks.solve(RUBBED, TURN, friction=friction, **DRIVE) for friction in ({}, none))
+    free, s = rubbed({}), rubbed(none)
     for name in free.reactions:
         assert np.array_equal(free.reaction(name), s.reaction(name))
     assert np.array_equal(free.balancing_torque, s.balancing_torque)
-    assert free.apart[0] == ks.solve(RUBBED, TURN, **DRIVE).apart[0]
+    assert free.apart[0] == rubbed({}).apart[0]
 
 
 # Jamming
 
 
 def test_jamming_guide_is_refused_with_angles():
+    drive = {"crank_speed": 12.0, "loads": ks.Gravity(), "friction": {"guide": ks.GuideFriction(1.2)}}
     with pytest.raises(ks.JammingError, match=r"friction jams at .* crank angles, 5") as caught:
-        ks.solve(STEEP, TURN, crank_speed=12.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)})
-    s = ks.solve(
-        STEEP, TURN, crank_speed=12.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)}, on_gap="nan"
-    )
+        ks.solve(STEEP, TURN, **drive)
+    s = ks.solve(STEEP, TURN, **drive, on_gap="nan")
     jams = s.friction_margin <= 0.0
     assert np.array_equal(TURN[jams], caught.value.angles)
     assert np.array_equal(np.isnan(s.balancing_torque), jams)
@@ -157,22 +155,15 @@ def test_yoke_jams_with_a_short_shoe(half_length, jams):
     assert (s.friction_margin[0] <= 0.0) == jams
 
 
-def test_centric_guide_jams_at_the_known_coefficient():
-    limit = np.sqrt((0.13 / 0.1) ** 2 - 1.0)
-    angle = np.array([np.pi / 2])
-    margins = [
-        ks.solve(
-            STEEP, angle, crank_speed=1.0, friction={"guide": ks.GuideFriction(factor * limit)}, on_gap="nan"
-        ).friction_margin[0]
-        for factor in (0.999, 1.001)
-    ]
-    assert margins[0] > 0.0 > margins[1]
+@pytest.mark.parametrize("factor", [0.999, 1.001])
+def test_centric_guide_jams_at_the_known_coefficient(factor):
+    friction = {"guide": ks.GuideFriction(factor * np.sqrt((0.13 / 0.1) ** 2 - 1.0))}
+    s = ks.solve(STEEP, np.array([np.pi / 2]), crank_speed=1.0, friction=friction, on_gap="nan")
+    assert (s.friction_margin[0] > 0.0) == (factor < 1.0)
 
 
 def test_what_is_not_found_to_rounding_is_said():
-    from kinetostatics.mechanics import jamming
-
-    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    s = rubbed()
     s._values["friction_residual"] = np.full(TURN.shape, 1e-6)
     assert not s.converged.any()
     with pytest.warns(ks.ConditionWarning, match="not found to rounding at 90 of 90 crank angles"):
@@ -189,7 +180,7 @@ def test_compiled_and_plain_programs_agree():
     compiled, plain = (ks.compile(scene, ("guide", "balancing_torque"), engine=name) for name in ("compiled", "numpy"))
     for name, values in plain(TURN).items():
         assert np.abs(compiled(TURN)[name] - values).max() < 1e-15 * np.abs(values).max()
-    plain = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    plain = rubbed()
     single = ks.solve(RUBBED, float(TURN[7]), friction=JOINTS, **DRIVE)
     assert single.balancing_torque == pytest.approx(plain.balancing_torque[7], rel=1e-14)
 
@@ -207,8 +198,7 @@ def test_enclosures_hold_what_is_computed():
 
 
 def test_derivatives_are_those_of_differences():
-    scene = ks.Scene(RUBBED, friction=JOINTS, **DRIVE)
-    program = ks.compile(scene, ("balancing_torque", "friction_loss"), engine="numpy")
+    program = ks.compile(SCENE, ("balancing_torque", "friction_loss"), engine="numpy")
     found = program.derivatives(TURN)
     for path in ("friction.guide.mu", "friction.A.radius", "coupler_length", "slider.mass", "crank_speed"):
         value = program.parameters[path]
@@ -220,17 +210,13 @@ def test_derivatives_are_those_of_differences():
 
 
 def test_program_takes_other_coefficients():
-    scene = ks.Scene(RUBBED, friction=JOINTS, **DRIVE)
-    program = ks.compile(scene, "friction_loss", engine="numpy")
+    program = ks.compile(SCENE, "friction_loss", engine="numpy")
     two = np.array([[0.05], [0.2]])
     both = program(TURN, {"friction.guide.mu": two})["friction_loss"]
     for row, mu in zip(both, two.ravel(), strict=True):
-        alone = scene.varied({"friction.guide.mu": float(mu)}).solve(TURN)
+        alone = SCENE.varied({"friction.guide.mu": float(mu)}).solve(TURN)
         assert np.allclose(row, alone.friction_loss, rtol=1e-13)
-    assert ks.Scene(RUBBED, friction={**JOINTS, "guide": ks.GuideFriction(two)}, **DRIVE).solve(TURN).shape == (
-        2,
-        90,
-    )
+    assert rubbed({**JOINTS, "guide": ks.GuideFriction(two)}).shape == (2, 90)
 
 
 # Where friction jumps
@@ -259,7 +245,7 @@ def test_extremes_stand_on_both_sides_of_a_jump():
 def test_the_mean_torque_is_right_across_the_jumps():
     from kinetostatics.cycle.comparison import mean_absolute_torque
 
-    s = ks.solve(RUBBED, TURN, friction=JOINTS, crank_speed=30.0, loads=ks.Gravity())
+    s = rubbed(crank_acceleration=0.0, loads=ks.Gravity())
     ends = np.unique(np.concatenate([[0.0, 2 * np.pi], s.sampled.kinks]))
     edges = np.unique(np.concatenate([np.linspace(*pair, 9) for pair in itertools.pairwise(ends)]))
     nodes, weights = np.polynomial.legendre.leggauss(20)
@@ -274,16 +260,16 @@ def test_the_mean_torque_is_right_across_the_jumps():
 
 
 def test_tables_have_friction_and_losses():
-    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    s = rubbed()
     columns = set(s.frame().columns)
     assert {"O_friction [N m]", "guide_friction [N]", "B_friction_loss [W]", "friction_loss [W]"} <= columns
-    assert not [name for name in ks.solve(RUBBED, TURN, **DRIVE).frame().columns if "friction" in name]
+    assert not [name for name in rubbed({}).frame().columns if "friction" in name]
 
 
 def test_ordinary_machines_say_nothing():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+        rubbed()
 
 
 def test_program_refuses_unsolved_friction():
@@ -309,17 +295,11 @@ def test_a_rigid_triangle_does_not_rub_at_its_corners():
     triangle = ks.Mechanism("rigid", crank, (*parts, further))
     pins = ("O", "dyad1_A", "dyad2_C", "D", "dyad1_2_D", "dyad2_2_C", "E")
     friction = {name: ks.PinFriction(0.2, 0.02) for name in pins}
-    s = ks.solve(triangle, TURN, crank_speed=10.0, crank_acceleration=3.0, loads=ks.Gravity(), friction=friction)
+    drive = {"crank_speed": 10.0, "crank_acceleration": 3.0, "loads": ks.Gravity()}
+    s = ks.solve(triangle, TURN, **drive, friction=friction)
     for name in pins[1:]:
         assert not s.friction_at(name).any()
-    alone = ks.solve(
-        triangle,
-        TURN,
-        crank_speed=10.0,
-        crank_acceleration=3.0,
-        loads=ks.Gravity(),
-        friction={"O": ks.PinFriction(0.2, 0.02)},
-    )
+    alone = ks.solve(triangle, TURN, **drive, friction={"O": ks.PinFriction(0.2, 0.02)})
     assert np.array_equal(s.balancing_torque, alone.balancing_torque)
 
 
@@ -334,20 +314,15 @@ OPEN = {"coupler": ks.Link(2.0, 0.1, 0.01), "rocker": ks.Link(1.0, 0.05)}
 LEGS = {name: ks.PinFriction(0.1, 0.01) for name in ("O", "A", "B", "O2")}
 
 
+def parallelogram(angles, assembly):
+    four_bar = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly=assembly, **OPEN)
+    return ks.solve(four_bar, angles, crank_speed=10.0, loads=ks.Gravity(), friction=LEGS)
+
+
 @pytest.mark.parametrize(("angle", "assembly"), [(0.7, "open"), (2.2, "crossed")])
 def test_friction_follows_the_side_of_a_change_point(angle, assembly):
     """The same posture by its sign, off the change points: an assembly that keeps to one side passes none."""
-    found = [
-        ks.solve(
-            ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly=side, **OPEN),
-            [angle],
-            crank_speed=10.0,
-            loads=ks.Gravity(),
-            friction=LEGS,
-        )
-        for side in (assembly, 1, -1)
-    ]
-    passing, *sides = found
+    passing, *sides = (parallelogram([angle], side) for side in (assembly, 1, -1))
     same = min(sides, key=lambda s: float(np.abs(s.position("B") - passing.position("B")).max()))
     assert np.abs(same.position("B") - passing.position("B")).max() < 1e-12
     assert passing.balancing_torque == pytest.approx(same.balancing_torque, rel=1e-12)
@@ -356,11 +331,9 @@ def test_friction_follows_the_side_of_a_change_point(angle, assembly):
 
 
 def test_jamming_at_change_points_is_reported():
-    mechanism = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly="open", **OPEN)
-    drive = {"crank_speed": 10.0, "loads": ks.Gravity(), "friction": LEGS}
     with pytest.raises(ks.JammingError, match="jams at 2 of 3 crank angles"):
-        ks.solve(mechanism, [1e-3, np.pi - 1e-4, 1.0], **drive)
-    between = ks.solve(mechanism, [1.0, 2.0], **drive)
+        parallelogram([1e-3, np.pi - 1e-4, 1.0], "open")
+    between = parallelogram([1.0, 2.0], "open")
     with pytest.warns(ks.ConditionWarning, match=r"friction jams between 0\.25 \.\.\. 359\.75 deg"):
         ks.extremes(between, "balancing_torque")
     with pytest.raises(ks.JammingError, match=r"^losses: four-bar: friction jams"):
@@ -396,10 +369,6 @@ def test_kinks_lie_where_a_size_or_the_larger_changes():
     assert kink_functions("size", (-2.0,)) == [-2.0]
     assert kink_functions("length", (3.0, 4.0)) == []
     assert kink_functions("larger", (3.0, -4.0)) == [3.0, -4.0, -1.0]
-
-
-def test_larger_and_smaller_are_those_of_two():
-    assert (larger(2.0, -3.0), smaller(2.0, -3.0)) == (2.0, -3.0)
 
 
 def equations(factors, free, columns, kinds=None):
@@ -456,27 +425,6 @@ PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
 AROUND = np.linspace(0.1, 2 * np.pi, 30)
 
 
-def solved(mu, **options):
-    loads, friction = (ks.Gravity(), ks.ProcessForce(500.0)), {"guide": ks.GuideFriction(mu)}
-    return ks.solve(PUMP, AROUND, crank_speed=3.0, loads=loads, friction=friction, **options)
-
-
-@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-def test_a_rod_within_the_friction_angle_jams():
-    """The rod leans by at most 30 degrees: a slider jams where mu times its slope reaches one."""
-    assert np.isfinite(solved(1.7).balancing_torque).all()
-    with pytest.raises(ks.errors.JammingError, match="friction jams at") as caught:
-        solved(2.5)
-    slope = np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2)
-    assert set(caught.value.angles) <= set(AROUND[2.5 * slope >= 1.0].tolist())
-
-
-@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-def test_it_is_left_open_where_asked():
-    found = solved(2.5, on_gap="nan").balancing_torque
-    assert 0 < np.isnan(found).sum() < found.size
-
-
 @pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
 def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
     s = ks.solve(PUMP, AROUND, crank_speed=speed, crank_acceleration=acceleration)
@@ -516,7 +464,8 @@ def states(kappa, free):
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_the_margin_of_a_guide_decides_uniqueness():
-    s = solved(2.5, on_gap="nan")
+    loads, friction = (ks.Gravity(), ks.ProcessForce(500.0)), {"guide": ks.GuideFriction(2.5)}
+    s = ks.solve(PUMP, AROUND, crank_speed=3.0, loads=loads, friction=friction, on_gap="nan")
     kappa = 1.0 - s.friction_margin
     assert kappa == pytest.approx(2.5 * np.abs(np.sin(AROUND)) / np.sqrt(4.0 - np.sin(AROUND) ** 2), rel=1e-12)
     for size, jams in zip(kappa, np.isnan(s.balancing_torque), strict=True):

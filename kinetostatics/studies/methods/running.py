@@ -133,19 +133,19 @@ def _runge_kutta(problem, quantity, steps):
     """Runge and Kutta's method of order 4."""
     acceleration, width = _acceleration(problem), problem.until / steps
 
+    def slope(state):
+        """Derivative by time of the crank angle and i times the crank speed."""
+        return complex(state.imag, acceleration(state.real, state.imag))
+
     def run():
-        angle, speed = problem.from_angle, problem.from_speed
+        state = complex(problem.from_angle, problem.from_speed)
         for _ in range(steps):
-            a1 = acceleration(angle, speed)
-            v2 = speed + 0.5 * width * a1
-            a2 = acceleration(angle + 0.5 * width * speed, v2)
-            v3 = speed + 0.5 * width * a2
-            a3 = acceleration(angle + 0.5 * width * v2, v3)
-            v4 = speed + width * a3
-            a4 = acceleration(angle + width * v3, v4)
-            angle += width * (speed + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
-            speed += width * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
-        return angle
+            first = slope(state)
+            second = slope(state + 0.5 * width * first)
+            third = slope(state + 0.5 * width * second)
+            fourth = slope(state + width * third)
+            state += width * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
+        return state.real
 
     return run
 

@@ -13,8 +13,19 @@ from ...errors import NotGivenError
 from ...machine.cams.cams import Circle, CosineLaw, Harmonic
 from ...machine.group import FRAME
 from ...machine.links import Rolling, Sliding, Turning
-from ...machine.loads import Force, PointDamper, PointForce, PointSpring, Torque, TorsionDamper, TorsionSpring
+from ...machine.loads import (
+    Force,
+    Gravity,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    Spring,
+    Torque,
+    TorsionDamper,
+    TorsionSpring,
+)
 from ...machine.loads.points import point_on_link
+from ...mechanics.load_values import evaluate_load, slider_push
 
 LINK_NUMBERS = "mass", "along", "across", "inertia"
 CURVE_NAMES = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
@@ -107,8 +118,7 @@ def _part_structure(part, owners):
             pinned.append(PinReaction(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
         elif isinstance(pair, Sliding):
             rod = any(slot.rod == pair.link for slot in part.slots)
-            couple, vector = part.outputs.get(pair.couple), name if name in part.outputs else ""
-            about = pair.joint if couple is None else couple.at or pair.joint
+            vector, about = name if name in part.outputs else "", pair.about or pair.joint
             slid.append(SlidingPair(pair.link, pair.joint, pair.against, pair.force, pair.couple, about, vector, rod))
     cams = tuple(CamPair(*led, *_curve(part.cam)) for led in part.led)
     found = {*(item.name for item in pinned), *(cam.force for cam in cams)}
@@ -165,12 +175,13 @@ def cam_numbers(group, angle):
 
 
 class LoadForces:
-    """Loads as forces at points and couples on links, in one posture; derived classes give the posture.
+    """Loads of a `solution` as forces at points and couples on links, in one posture; derived classes give the posture.
 
     They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; and, for
     numbers other than NumPy's, ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and ``where``.
     """
 
+    solution: Any
     mechanism: Any
     at: Any
     expj: Any = staticmethod(lambda angle: np.exp(1j * angle))
@@ -181,7 +192,10 @@ class LoadForces:
         return value
 
     def value(self, item):
-        return item.value_now
+        """Force or moment of a load, N or N m, that may be a table or a function."""
+        return (
+            slider_push(item, self.solution) if hasattr(item, "push") else evaluate_load(item, self.solution).value_now
+        )
 
     def posture(self, link):
         """As ``at(link)``, of the frame too."""
@@ -193,6 +207,15 @@ class LoadForces:
         offset = self.number(along) + 1j * self.number(across)
         joint, axis, shift, spin = self.posture(link)
         return link, joint + offset * axis, shift + 1j * spin * offset * axis
+
+    def effects(self):
+        """Effects of all loads but gravity, as those of one load."""
+        for item in self.solution.loads:
+            if hasattr(item, "push"):
+                place, along, *_ = self.at(item.on)
+                yield item.on, self.push(item, (place * along.conjugate()).real) * along, place, 0.0
+            elif not isinstance(item, Gravity):
+                yield from self.of(item)
 
     def of(self, item):
         """Effects of a load: tuples of link, force, point of action, and couple on the link."""
@@ -210,8 +233,10 @@ class LoadForces:
             return [(link, force, start, 0.0), (other, -force, end, 0.0)]
         raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
 
-    def spring_push(self, item, coordinate):
-        """Force along its guide of a spring on a slider at a coordinate, N."""
+    def push(self, item, coordinate):
+        """Force of a load along the guide of its slider, which is at a coordinate, N."""
+        if not isinstance(item, Spring):
+            return self.value(item)
         elongation = coordinate - self.number(item.free_position)
         return -self.number(item.stiffness) * elongation - self.number(item.cubic) * elongation**3
 
@@ -250,7 +275,8 @@ class FrictionForces:
     nothing changes. Each repetition reduces the error by about the coefficient of friction.
     """
 
-    def __init__(self, acting, solution):
+    def __init__(self, acting):
+        solution = acting.solution
         if solution.friction.senses:
             raise NotGivenError("friction of a sense that is given, not of the motion, has no independent formula")
         self._acting, self._friction = acting, solution.friction.acting

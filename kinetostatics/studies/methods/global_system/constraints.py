@@ -17,8 +17,7 @@ import numpy as np
 from ....errors import NotGivenError
 from ....machine.followers.translating import FlatFollower
 from ....machine.group import FRAME
-from ....machine.loads import Gravity, Spring
-from ....mechanics.load_values import evaluate_load, slider_push
+from ....machine.loads import Gravity
 from ....numbers.lazy import cached_property
 from ....numbers.planar import left
 from ..structures import FrictionForces, LoadForces, structure
@@ -38,52 +37,69 @@ class CurvedTerms(NamedTuple):
     second: Any
 
 
-class SlotEquation(NamedTuple):
-    """Equation `row`: the reference joint of one link stays on a straight slot of another.
+class ContactEquation(NamedTuple):
+    """Equation `row`: the point of a link at `along` stays on a curve of another link, `base`, or of the frame (None).
 
-    The slot runs at the angle of `way`, a complex unit vector, to the direction of its link, at `offset` to the left of
-    that link's reference joint.
+    ``curve(place, turned)`` gives the curve's point nearest to a place and its two derivatives, complex numbers in the
+    axes of the base, which is turned by an angle. The value is the distance to the left of the curve.
     """
 
     row: int
-    slotted: int
-    block: int
-    way: complex
-    offset: float
-
-    def terms(self, at, rates=None):
-        way, plane, second = self.way * at.axes[..., self.slotted], at.plane(at.q), 0.0
-        apart = (plane[..., self.block] - plane[..., self.slotted]) * way.conj()
-        if rates is not None:
-            moving, turning = at.plane(rates), rates[..., 2 * at.model.size + self.slotted]
-            slides = (moving[..., self.block] - moving[..., self.slotted]) * way.conj()
-            second = -turning * (2 * slides.real + turning * apart.imag)
-        parts = (self.block, 1j * way, 0.0), (self.slotted, -1j * way, -apart.real)
-        return CurvedTerms(apart.imag - self.offset, parts, second)
-
-
-class FixedCamEquation(NamedTuple):
-    """Equation `row`: the joint of a link stays on a fixed cam; the value is the distance inside its curve."""
-
-    row: int
+    base: int | None
     link: int
-    cam: Any
+    along: Any
+    curve: Any
 
     def terms(self, at, rates=None):
-        centre = at.plane(at.q)[..., self.link]
-        distance = np.abs(centre)
-        ray = centre / distance
-        radius, slope, second = self.cam.polar(np.angle(centre), (ray.real, ray.imag))
-        lean = slope / distance
-        unit = np.sqrt(1.0 + lean * lean)
-        curvature = (unit * unit + lean * lean - second / distance) / (distance * unit**3)
-        squared = 0.0 if rates is None else np.abs(at.plane(rates)[..., self.link]) ** 2
-        parts = [(self.link, ray * (1j * lean - 1.0) / unit, 0.0)]
-        return CurvedTerms((radius - distance) / unit, parts, -curvature * squared)
+        origin, ray, drift, turning, turned = at.body(self.base, rates)
+        joint, axis, moving, own, _ = at.body(self.link, rates)
+        arm = self.along * axis * np.conj(ray)
+        apart = (joint - origin) * np.conj(ray) + arm
+        speed = (moving - drift) * np.conj(ray) + 1j * own * arm
+        centre, first, second = self.curve(apart, turned)
+        tangent = first / np.abs(first)
+        normal = 1j * tangent
+        curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
+        rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
+        bending = curvature * _dot(tangent, speed - 1j * turning * apart) ** 2
+        out = normal * ray
+        parts = [(self.link, out, _dot(normal, 1j * arm))]
+        if self.base is not None:
+            parts.append((self.base, -out, _dot(normal, -1j * apart)))
+        return CurvedTerms(_dot(normal, apart - centre), parts, _dot(normal, rest) + bending)
 
 
-class CamEquation(NamedTuple):
-    """Equation `row`: the point of a link at `along` stays on a cam that turns with the crank."""
+def straight_slot(way, offset):
+    """Curve of a slot in the direction of a complex unit vector, at an offset to the left of its link's joint."""
+    return lambda place, turned: (1j * way * offset, way, 0.0)
+
+
+def fixed_pitch_curve(cam):
+    """Pitch curve of a fixed cam, at the polar angle of the place."""
+
+    def curve(place, turned):
+        ray = place / np.abs(place)
+        radius, slope, second = cam.polar(np.angle(place), (ray.real, ray.imag))
+        return radius * ray, (slope + 1j * radius) * ray, (second - radius + 2j * slope) * ray
+
+    return curve
+
+
+def turning_pitch_curve(disk):
+    """Pitch curve of a cam on the crank, at the foot of the perpendicular from the place."""
+
+    def curve(place, turned):
+        for _ in range(MAX_FOOT_ITERATIONS):
+            centre, first, second = disk.curve(turned)
+            off = place - centre
+            turned = turned - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
+        return disk.curve(turned)
+
+    return curve
+
+
+class FlatFollowerEquation(NamedTuple):
+    """Equation `row`: the flat face of a link at `along` touches a cam that turns with the crank."""
 
     row: int
     crank: int
@@ -92,39 +108,14 @@ class CamEquation(NamedTuple):
     group: Any
 
     def terms(self, at, rates=None):
-        k = at.model.size
-        turning, own = (0.0 if rates is None else rates[..., 2 * k + place] for place in (self.crank, self.link))
-        ray, axis = (at.axes[..., place] for place in (self.crank, self.link))
-        plane = at.plane(at.q)
-        arm = self.along * axis
-        apart = plane[..., self.link] + arm - plane[..., self.crank]
-        speed: Any = 0.0
-        if rates is not None:
-            moving = at.plane(rates)
-            speed = moving[..., self.link] + 1j * own * arm - moving[..., self.crank]
-        phi = at.q[..., 2 * k + self.crank]
-        if isinstance(self.group, FlatFollower):
-            law = self.group.cam.law(phi - at.q[..., 2 * k + self.link] + self.group.guide.guide_angle)
-            height, aside = apart * axis.conj(), speed * axis.conj()
-            second = 2.0 * own * np.imag(aside) - own**2 * height.real - law.acceleration * (turning - own) ** 2
-            parts = (self.link, axis, height.imag + law.velocity), (self.crank, -axis, -law.velocity)
-            return CurvedTerms(height.real - law.position, parts, second)
-        apart, speed, arm = (part * ray.conj() for part in (apart, speed, arm))
-        disk = self.group.disk
-        for _ in range(MAX_FOOT_ITERATIONS):
-            centre, first, second = disk.curve(phi)
-            off = apart - centre
-            phi = phi - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
-        centre, first, second = disk.curve(phi)
-        tangent = first / np.abs(first)
-        normal = 1j * tangent
-        curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
-        passing = speed - 1j * turning * apart
-        rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
-        out = normal * ray
-        parts = (self.link, out, _dot(normal, 1j * arm)), (self.crank, -out, _dot(normal, -1j * apart))
-        second = _dot(normal, rest) + curvature * _dot(tangent, passing) ** 2
-        return CurvedTerms(_dot(normal, apart - centre), parts, second)
+        origin, _, drift, turning, turned = at.body(self.crank, rates)
+        joint, axis, moving, own, angle = at.body(self.link, rates)
+        height = (joint - origin) * np.conj(axis) + self.along
+        aside = (moving - drift) * np.conj(axis) + 1j * own * self.along
+        law = self.group.cam.law(turned - angle + self.group.guide.guide_angle)
+        second = 2.0 * own * aside.imag - own**2 * height.real - law.acceleration * (turning - own) ** 2
+        parts = (self.link, axis, height.imag + law.velocity), (self.crank, -axis, -law.velocity)
+        return CurvedTerms(height.real - law.position, parts, second)
 
 
 def _dot(a, b):
@@ -149,7 +140,7 @@ class Model:
         self.equations: Any = []
         self.readings: dict[str, tuple[int, Any]] = {}
         self.guides: dict[str, complex] = {}
-        self.curved: list[SlotEquation | FixedCamEquation | CamEquation] = []
+        self.curved: list[ContactEquation | FlatFollowerEquation] = []
         self._held: list[tuple[str, str | None, float]] = []
         *self._terms, (self._one, self._phi) = np.split(np.eye(5 * self.size + 2), np.arange(1, 6) * self.size)
         self._add("O", *self._point("crank"))
@@ -163,13 +154,7 @@ class Model:
             for slide in part.slides:
                 self._slide(slide)
             for cam in part.cams:
-                row, link = len(self.equations), self.names.index(cam.link)
-                if cam.body == FRAME:
-                    self.curved.append(FixedCamEquation(row, link, group.cam))
-                else:
-                    crank, along = self.names.index(cam.body), self.numbers[f"{cam.joint}_along"]
-                    self.curved.append(CamEquation(row, crank, link, along, group))
-                self._add(cam.force, 0.0 * self._one)
+                self._cam(cam, group)
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
             self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
@@ -203,11 +188,27 @@ class Model:
         offset, angle = self.numbers[f"{place}_offset"], self.numbers[f"{place}_angle"]
         ends = (item.link, item.other) if item.rod else (item.other, item.link)
         slotted, block = (self.names.index(name) for name in ends)
-        self.curved.append(SlotEquation(len(self.equations), slotted, block, np.exp(1j * angle), offset))
-        self._add(item.force, 0.0 * self._one)
+        self._curve(item.force, ContactEquation, slotted, block, 0.0, straight_slot(np.exp(1j * angle), offset))
         ahead = angle + (np.pi if item.rod else 0.0)
         self._held.append((item.link, item.other, ahead))
         self._add(item.couple, self._theta(item.link) - self._theta(item.other) - ahead * self._one)
+
+    def _cam(self, cam, group):
+        """Keep a link on a cam, fixed or turning with the crank."""
+        link = self.names.index(cam.link)
+        if cam.body == FRAME:
+            self._curve(cam.force, ContactEquation, None, link, 0.0, fixed_pitch_curve(group.cam))
+            return
+        crank, along = self.names.index(cam.body), self.numbers[f"{cam.joint}_along"]
+        if isinstance(group, FlatFollower):
+            self._curve(cam.force, FlatFollowerEquation, crank, link, along, group)
+        else:
+            self._curve(cam.force, ContactEquation, crank, link, along, turning_pitch_curve(group.disk))
+
+    def _curve(self, force, kind, *data):
+        """Add a nonlinear equation, whose multiplier is a force."""
+        self.curved.append(kind(len(self.equations), *data))
+        self._add(force, 0.0 * self._one)
 
     def _guide(self, item):
         slider = item.link
@@ -332,16 +333,7 @@ class Configuration:
         gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
         force = model.mass * (self.plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
-        acting = _LoadForces(self, rates)
-        for item in solution.loads:
-            if hasattr(item, "push"):
-                link, along = model.names.index(item.on), model.guides[item.on]
-                coordinate = (self.plane(self.q)[..., link] * along.conjugate()).real
-                is_spring = isinstance(item, Spring)
-                push = acting.spring_push(item, coordinate) if is_spring else slider_push(item, solution)
-                force[..., link] -= push * along
-            elif not isinstance(item, Gravity):
-                self._take(acting.of(evaluate_load(item, solution)), force, moment)
+        self._take(_LoadForces(self, rates, solution).effects(), force, moment)
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _take(self, effects, force, moment):
@@ -366,11 +358,19 @@ class Configuration:
             parts = {name: part @ multipliers.T for name, part in readings.items()}
             return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
 
-        friction = FrictionForces(_LoadForces(self, rates), solution)
+        friction = FrictionForces(_LoadForces(self, rates, solution))
         found = named(
             friction.converge(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE)
         )
         return found | {name: found[name] + force for name, force in friction.along(found).items() if name in found}
+
+    def body(self, link, rates=None):
+        """Joint, axis, velocity of the joint, angular velocity and angle of a link by number; None is the frame."""
+        if link is None:
+            return 0.0, 1.0, 0.0, 0.0, 0.0
+        rates, place = np.zeros(3 * self.model.size) if rates is None else rates, 2 * self.model.size + link
+        joint, moving = (self.plane(part)[..., link] for part in (self.q, rates))
+        return joint, self.axes[..., link], moving, rates[..., place], self.q[..., place]
 
     def plane(self, part):
         """The x and y of all links as complex numbers."""
@@ -380,14 +380,12 @@ class Configuration:
 class _LoadForces(LoadForces):
     """Loads in a configuration with velocities `rates`."""
 
-    def __init__(self, configuration, rates):
-        self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
+    def __init__(self, configuration, rates, solution):
+        self.mechanism, self.solution, self._at, self._rates = solution.mechanism, solution, configuration, rates
 
     def at(self, link):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
-        at, index = self._at, self._at.model.names.index(link)
-        spin = self._rates[..., 2 * at.model.size + index]
-        return at.plane(at.q)[..., index], at.axes[..., index], at.plane(self._rates)[..., index], spin
+        return self._at.body(self._at.model.names.index(link), self._rates)[:-1]
 
 
 def components(model, solution, quantity, q, rates=None):

@@ -6,10 +6,10 @@ loads, with arb numbers of `WORKING_BITS` bits; Newton's iteration is on the ene
 torque. The number of points rises until the speed changes by less than `SPEED_TOLERANCE`.
 """
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebint
 
 from ....errors import KinetostaticsError, NotGivenError
 from ....mechanics import energy_contact
@@ -145,97 +145,79 @@ def exact_speed(driven, angles):
 
 
 def _collocate(flint, driven, angles, points):
-    """Speeds at crank angles, arb numbers, with a number of points in each piece."""
-    arb = flint.arb
-    edges = np.unique(np.concatenate([np.linspace(0.0, driven.period, MIN_PIECES + 1), driven.kinks]))
-    pieces = [_CollocationPiece(flint, driven, low, high, points) for low, high in itertools.pairwise(edges)]
+    """Speeds at crank angles, arb numbers, with a number of collocation points in each piece.
+
+    Unknowns are the energies at the points and, last, at the start of each piece. Newton's corrections are found in
+    double precision, from residuals to all bits.
+    """
     motor, way = driven.motor, driven.direction
-    start = max(pieces[0].inertia, key=float)
+    edges = np.unique(np.concatenate([np.linspace(0.0, driven.period, MIN_PIECES + 1), driven.kinks]))
+    middle, half = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
+    nodes = middle[:, None] - half[:, None] * np.cos(np.pi * (np.arange(points) + 0.5) / points)
+    pieces = [_CollocationPiece(flint, *piece) for piece in zip(edges[:-1], edges[1:], nodes, strict=True)]
+    integrals = [piece.integrals([*row, high]) for piece, row, high in zip(pieces, nodes, edges[1:], strict=True)]
+    inertia, load = (part.reshape(nodes.shape) for part in _inertia_and_load(flint.arb, driven, nodes.ravel()))
+
+    def torque(energy, inertia, load):
+        """dU/dphi and its derivative by U."""
+        speed = way * (2 * energy / inertia).sqrt()
+        return motor.torque_at_crank(speed) - load, float(motor.slope_at_crank(speed) / (inertia * speed))
+
     guess = float(motor.field_speed or motor.top / 2.0) / abs(motor.transmission)
-    energies = [[start * guess**2 / 2] * points for _ in pieces]
+    energies = np.full((len(pieces), points + 1), max(inertia[0], key=float) * guess**2 / 2)
     for _ in range(40):
-        steps = [piece.step(values, motor, way) for piece, values in zip(pieces, energies, strict=True)]
-        ends, added = arb(1), arb(0)
-        for _, _, growth, gained in steps:
-            ends, added = ends * growth, added * growth + gained
-        left, change = added / (1 - ends), arb(0)
-        for number, (homogeneous, particular, growth, gained) in enumerate(steps):
-            new = [left * one + two for one, two in zip(homogeneous, particular, strict=True)]
-            changes = (abs(a / b - 1).mid() for a, b in zip(new, energies[number], strict=True))
-            change = max([change, *changes], key=float)
-            energies[number] = [value.mid() for value in new]
-            left = (left * growth + gained).mid()
-        if float(change) < 1e-40:
+        torques, slopes = np.frompyfunc(torque, 3, 2)(energies[:, :-1], inertia, load)
+        ahead = np.concatenate([energies[:, :-1], np.roll(energies[:, -1:], -1, axis=0)], axis=1)
+        gained = np.array([matrix @ row for matrix, row in zip(integrals, torques, strict=True)])
+        change = _newton_correction(integrals, slopes, energies[:, -1:] + gained - ahead)
+        energies = np.frompyfunc(lambda value, more: (value + more).mid(), 2, 1)(energies, change)
+        if np.abs(change).max() < 1e-40 * float(energies.max()):
             break
-    places = zip(np.searchsorted(edges, angles, side="right") - 1, angles, strict=True)
-    return [pieces[place].speed(energies[place], float(angle), driven) for place, angle in places]
+    torques, _ = np.frompyfunc(torque, 3, 2)(energies[:, :-1], inertia, load)
+    own, _ = _inertia_and_load(flint.arb, driven, np.asarray(angles, dtype=float))
+    places = np.searchsorted(edges, angles, side="right") - 1
+    found = [
+        energies[k, -1] + pieces[k].integrals([angle])[0] @ torques[k] for k, angle in zip(places, angles, strict=True)
+    ]
+    return [(way * (2 * energy / one).sqrt()).mid() for energy, one in zip(found, own, strict=True)]
+
+
+def _newton_correction(integrals, slopes, residual):
+    """Change of the energies that makes their residual vanish to first order."""
+    pieces, size = residual.shape
+    jacobian = np.zeros((pieces, size, pieces, size))
+    for k, matrix in enumerate(integrals):
+        jacobian[k, :, k, :-1] = (matrix * slopes[k]).astype(float) - np.eye(size, size - 1)
+        jacobian[k, :, k, -1] = 1.0
+        jacobian[k, -1, (k + 1) % pieces, -1] -= 1.0
+    change = np.linalg.solve(jacobian.reshape(residual.size, -1), -residual.astype(float).ravel())
+    return change.reshape(residual.shape)
 
 
 class _CollocationPiece:
-    """Collocation points of a piece, inertia and load torque there, and the matrix that integrates from its start."""
+    """Collocation points of a piece; values between them are those of a polynomial."""
 
-    def __init__(self, flint, driven, low, high, points):
-        self.flint, self.low, self.high = flint, flint.arb(low), flint.arb(high)
-        angle = 0.5 * (low + high) - 0.5 * (high - low) * np.cos(np.pi * (np.arange(points) + 0.5) / points)
-        self.inertia, self.load = _inertia_and_load(flint.arb, driven, angle)
-        basis = flint.arb_mat([self._basis(flint.arb(float(one)), points) for one in angle])
-        integrals = flint.arb_mat([self._integrals(flint.arb(float(one)), points) for one in angle])
-        self.inverse = basis.inv()
-        self.integral = integrals * self.inverse
-        self.whole = flint.arb_mat([self._integrals(self.high, points)]) * self.inverse
+    def __init__(self, flint, low, high, nodes):
+        self.flint, self.middle, self.half = flint, (flint.arb(low) + high) / 2, (flint.arb(high) - low) / 2
+        integrated = chebint(np.vectorize(flint.arb)(np.eye(len(nodes))), lbnd=-1)
+        self.weights = self.half * flint.arb_mat(integrated.tolist()) * self._polynomials(nodes, len(nodes)).inv()
 
-    def _basis(self, angle, points):
-        """Chebyshev polynomials at an angle."""
-        x = (2 * angle - self.low - self.high) / (self.high - self.low)
-        return [x.chebyshev_t(k) for k in range(points)]
+    def _polynomials(self, angles, count):
+        """Chebyshev polynomials of the piece at angles, a row for each angle."""
+        places = [(float(angle) - self.middle) / self.half for angle in angles]
+        return self.flint.arb_mat([[place.chebyshev_t(k) for k in range(count)] for place in places])
 
-    def _integrals(self, angle, points):
-        """Integrals of the Chebyshev polynomials from the start of the piece."""
-        half = (self.high - self.low) / 2
-
-        def primitive(at):
-            values = self._basis(at, points + 1)
-            yield values[1]
-            yield values[1] * values[1] / 2
-            for k in range(2, points):
-                yield values[k + 1] / (2 * (k + 1)) - values[k - 1] / (2 * (k - 1))
-
-        return [half * (end - begin) for end, begin in zip(primitive(angle), primitive(self.low), strict=True)]
-
-    def step(self, energies, motor, way):
-        """Newton's linear equation u' = a u + g: solutions from 1 without g and from 0 with it, and their ends."""
-        flint, count = self.flint, len(energies)
-        slopes, rests = [], []
-        for value, inertia, load in zip(energies, self.inertia, self.load, strict=True):
-            speed = way * (2 * value / inertia).sqrt()
-            slope = motor.slope_at_crank(speed) / (inertia * speed)
-            slopes.append(slope)
-            rests.append(motor.torque_at_crank(speed) - load - slope * value)
-        places = range(count)
-        matrix = flint.arb_mat([[(i == j) - self.integral[i, j] * slopes[j] for j in places] for i in places])
-        right = self.integral * flint.arb_mat([[rest] for rest in rests])
-        found = matrix.solve(flint.arb_mat([[1, right[i, 0]] for i in range(count)]))
-        homogeneous = [found[i, 0].mid() for i in range(count)]
-        particular = [found[i, 1].mid() for i in range(count)]
-        growth = 1 + sum(self.whole[0, j] * slopes[j] * homogeneous[j] for j in range(count))
-        gained = sum(self.whole[0, j] * (slopes[j] * particular[j] + rests[j]) for j in range(count))
-        return homogeneous, particular, growth.mid(), gained.mid()
-
-    def speed(self, energies, angle, driven):
-        """Crank speed at a crank angle in the piece."""
-        flint, count = self.flint, len(energies)
-        series = self.inverse * flint.arb_mat([[value] for value in energies])
-        basis = self._basis(flint.arb(angle), count)
-        value = sum(basis[k] * series[k, 0] for k in range(count))
-        inertia = _inertia_and_load(flint.arb, driven, np.array([angle]))[0][0]
-        return (driven.direction * (2 * value / inertia).sqrt()).mid()
+    def integrals(self, angles):
+        """Weights, (angles, points), of the values at the points in the integral from the start to each angle."""
+        return np.array((self._polynomials(angles, self.weights.nrows()) * self.weights).tolist(), dtype=object)
 
 
 def _inertia_and_load(arb, driven, angle):
-    """Inertia at the crank, kg m2, and load torque, N m, at crank angles, lists of arb numbers."""
+    """Inertia at the crank, kg m2, and load torque, N m, at crank angles, arrays (N,) of arb numbers."""
     scene = replace_unchecked(driven.scene, crank_speed=1.0, crank_acceleration=0.0)
     run = on_arb(arb, scene.unsolved(angle))
     inertia, load = energy_contact.reduced_inertia(run), energy_contact.load_torque(run)
-    links = [arb(0)] * angle.size if inertia is None else [arb(value).mid() for value in inertia]
-    asked = np.zeros(angle.size) if load is None else np.broadcast_to(load, angle.shape)
-    return [value + arb(driven.flywheel) for value in links], [arb(value).mid() for value in asked]
+    middle = np.frompyfunc(lambda value: arb(value).mid(), 1, 1)
+    shape = np.zeros(angle.shape)
+    links, asked = (middle(shape if part is None else part + shape) for part in (inertia, load))
+    return links + arb(driven.flywheel), asked

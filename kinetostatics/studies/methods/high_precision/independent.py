@@ -25,7 +25,7 @@ from ....machine.groups.rocker import RockerGroup
 from ....machine.groups.slider import SliderGroup
 from ....machine.groups.yoke import YokeGroup
 from ....machine.laws.laws import Cosine
-from ....machine.loads import Gravity, Load, ProcessForce, Spring
+from ....machine.loads import Gravity, Load
 from ....mechanics.quantities import RATES
 from ....numbers import checks
 from ..method import require_moving
@@ -103,26 +103,20 @@ class Posture:
         links[coupler], links[slider] = (group.on, direction), (group.pin, along)
 
     @place.register
-    def _(self, group: RockerGroup, joints, links):
-        mp, side = self.mp, self.side(group)
-        coupler, rocker = group.links
-        start, pivot = joints[group.on], self.vector(group.pivot)
-        c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
-        opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
-        direction = mp.expj(mp.arg(pivot - start) + side * opening)
-        joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
-        links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
-
-    @place.register
-    def _(self, group: Dyad, joints, links):
+    def _(self, group: RockerGroup | Dyad, joints, links):
         mp = self.mp
-        first, second = (joints[name] for name in group.on)
-        a, b, d = self.number(group.length1), self.number(group.length2), abs(second - first)
+        if isinstance(group, RockerGroup):
+            joints[group.pivot_name] = self.vector(group.pivot)
+            lengths, ends = (group.coupler_length, group.rocker_length), (group.on, group.pivot_name)
+        else:
+            lengths, ends = (group.length1, group.length2), group.on
+        (a, b), (first, second) = map(self.number, lengths), (joints[name] for name in ends)
+        d = abs(second - first)
         opening = mp.acos((d * d + a * a - b * b) / (2 * d * a))
-        direction = mp.expj(mp.arg(second - first) + group.assembly * opening)
+        direction = mp.expj(mp.arg(second - first) + self.side(group) * opening)
         joints[group.pin] = first + a * direction
         directions = direction, (joints[group.pin] - second) / b
-        links |= {link: part for link, *part in zip(group.links, group.on, directions, strict=True)}
+        links |= {link: part for link, *part in zip(group.links, ends, directions, strict=True)}
 
     @place.register
     def _(self, group: Pin, joints, links):
@@ -247,54 +241,45 @@ class Machine(Posture, LoadForces):
 
     def components(self, quantity):
         """Components of a quantity, by name."""
-        links = self.mechanism.links
-        ending = next((ending for ending in RATES if quantity.endswith(ending)), "")
-        link = quantity.removesuffix(ending)
-        travel = next((ending for ending in TRAVELS if quantity.endswith(ending)), "")
-        slider = quantity.removesuffix(travel)
-        if travel and slider in self.mechanism.guides:
-            table = (self.position, self.velocity, self.acceleration)[TRAVELS.index(travel)]
-            pin = self.mechanism.references[slider]
-            found = dot(self.position["direction", slider], table["joint", pin])
-        elif ending and link in links:
-            table = self.velocity if ending == "_rate" else self.acceleration
-            found = cross(self.position["direction", link], table["direction", link])
-        else:
-            forces = self.forces()
-            if quantity not in forces:
-                raise NotGivenError(checks.choice("quantity of the independent path", quantity, tuple(forces)))
-            found = forces[quantity]
-        return (found.real, found.imag) if isinstance(found, self.mp.mpc) else (found,)
+        tables, here = (self.position, self.velocity, self.acceleration), self.position
+        found = {
+            slider + ending: dot(here["direction", slider], table["joint", self.mechanism.references[slider]])
+            for slider in self.mechanism.guides
+            for ending, table in zip(TRAVELS, tables, strict=True)
+        }
+        found |= {
+            link + ending: cross(here["direction", link], table["direction", link])
+            for link in self.mechanism.links
+            for ending, table in zip(RATES, tables[1:], strict=True)
+        }
+        found = found if quantity in found else self.forces()
+        if quantity not in found:
+            raise NotGivenError(checks.choice("quantity of the independent path", quantity, tuple(found)))
+        value = found[quantity]
+        return (value.real, value.imag) if isinstance(value, self.mp.mpc) else (value,)
 
     # Forces, from the equations of all bodies at once
 
     def forces(self):
         """Complex reactions, and scalar forces and moments, by name."""
         mp, links, unknowns = self.mp, self.mechanism.links, self.unknowns()
-        matrix, right = mp.matrix(3 * len(links), len(unknowns)), mp.matrix(3 * len(links), 1)
+        matrix = mp.matrix(3 * len(links), len(unknowns))
         for column, (_, force, moment, at, on, by) in enumerate(unknowns):
-            self.enter(matrix, column, on, at, force, moment)
-            self.enter(matrix, column, by, at, -force, -moment)
+            self.enter(matrix, column, [(on, force, at, moment), (by, -force, at, -moment)])
         items = (item for item in self.solution.loads if isinstance(item, Gravity))
         pulls = (self.number(item.acceleration) * mp.expj(self.number(item.direction)) for item in items)
         gravity = sum(pulls, mp.mpc(0))
-        shaking = {}
+        acting, shaking = [*self.effects()], {}
         for name, link in links.items():
-            mass, at = self.number(link.mass), self.position["centre", name]
+            mass, centre = self.number(link.mass), self.position["centre", name]
             turning = cross(self.position["direction", name], self.acceleration["direction", name])
             shaking[name] = -mass * self.acceleration["centre", name], -self.number(link.inertia) * turning
-            self.enter(right, 0, name, at, -shaking[name][0] - mass * gravity, -shaking[name][1])
-        for name in self.mechanism.guides:
-            pin, along = self.position["joint", self.mechanism.references[name]], self.position["direction", name]
-            self.enter(right, 0, name, pin, -self.push(name, dot(along, pin)) * along, 0)
-        for item in self.solution.loads:
-            if not isinstance(item, Gravity | Spring | ProcessForce) and isinstance(item, Load):
-                self.apply(self.of(item), right)
+            acting.append((name, shaking[name][0] + mass * gravity, centre, shaking[name][1]))
         triangles, order = mp.LU_decomp(matrix)
 
         def solve(effects):
-            self.apply(effects, given := right.copy())
-            return mp.U_solve(triangles, mp.L_solve(triangles, given, order))
+            self.enter(right := mp.matrix(3 * len(links), 1), 0, [*acting, *effects])
+            return mp.U_solve(triangles, mp.L_solve(triangles, -right, order))
 
         def named(sizes):
             forces: dict[str, Any] = {}
@@ -302,7 +287,7 @@ class Machine(Posture, LoadForces):
                 forces[name] = forces.get(name, 0) + size * force if name in self.solution.reactions else size
             return forces
 
-        friction = FrictionForces(self, self.solution)
+        friction = FrictionForces(self)
         found = named(friction.converge(solve, named, lambda sizes: mp.norm(sizes, mp.inf), self.step))
         along = friction.along(found)
         for group in self.mechanism.groups:
@@ -316,19 +301,15 @@ class Machine(Posture, LoadForces):
             "shaking_moment": sum(turning),
         }
 
-    def apply(self, effects, right):
-        """Move effects of loads to the right side of the equations."""
+    def enter(self, matrix, column, effects):
+        """Add effects to the three equations of their links, with moments about the mass centre; none to the frame."""
+        rows = {name: 3 * place for place, name in enumerate(self.mechanism.links)}
         for link, force, at, couple in effects:
-            if link in self.mechanism.links:
-                self.enter(right, 0, link, self.position["centre", link] if force == 0 else at, -force, -couple)
-
-    def enter(self, matrix, column, link, at, force, moment):
-        """Add a wrench to the three equations of a link, with moments about its mass centre; none to the frame."""
-        if link != FRAME:
-            row = 3 * list(self.mechanism.links).index(link)
-            matrix[row, column] += self.mp.re(force)
-            matrix[row + 1, column] += self.mp.im(force)
-            matrix[row + 2, column] += moment + cross(at - self.position["centre", link], force)
+            if link in rows:
+                row = rows[link]
+                matrix[row, column] += self.mp.re(force)
+                matrix[row + 1, column] += self.mp.im(force)
+                matrix[row + 2, column] += couple + cross(at - self.position["centre", link], self.mp.mpc(force))
 
     def unknowns(self):
         """Unit wrenches of the unknowns: name, force, moment, point, link acted on, acting link."""
@@ -359,23 +340,14 @@ class Machine(Posture, LoadForces):
         axis = self.position["direction", cam.link]
         return axis, 0, at - dot(axis, way) * left(axis)
 
-    def push(self, slider, coordinate):
-        """Force on a slider along its guide."""
-        total = self.mp.mpf(0)
-        for place, item in enumerate(self.solution.loads):
-            if not hasattr(item, "push") or item.on != slider:
-                continue
-            if isinstance(item, Spring):
-                total += self.spring_push(item, coordinate)
-            elif isinstance(item, ProcessForce) and not callable(item.force):
-                total += self.number(item.force)
-            else:
-                total += self.given(place)
-        return total
-
     def value(self, item):
-        """Force or moment of a load, N or N m, that may be a table or a function."""
-        return self.given(self.solution.loads.index(item)) if callable(item.value_now) else self.number(item.value_now)
+        """Force or moment of a load, N or N m; that of a table or the user's own code by the function itself."""
+        if isinstance(item, Load) and item.is_given:
+            return self.number(item.value_now)
+        flint = require_library("flint")
+        with flint.ctx.workprec(int(3.33 * self.mp.dps)):
+            values = np.ravel(on_arb(flint.arb, self.solution).loads[self.solution.loads.index(item)].value_now)
+            return self.mp.mpf(values[self.index if values.size > 1 else 0])
 
     def where(self, condition, one, other):
         return one if condition else other
@@ -385,10 +357,3 @@ class Machine(Posture, LoadForces):
         joint, axis = self.mechanism.references[link], self.position["direction", link]
         shift = self.velocity["joint", joint]
         return self.position["joint", joint], axis, shift, cross(axis, self.velocity["direction", link])
-
-    def given(self, place):
-        """Value of a load that is a function of the motion, computed by the user's own function."""
-        flint = require_library("flint")
-        with flint.ctx.workprec(int(3.33 * self.mp.dps)):
-            values = np.ravel(on_arb(flint.arb, self.solution).loads[place].value_now)
-            return self.mp.mpf(values[self.index if values.size > 1 else 0])

@@ -18,7 +18,6 @@ from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBod
 from ....errors import NotGivenError
 from ....machine.group import FRAME
 from ....machine.loads import Gravity, ProcessForce, Spring
-from ....mechanics.load_values import evaluate_load, slider_push
 from ..method import Method, require_frictionless, require_one_design, with_numeric_side
 from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, structure
 from .motion import PHI, SPEED, TORQUE, Motion, N, left, linear, planar, rate
@@ -209,12 +208,12 @@ class AppliedLoads(LoadForces):
 
         for item in self.springs:
             (travel,) = self.travels[item.on]()
-            add(f"{item.on}_push", self.spring_push(item, travel))
+            add(f"{item.on}_push", self.push(item, travel))
         for item in self.pushes:
-            add(f"{item.on}_push", slider_push(item, self.solution))
+            add(f"{item.on}_push", self.value(item))
         self.places = {link: run() for link, run in self.motions.items()}
         for item in self.others:
-            for link, force, at, couple in self.of(evaluate_load(item, self.solution)):
+            for link, force, at, couple in self.of(item):
                 if link in self.places:
                     turning = couple + np.imag(np.conj(at - self.at(link)[0]) * force)
                     for part, amount in zip(LOAD_PARTS, (np.real(force), np.imag(force), turning), strict=True):
