@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
+from typing import NamedTuple
 
 import numpy as np
 
 from ..cycle.extremes import extrema
+from ..cycle.reductions import Output
 from ..drive.flywheel_sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
@@ -103,45 +105,47 @@ def optimise(
     checks.require(
         "design", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE), *search_problems(starts, seed)
     )
-    sign, text = parse_goal(minimise, maximise)
-    scene = scene_of(source)
-    output, limits = parse_output(text, scene), parse_constraints(limits, scene)
-    require_reference(reference, output, limits)
-    asked = (output, *(limit.output for limit in limits))
-    require_resolved(angles, asked)
-    problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
+    task = parse_task(scene_of(source), minimise, maximise, limits, reference, angles)
+    problem = Problem(source, vary, [item.quantity for item in task.outputs], reference, angles, engine)
     begins = _starting_designs(problem, starts, seed, begin)
-    reported = dict.fromkeys([*asked, *(limit.output for limit in problem.table_limits)])
-    return best_design(problem, output, sign, limits, begins, reported, text, robust, progress)
+    reported = (*task.outputs, *(limit.output for limit in problem.table_limits))
+    return best_design(problem, task, begins, reported, robust, progress)
 
 
-def parse_goal(minimise, maximise):
+class Task(NamedTuple):
+    """Task of a search: an output, as `text` names it, times `sign` is to become least under limits."""
+
+    text: str
+    output: Output
+    sign: float
+    limits: tuple[Constraint, ...]
+
+    @property
+    def outputs(self):
+        """The outputs of goal and limits."""
+        return self.output, *(limit.output for limit in self.limits)
+
+
+def parse_task(scene, minimise, maximise, limits, reference, angles, kept=()) -> Task:
+    """Task of a search from texts, with the limits `kept` first; refused without a reference or angles it needs."""
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
-    return (1.0, minimise) if maximise is None else (-1.0, maximise)
+    sign, text = (1.0, minimise) if maximise is None else (-1.0, maximise)
+    limits = (*parse_constraints(kept, scene), *parse_constraints(limits, scene))
+    task = Task(text, parse_output(text, scene), sign, limits)
+    ratio = next((str(output) for output in task.outputs if output.ratio), None)
+    if ratio is not None and reference is None:
+        raise ParameterError(f"design: {ratio!r} needs a reference: a Scene, as reference=plain")
+    orders = [int(output.reduction[9:]) for output in task.outputs if output.reduction.startswith("harmonic_")]
+    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
+    if angles < needed:
+        raise ParameterError(f"design: angles must be at least {needed} for the outputs asked for, got {angles}")
+    return task
 
 
 def search_problems(starts, seed):
     """Sentences about a wrong number of starts or seed."""
     return checks.count("starts", starts), checks.seed("seed", seed)
-
-
-def require_resolved(angles, outputs):
-    """Refuse too few crank angles for the outputs."""
-    orders = [int(item.reduction[9:]) for item in outputs if item.reduction.startswith("harmonic_")]
-    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
-    checks.require(
-        "design",
-        None if angles >= needed else f"angles must be at least {needed} for the outputs asked for, got {angles}",
-    )
-
-
-def require_reference(reference, output, limits):
-    ratios = [str(item) for item in (output, *(limit.output for limit in limits)) if item.ratio]
-    checks.require(
-        "design",
-        f"{ratios[0]!r} needs a reference: a Scene, as reference=plain" if ratios and reference is None else None,
-    )
 
 
 def _starting_designs(problem, count, seed, begin=None):
@@ -166,8 +170,8 @@ def _numbers_text(problem, values):
     return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
 
 
-def best_design(problem, output, sign, limits, begins, reported, text, robust, progress) -> Found:
-    """Best of the searches from several designs, for `sign` times an output, or its quantile over a spread.
+def best_design(problem, task, begins, reported, robust, progress) -> Found:
+    """Best of the searches from several designs for a task, or for the quantile of its output over a spread.
 
     Raises
     ------
@@ -175,6 +179,7 @@ def best_design(problem, output, sign, limits, begins, reported, text, robust, p
         No design keeps the limits at true extremes.
     """
     checks.require("design", None if robust is None else spread_problem("robust", robust))
+    text, output, sign, limits = task
     goal = Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
     searched, plain = goal, limits
     reference = None if problem.reference is None else scene_of(problem.reference)
@@ -204,7 +209,7 @@ def best_design(problem, output, sign, limits, begins, reported, text, robust, p
         reference,
         kept,
         f"{'least' if sign > 0 else 'greatest'} {of}{text}",
-        tuple(reported),
+        tuple(dict.fromkeys(reported)),
         active,
         prices,
         evaluations,

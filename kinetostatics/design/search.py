@@ -117,18 +117,15 @@ def within_tables(problem, limits, start):
     """Nearest design to a start that keeps sliders within load tables; the start if there is none."""
     from scipy.optimize import minimize
 
-    reach, scales = problem.high - problem.low, np.array([limit.scale for limit in limits])
+    reach = problem.high - problem.low
 
-    def sides(steps):
+    def margins(steps):
         """Margins of the limits, in units of their sizes, and derivatives by the steps."""
-        found = [problem.output(limit.output, start + steps * reach) for limit in limits]
-        signs = [1.0 if limit.relation == ">=" else -1.0 for limit in limits]
-        room = [sign * (value - limit.value) for sign, (value, _), limit in zip(signs, found, limits, strict=True)]
-        slopes = [sign * slope * reach for sign, (_, slope) in zip(signs, found, strict=True)]
-        return np.nan_to_num(room / scales, nan=-INFEASIBLE_GOAL), np.nan_to_num(slopes / scales[:, None])
+        excess, slopes, _ = excesses_over(problem, limits, start + steps * reach)
+        return np.nan_to_num(-excess, nan=-INFEASIBLE_GOAL), np.nan_to_num(-slopes.T * reach)
 
     still = np.zeros(start.size)
-    if not limits or sides(still)[0].min() >= -LIMIT_TOLERANCE:
+    if margins(still)[0].min(initial=0.0) >= -LIMIT_TOLERANCE:
         return start
     found = minimize(
         lambda steps: (steps @ steps, 2.0 * steps),
@@ -136,10 +133,10 @@ def within_tables(problem, limits, start):
         jac=True,
         method="SLSQP",
         bounds=np.transpose([problem.low - start, problem.high - start] / reach),
-        constraints={"type": "ineq", "fun": lambda steps: sides(steps)[0], "jac": lambda steps: sides(steps)[1]},
+        constraints={"type": "ineq", "fun": lambda steps: margins(steps)[0], "jac": lambda steps: margins(steps)[1]},
     )
     moved = np.clip(start + found.x * reach, problem.low, problem.high)
-    return moved if sides((moved - start) / reach)[0].min() >= -LIMIT_TOLERANCE else start
+    return moved if margins((moved - start) / reach)[0].min() >= -LIMIT_TOLERANCE else start
 
 
 def restore_limits(problem, limits, values):
@@ -152,16 +149,12 @@ def restore_limits(problem, limits, values):
     for _ in range(MAX_RESTORING_STEPS):
         if not LIMIT_TOLERANCE < off < MAX_RESTORED_EXCESS:
             break
-        parts, rows = [], []  # excesses of active limits in units of their sizes, and derivatives
-        for limit in limits:
-            excess, slopes = excess_over(problem, limit, values)
-            active = (excess / limit.scale > -LIMIT_TOLERANCE) | (limit.relation == "=")
-            parts.append(excess[active] / limit.scale)
-            rows.append(slopes.T[active] / limit.scale)
-        slopes = np.vstack(rows)
+        excess, slopes, equal = excesses_over(problem, limits, values)
+        active = (excess > -LIMIT_TOLERANCE) | equal
+        excess, slopes = excess[active], slopes.T[active]
         if not np.isfinite(slopes).all():
             break
-        step = _restoring_step(np.concatenate(parts), slopes, reach, problem.low - values, problem.high - values)
+        step = _restoring_step(excess, slopes, reach, problem.low - values, problem.high - values)
         moved = np.clip(values + step, problem.low, problem.high)
         left = worst_excess(problem, limits, moved)
         if not left < off:
@@ -183,11 +176,20 @@ def _restoring_step(excess, slopes, reach, low, high):
 
 def worst_excess(problem, limits, values):
     """Excess over the worst limit relative to its size; infinite if the design cannot be built."""
-    worst = 0.0
+    excess, _, equal = excesses_over(problem, limits, values)
+    worst = np.where(equal, np.abs(excess), excess).max(initial=0.0)
+    return float(worst) if np.isfinite(worst) else np.inf
+
+
+def excesses_over(problem, limits, values):
+    """Excesses over limits relative to their sizes (parts,), derivatives (n, parts), and mask of the equalities."""
+    excesses, slopes = [np.empty(0)], [np.empty((values.size, 0))]
     for limit in limits:
-        excess, _ = excess_over(problem, limit, values)
-        worst = max(worst, np.max(np.abs(excess) if limit.relation == "=" else excess) / limit.scale)
-    return worst if np.isfinite(worst) else np.inf
+        excess, changes = excess_over(problem, limit, values)
+        excesses.append(excess / limit.scale)
+        slopes.append(changes / limit.scale)
+    equal = np.repeat([limit.relation == "=" for limit in limits], [excess.size for excess in excesses[1:]])
+    return np.concatenate(excesses), np.hstack(slopes), equal.astype(bool)
 
 
 def excess_over(problem, limit, values):
@@ -208,7 +210,7 @@ class _ScaledProblem:
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
         self.raised = minimises_peak(goal)
-        self._last: tuple[Any, Any] = (None, None)
+        self._last: tuple[Any, Any] = None, None
         first = self.reached(start)
         self.unit = abs(first) or 1.0
         count = start.size
@@ -267,34 +269,26 @@ class _ScaledProblem:
         return np.concatenate([(values - problem.low) / reach, (problem.high - values) / reach])
 
     def margins(self, unknowns, equal):
-        """Margins of the limits, each in units of its size, with derivatives by the unknowns."""
-        key = unknowns.tobytes(), equal
+        """Margins of equalities, or of the other limits, in units of their sizes; derivatives by the unknowns."""
+        key = unknowns.tobytes()
         if self._last[0] != key:
-            self._last = key, self._computed_margins(unknowns, equal)
-        return self._last[1]
+            self._last = key, self._computed_margins(unknowns)
+        margins, rows, equalities = self._last[1]
+        return margins[equalities == equal], rows[equalities == equal]
 
-    def _computed_margins(self, unknowns, equal):
+    def _computed_margins(self, unknowns):
         values = self.values(unknowns)
-        parts, slopes = [np.empty(0)], [np.empty((self.start.size, 0))]
-        for limit in self.limits:
-            if (limit.relation == "=") == equal:
-                excess, changes = excess_over(self.problem, limit, values)
-                parts.append(-excess / limit.scale)
-                slopes.append(-changes / limit.scale)
-        found, changes = np.nan_to_num(np.concatenate(parts), nan=-INFEASIBLE_GOAL), np.hstack(slopes)
-        rows = np.nan_to_num(self.matrix.T @ changes).T
-        if not self.raised:
-            return found, rows
-        rows = np.hstack([rows, np.zeros((len(rows), 1))])
-        if equal:
-            return found, rows
-        output, sign = self.goal_of
-        level = Constraint(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit)
-        excess, changes = excess_over(self.problem, level, values)
-        raised = np.hstack([-(self.matrix.T @ changes).T / self.unit, np.ones((excess.size, 1))])
-        return np.append(found, np.nan_to_num(-excess / self.unit, nan=-INFEASIBLE_GOAL)), np.vstack(
-            [rows, np.nan_to_num(raised)]
-        )
+        excess, slopes, equal = excesses_over(self.problem, self.limits, values)
+        if self.raised:  # the goal, below the extra unknown
+            output, sign = self.goal_of
+            level = Constraint(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit, self.unit)
+            above, changes, _ = excesses_over(self.problem, [level], values)
+            by_level = np.repeat([0.0, 1.0], [excess.size, above.size])
+            excess, slopes = np.append(excess, above), np.hstack([slopes, changes])
+            equal = np.append(equal, np.zeros(above.size, dtype=bool))
+        rows = -(self.matrix.T @ slopes).T
+        rows = np.column_stack([rows, by_level]) if self.raised else rows
+        return np.nan_to_num(-excess, nan=-INFEASIBLE_GOAL), np.nan_to_num(rows), equal
 
 
 def minimises_peak(goal):

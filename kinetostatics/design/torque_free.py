@@ -20,8 +20,8 @@ from ..machine.loads import Gravity
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
 from .cam_start import Options, crank_slider_links, starting_machine
-from .constraints import parse_constraints, parse_output
-from .optimisation import best_design, parse_goal, require_reference, require_resolved, search_problems
+from .constraints import parse_output
+from .optimisation import best_design, parse_task, search_problems
 from .problem import Problem, choose_design, scene_of, true_value
 from .result import Found
 
@@ -196,29 +196,26 @@ def torque_free_cam(
     given = _without_friction(scene_of(source), gravity)
     compared = None if reference is None else _without_friction(scene_of(reference), gravity)
     start = starting_machine(given, options)
-    sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else parse_goal(minimise, maximise)
-    low, high = start.ends
-    kept = parse_constraints([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
-    output, limits = parse_output(text, start.scene), (*kept, *parse_constraints(limits, start.scene))
-    require_reference(compared, output, limits)
-    outputs = (output, *(limit.output for limit in limits))
+    minimise = f"mean_absolute {TORQUE}" if minimise is maximise is None else minimise
     angles = max(MIN_ANGLES, ANGLES_PER_HARMONIC * max(cosine, sine))
-    require_resolved(angles, outputs)
-    quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
+    low, high = start.ends
+    kept = f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"
+    task = parse_task(start.scene, minimise, maximise, limits, compared, angles, kept)
+    quantities = (TORQUE, POSITION, *(item.quantity for item in task.outputs))
     problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
     _require_possible(problem, start)
     generator = np.random.default_rng(seed)
     begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
     begins = [least_squares(problem, start, values) for values in begins]
-    _require_within_bound(start, problem, limits, compared, begins[0])
+    _require_within_bound(start, problem, task.limits, compared, begins[0])
     usual = [text for text in REPORTED_OUTPUTS if text.split()[-1] in of_scene(start.scene)]
     usual = usual if compared is not None else usual[1:]
-    reported = dict.fromkeys([*outputs, *(parse_output(text, start.scene) for text in usual)])
+    reported = (*task.outputs, *(parse_output(text, start.scene) for text in usual))
     try:
-        found = best_design(problem, output, sign, limits, begins, reported, text, robust, progress)
+        found = best_design(problem, task, begins, reported, robust, progress)
     except DesignError as error:  # with limited torque, what else balances weight
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
-        torque = any(limit.output.quantity == TORQUE for limit in limits)
+        torque = any(limit.output.quantity == TORQUE for limit in task.limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
     rubbing = scene_of(source).friction.get("O")

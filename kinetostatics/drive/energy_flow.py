@@ -98,20 +98,12 @@ class EnergyFlow:
         """Table with a row for each part, a pandas DataFrame: energy in a turn, mean power, share, energy held."""
         import pandas as pd
 
-        source = sum(part.energy for part in self.parts if part.kind == SOURCE)
-        rows = [
-            (
-                part.name,
-                part.kind,
-                part.energy,
-                part.energy / self.turn_time,
-                part.energy / source if source > 0.0 else np.nan,
-                part.swing,
-            )
-            for part in self.parts
-        ]
-        columns = ["part", "kind", "energy per turn [J]", "mean power [W]", "share [1]", "swing [J]"]
-        return pd.DataFrame(rows, columns=columns).set_index("part")
+        table = pd.DataFrame(self.parts).set_index("name").rename_axis("part")
+        source = table.energy[table.kind == SOURCE].sum()
+        power, share = table.energy / self.turn_time, table.energy / source if source > 0.0 else np.nan
+        table.insert(2, "mean power [W]", power)
+        table.insert(3, "share [1]", share)
+        return table.rename(columns={"energy": "energy per turn [J]", "swing": "swing [J]"})
 
 
 def energy_flow(run) -> EnergyFlow:

@@ -127,10 +127,10 @@ class Motor:
         """
         found = checks.single_numbers(
             "Motor.constant",
-            own_torque=(torque, "N*m", {"name": "torque", "unequal": 0.0}),
+            standstill_torque=(torque, "N*m", {"name": "torque", "unequal": 0.0}),
             **_transmission_rules(transmission, inertia),
         )
-        return Constant(**found)
+        return Linear(idle_speed=math.inf, **found)
 
     @staticmethod
     def table(speed, torque, *, transmission=1.0, inertia=0.0) -> "Motor":
@@ -215,15 +215,17 @@ class Kloss(Motor):
 
     @cached_property
     def breakdown_slip(self):
-        rated = (self.synchronous_speed - self.speed) / self.synchronous_speed
-        return rated * (self.overload + math.sqrt((self.overload - 1.0) * (self.overload + 1.0)))
+        return self._slip(self.speed) * (self.overload + math.sqrt((self.overload - 1.0) * (self.overload + 1.0)))
+
+    def _slip(self, speed):
+        return (self.synchronous_speed - speed) / self.synchronous_speed
 
     def torque(self, speed):
-        slip, most = (self.synchronous_speed - speed) / self.synchronous_speed, self.breakdown_slip
+        slip, most = self._slip(speed), self.breakdown_slip
         return 2.0 * self.breakdown_torque * most * slip / (slip * slip + most * most)
 
     def slope(self, speed):
-        slip, most = (self.synchronous_speed - speed) / self.synchronous_speed, self.breakdown_slip
+        slip, most = self._slip(speed), self.breakdown_slip
         square = slip * slip + most * most
         by_slip = 2.0 * self.breakdown_torque * most * (most - slip) * (most + slip) / (square * square)
         return -by_slip / self.synchronous_speed
@@ -239,7 +241,7 @@ class Kloss(Motor):
 
 @dataclass(frozen=True, eq=False)
 class Linear(Motor):
-    """Motor with a straight line of torque; see `Motor.linear`."""
+    """Motor with a straight line of torque, level where the idle speed is infinite; see `Motor.linear`, `constant`."""
 
     standstill_torque: float
     idle_speed: float
@@ -253,23 +255,6 @@ class Linear(Motor):
     @property
     def top(self):
         return MAX_SPEED_RATIO * self.idle_speed
-
-
-@dataclass(frozen=True, eq=False)
-class Constant(Motor):
-    """Motor of constant torque; see `Motor.constant`."""
-
-    own_torque: float
-
-    def torque(self, speed):
-        return 0.0 * speed + self.own_torque
-
-    def slope(self, speed):
-        return 0.0 * speed
-
-    @property
-    def top(self):
-        return math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,12 +278,12 @@ class TableMotor(Motor):
         return PchipInterpolator(self.speeds, self.torques)
 
     @property
-    def top(self):
-        return float(self.speeds[-1])
-
-    @property
     def limits(self):
         return float(self.speeds[0]), float(self.speeds[-1])
+
+    @property
+    def top(self):
+        return self.limits[1]
 
 
 POSITIVE = {"low": 0.0, "strict": True}
@@ -312,12 +297,9 @@ def _transmission_rules(transmission, inertia):
 
 def _row_problems(speed, torque):
     """Sentences about faulty rows of torque over speed."""
-    if np.ndim(speed) != 1 or np.ndim(torque) != 1:
-        return [
-            f"{name} must be a row of numbers"
-            for name, row in (("speed", speed), ("torque", torque))
-            if np.ndim(row) != 1
-        ]
+    wrong = [name for name, row in (("speed", speed), ("torque", torque)) if np.ndim(row) != 1]
+    if wrong:
+        return [f"{name} must be a row of numbers" for name in wrong]
     if speed.size != torque.size or speed.size < 2:
         return [f"speed and torque must be of one length, 2 at least, got {speed.size} and {torque.size}"]
     if np.any(np.diff(speed) <= 0):

@@ -459,15 +459,11 @@ class Running:
 
     @cached_property
     def _state(self):
-        driven, angle = self._driven, self._pieces.angle
-        if not driven.by_speed:
-            return driven.at(angle)
-        inertia = driven.inertia(angle)
-        return driven.at(angle, driven.direction * np.sqrt(2.0 * self._energy / inertia))
+        return self._driven.at(self._pieces.angle, self._speed)
 
     @cached_property
     def _speed(self):
-        return self._driven.direction * np.sqrt(2.0 * self._energy / (self._driven.flywheel + self._state.inertia))
+        return self.direction * np.sqrt(2.0 * self._energy / self._driven.inertia(self._pieces.angle))
 
     @cached_property
     def _energy_series(self):

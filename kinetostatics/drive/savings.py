@@ -28,6 +28,11 @@ DRIVE_FIGURES = {
 AIR_GAP_FIGURES = ("air_gap_energy_per_turn", "rotor_loss_per_turn")
 
 
+def _of_drives(name, text):
+    """Property of both machines' figure, with its docstring."""
+    return property(lambda self: self.of_drives(name), doc=text)
+
+
 @dataclass(frozen=True, eq=False)
 class DrivenComparison(Comparison):
     """Dynamic coefficients of two machines in periodic running and figures of their drives; made by `compare`.
@@ -49,40 +54,21 @@ class DrivenComparison(Comparison):
         runs = self.reference.running, self.balanced.running
         return tuple(np.nan if name in AIR_GAP_FIGURES and not run.has_air_gap else getattr(run, name) for run in runs)
 
-    @property
-    def energies_per_turn(self):
-        """Energy at the motor's shaft in a turn, J."""
-        return self.of_drives("energy_per_turn")
-
-    @property
-    def air_gap_energies_per_turn(self):
-        """Energy through the air gap of induction motors in a turn, J."""
-        return self.of_drives("air_gap_energy_per_turn")
-
-    @property
-    def rotor_losses_per_turn(self):
-        """Energy lost in the rotors of induction motors by slip in a turn, J."""
-        return self.of_drives("rotor_loss_per_turn")
-
-    @property
-    def peak_motor_torques(self):
-        """Largest torque at the motor's shaft, with its sign, N m."""
-        return self.of_drives("peak_motor_torque")
-
-    @property
-    def rms_motor_torques(self):
-        """Root of the mean over time of the square of the motor's torque, N m."""
-        return self.of_drives("rms_motor_torque")
-
-    @property
-    def fluctuations(self):
-        """Coefficients of fluctuation by the mean over time."""
-        return self.of_drives("fluctuation")
-
-    @property
-    def fluctuations_arithmetic(self):
-        """Coefficients of fluctuation by the mean of largest and smallest speed."""
-        return self.of_drives("fluctuation_arithmetic")
+    energies_per_turn = _of_drives("energy_per_turn", "Energy at the motor's shaft in a turn, J.")
+    air_gap_energies_per_turn = _of_drives(
+        "air_gap_energy_per_turn", "Energy through the air gap of induction motors in a turn, J."
+    )
+    rotor_losses_per_turn = _of_drives(
+        "rotor_loss_per_turn", "Energy lost in the rotors of induction motors by slip in a turn, J."
+    )
+    peak_motor_torques = _of_drives("peak_motor_torque", "Largest torque at the motor's shaft, with its sign, N m.")
+    rms_motor_torques = _of_drives(
+        "rms_motor_torque", "Root of the mean over time of the square of the motor's torque, N m."
+    )
+    fluctuations = _of_drives("fluctuation", "Coefficients of fluctuation by the mean over time.")
+    fluctuations_arithmetic = _of_drives(
+        "fluctuation_arithmetic", "Coefficients of fluctuation by the mean of largest and smallest speed."
+    )
 
     def flywheels(self, fluctuation=None):
         """Flywheels on the crank with which both have the same coefficient of fluctuation, kg m2.

@@ -8,7 +8,8 @@ there, an integration in time from a high speed gives the start.
 """
 
 import math
-from functools import partial
+from functools import partial, reduce
+from itertools import accumulate
 
 import numpy as np
 
@@ -50,17 +51,12 @@ def solve_near(driven, pieces, guess):
     return None
 
 
-def linearise(driven, pieces, energy, state=None):
+def linearise(driven, pieces, energy):
     """State, total inertia, speed, and a = d(net torque)/dU at the points of pieces."""
     angle = pieces.angle
-    if driven.by_speed:
-        inertia = driven.inertia(angle)
-        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
-        state = driven.at(angle, speed)
-    else:
-        state = state or driven.at(angle)
-        inertia = driven.flywheel + state.inertia
-        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+    inertia = driven.inertia(angle)
+    speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+    state = driven.at(angle, speed)
     by_speed = driven.motor.slope_at_crank(speed) - driven.torque_by_speed(angle, speed, state.torque)
     growth = by_speed / (inertia * speed)
     return state, inertia, speed, pieces.smoothed(growth) if driven.smooth_by_speed else growth
@@ -68,9 +64,9 @@ def linearise(driven, pieces, energy, state=None):
 
 def _newton(driven, pieces, energy):
     """Energy U of stable periodic running near a guess, by Newton's method; None without convergence."""
-    state, before = None, math.inf
+    before = math.inf
     for _ in range(MAX_NEWTON_STEPS):
-        state, _, speed, growth = linearise(driven, pieces, energy, state)
+        state, _, speed, growth = linearise(driven, pieces, energy)
         net = driven.motor_torque(speed) - state.torque
         found = _periodic_solution(pieces, growth, net - growth * energy)
         if found is None:
@@ -104,30 +100,46 @@ def _periodic_solution(pieces, growth, rest):
         return None
     chain = list(zip(ends.tolist(), added.tolist(), strict=True))
     if whole < 0.0:
-        value = 0.0
-        for end, part in chain:
-            value = value * end + part
-        left, value = [], value / -math.expm1(whole)
-        for end, part in chain:
-            left.append(value)
-            value = value * end + part
+        starts = _fixed_chain(chain, lambda value, piece: value * piece[0] + piece[1], whole)[:-1]
     else:  # backward, where errors decay
-        value = 0.0
-        for end, part in reversed(chain):
-            value = (value - part) / end
-        left, value = [], value / -math.expm1(-whole)
-        for end, part in reversed(chain):
-            value = (value - part) / end
-            left.insert(0, value)
-    return np.exp(raised) * (np.array(left)[:, None] + gathered)
+        starts = _fixed_chain(chain[::-1], lambda value, piece: (value - piece[1]) / piece[0], -whole)[:0:-1]
+    return np.exp(raised) * (np.array(starts)[:, None] + gathered)
+
+
+def _fixed_chain(chain, step, exponent):
+    """Values before, between and after linear steps whose product is exp(exponent), the last equal to the first."""
+    start = reduce(step, chain, 0.0) / -math.expm1(exponent)
+    return list(accumulate(chain, step, initial=start))
 
 
 INTEGRATION_TOLERANCE = 1e-6
 """Relative tolerance of the integration from a high speed."""
+STANDSTILL_ENERGY = 1e-9
+"""Energy of motion at which a machine stands still, relative to that at the start."""
 MIN_GROWTH, MAX_GROWTH = 1e-10, 1e6
 """Integrals of abs(a) over the period between which an integration in time reaches periodic running."""
 MAX_TURNS = 100
 """Periods of that integration."""
+
+
+def integrate_energy(driven, angle, way, energy, scale, tolerance):
+    """Energy of motion over a period from a crank angle, by `solve_ivp`; ends at once where it falls to a standstill.
+
+    `scale` is the energy, J, against which small energies are judged.
+    """
+    from scipy.integrate import solve_ivp
+
+    def net(place, energy):
+        place = float(place)
+        speed = math.sqrt(2.0 * max(float(energy[0]), 0.0) / driven.inertia_at(place))
+        return driven.balance(place, way * speed, way)[2]
+
+    def standstill(place, energy):
+        return energy[0] - STANDSTILL_ENERGY * scale
+
+    vars(standstill)["terminal"] = True
+    options = {"rtol": tolerance, "atol": 0.1 * STANDSTILL_ENERGY * scale, "dense_output": True, "events": standstill}
+    return solve_ivp(net, (angle, angle + way * driven.period), [energy], "LSODA", **options)
 
 
 def settle_by_integration(driven, pieces, start):
@@ -136,38 +148,18 @@ def settle_by_integration(driven, pieces, start):
     Motions of one degree of freedom do not cross, so a motion from above reaches the fastest periodic running, or
     there is none.
     """
-    from scipy.integrate import solve_ivp
-
     period, direction = driven.period, driven.direction
-
-    def net(angle, energy):
-        angle, inertia = float(angle), driven.inertia_at(float(angle))
-        return driven.balance(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
-
     most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
 
-    def standstill(angle, energy):
-        return energy[0] - 1e-9 * most
-
     def path_energy(path, pieces):
-        return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), 1e-9 * most)
+        return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), STANDSTILL_ENERGY * most)
 
-    vars(standstill)["terminal"] = True
-    energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
+    energy, beginning = most, 0.0 if direction > 0 else period
     for turn in range(MAX_TURNS):
-        found = solve_ivp(
-            net,
-            ends,
-            [energy],
-            "LSODA",
-            rtol=INTEGRATION_TOLERANCE,
-            atol=1e-10 * most,
-            dense_output=True,
-            events=standstill,
-        )
+        found = integrate_energy(driven, beginning, direction, energy, most, INTEGRATION_TOLERANCE)
         if found.status != 0:
             angle = float(found.t[-1]) % period
-            missing = abs(net(angle, np.zeros(1)))
+            missing = abs(driven.balance(angle, direction * 0.0)[2])
             raise DriveError(
                 f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import DriveError
-from .steady_running import steady
+from .steady_running import integrate_energy, steady
 
 RELATIVE_TOLERANCE = 3e-14
 """Relative tolerance of a step, the smallest that DOP853 accepts."""
@@ -213,7 +213,9 @@ def require_standstill(driven, angle, speed):
                 pass
         if abs(speed) >= steady_speed:
             raise DriveError(f"{name}: never comes to a standstill: its motor keeps it running; give a time as until")
-        left = _energy_after_a_period(driven, angle, speed, way)
+        start = 0.5 * driven.inertia_at(angle) * speed * speed
+        found = integrate_energy(driven, angle, way, start, start, 0.1 * SLOWING_TOLERANCE)
+        left = found.y[0, -1] / start if found.status == 0 else 0.0
         if left >= 1.0 - SLOWING_TOLERANCE:
             raise DriveError(
                 f"{name}: never comes to a standstill: after a period it has {left:.6g} times the kinetic energy of "
@@ -231,25 +233,3 @@ def require_standstill(driven, angle, speed):
             f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
             "or a load that resists"
         )
-
-
-def _energy_after_a_period(driven, angle, speed, way):
-    """Kinetic energy after a period over that at the start; 0 if the machine stops before."""
-    from scipy.integrate import solve_ivp
-
-    start = 0.5 * driven.inertia_at(angle) * speed * speed
-
-    def net(place, energy):
-        place = float(place)
-        size = math.sqrt(2.0 * max(float(energy[0]), 0.0) * start / driven.inertia_at(place))
-        return driven.balance(place, way * size, way)[2] / start
-
-    def still(place, energy):
-        return energy[0] - SLOWING_TOLERANCE
-
-    vars(still)["terminal"] = True
-    ends = angle, angle + way * driven.period
-    found = solve_ivp(
-        net, ends, [1.0], "LSODA", rtol=0.1 * SLOWING_TOLERANCE, atol=0.1 * SLOWING_TOLERANCE, events=still
-    )
-    return float(found.y[0, -1]) if found.status == 0 else 0.0
