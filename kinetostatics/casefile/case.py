@@ -18,10 +18,12 @@ from ..numbers import checks
 from ..results.comparison import Comparison
 from ..solution import parameters
 from ..solution.solution import Solution
-from . import build, reading, schema
+from . import build, reading
 from .build import PartsError
 from .designs import Design, doubtful_tolerances, read_designs, tolerance_problems
 from .reading import shipped_cases
+from .schema.tables import key_path, validate
+from .schema.variants import VARIANTS, CaseTable, PublishedTable
 from .variant import NamedItems, Variant, make_variant
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
@@ -63,7 +65,7 @@ class Case:
     path: Path
     reference: str
     variants: typing.Mapping[str, Variant]
-    published: schema.PublishedTable = field(repr=False)
+    published: PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
     designs: typing.Mapping[str, Design] = field(default_factory=dict)
 
@@ -191,7 +193,7 @@ def load_case(path) -> Case:
     286772 N
     """
     path, raw = reading.read_toml(reading.find_case(path))
-    head, problems = schema.validate(schema.CaseTable, raw, lambda keys: keys)
+    head, problems = validate(CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
     common = raw.get("common", {})
@@ -231,19 +233,19 @@ def _read_variant(name, own, common, folder, problems):
         return ("common", *keys) if inherited else ("variants", name, *keys)
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
-    if not isinstance(kind, str) or kind not in schema.VARIANTS:
-        path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
-        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
+    if not isinstance(kind, str) or kind not in VARIANTS:
+        path, meant = key_path(place(("mechanism",))), checks.nearest(kind, VARIANTS)
+        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(VARIANTS)))
         if meant is not None:  # faults of its other keys
-            problems += schema.validate(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
+            problems += validate(VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
         return None
-    table, found = schema.validate(schema.VARIANTS[kind], merged, place)
+    table, found = validate(VARIANTS[kind], merged, place)
     problems += found
     if table is None:
         return None
 
     def tell(error):
-        problems.extend(f"{schema.key_path(place(keys))}: {text}" for keys, text in error.problems)
+        problems.extend(f"{key_path(place(keys))}: {text}" for keys, text in error.problems)
 
     try:
         read = build.read_files(table, folder)

@@ -18,7 +18,8 @@ from ..numbers.formatting import normalise
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from . import build, schema
+from . import build
+from .schema.variants import MechanismVariant
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ class Variant:
     """
 
     scene: Scene
-    table: schema.MechanismVariant = field(repr=False)
+    table: MechanismVariant = field(repr=False)
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
     tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
