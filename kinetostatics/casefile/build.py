@@ -308,43 +308,36 @@ def require_table_range(table, solution):
 
 
 def _mechanism(table, tabulated):
+    """Mechanism of a variant: its links, and the lengths and places that its builder takes."""
     if isinstance(table, variants.ChainVariant):
         return _chain(table, tabulated)
-    if isinstance(table, variants.FourBarVariant | variants.ChainUnitVariant):
-        lengths = table.crank_length, table.coupler_length, table.rocker_length
-        links = {
-            name: build_link(getattr(table, name), length)
-            for name, length in zip(("crank", "coupler", "rocker"), lengths, strict=True)
-        }
-        if isinstance(table, variants.ChainUnitVariant):
-            return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, assembly=table.assembly, **links)
-        return four_bar(*lengths, rocker_pivot=table.rocker_pivot, assembly=table.assembly, **links)
+    shared: dict[str, Any] = {name: getattr(table, name) for name in ("assembly",) if hasattr(table, name)}
+    if isinstance(table, variants.GuideVariant):
+        shared["guide"] = build_guide(table)
     if isinstance(table, variants.CamVariant):
-        return _cam_crank_slider(table, tabulated.get(("cam",)))
-    crank = build_link(table.crank, table.crank_length)
-    if isinstance(table, variants.SlottedLeverVariant):
-        links = {"crank": crank, "lever": build_link(table.lever), "block": build_link(table.block)}
-        line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
-        return slotted_lever(table.crank_length, **line, assembly=table.assembly, **links)
-    shared = {"guide": build_guide(table), "slider": build_link(table.slider), "crank": crank}
-    if isinstance(table, variants.ScotchYokeVariant):
-        return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=build_link(table.block), **shared)
-    coupler = build_link(table.coupler, table.coupler_length)
-    return crank_slider(table.crank_length, table.coupler_length, assembly=table.assembly, coupler=coupler, **shared)
-
-
-def _cam_crank_slider(table, read):
-    guide = build_guide(table)
-    cam = build_cam(table.cam, read, guide.guide_angle)
-    length = table.coupler_length
-    if length is None:
-        if not isinstance(cam, cams.CosineLaw):
-            raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
-        length = cam.coupler_length
-    links = {name: build_link(getattr(table, name)) for name in ("crank", "block", "slider")}
-    coupler = build_link(table.coupler, length)
-    roller = table.roller and Roller(**dict(table.roller))
-    return cam_crank_slider(cam, length, guide=guide, coupler=coupler, assembly=table.assembly, roller=roller, **links)
+        cam = build_cam(table.cam, tabulated.get(("cam",)), shared["guide"].guide_angle)
+        if table.coupler_length is None:
+            if not isinstance(cam, cams.CosineLaw):
+                raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
+            table = table.model_copy(update={"coupler_length": cam.coupler_length})
+        shared["roller"] = table.roller and Roller(**dict(table.roller))
+    for name, part in table:
+        if isinstance(part, tables.LinkTable):
+            shared[name] = build_link(part, getattr(table, f"{name}_length", None))
+    match table:
+        case variants.CamVariant():
+            return cam_crank_slider(cam, table.coupler_length, **shared)
+        case variants.CrankSliderVariant():
+            return crank_slider(table.crank_length, table.coupler_length, **shared)
+        case variants.ScotchYokeVariant():
+            return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, **shared)
+        case variants.SlottedLeverVariant():
+            line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
+            return slotted_lever(table.crank_length, **line, **shared)
+    lengths = table.crank_length, table.coupler_length, table.rocker_length
+    if isinstance(table, variants.ChainUnitVariant):
+        return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, **shared)
+    return four_bar(*lengths, rocker_pivot=table.rocker_pivot, **shared)
 
 
 def _balance(mechanism, table):

@@ -5,13 +5,12 @@ import typing
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
 from ..design import linkage
 from ..design.counterweights import balancing_table
-from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
+from ..errors import AssemblyError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
@@ -68,12 +67,6 @@ class Case:
     published: PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
     designs: typing.Mapping[str, Design] = field(default_factory=dict)
-
-    def __getstate__(self):
-        return {**vars(self), "variants": dict(self.variants)}
-
-    def __setstate__(self, state):
-        vars(self).update(state, variants=_name_variants(state["path"], state["variants"]))
 
     @property
     def files(self):
@@ -136,9 +129,7 @@ class Case:
             mechanisms = [variant.mechanism for variant in self.variants.values()]
             known = [item for made in mechanisms for item in of_mechanism(made).values() if item.kind == "reaction"]
             allowed = tuple(dict.fromkeys([*rows, *(f"largest {item.label}" for item in known), *CAM_FORCE]))
-            problems = [checks.choice("published: row", name, allowed) for name in unknown]
-            if any(problems):
-                raise CaseError(self.path, [problem for problem in problems if problem])
+            reading.require(self.path, *(checks.choice("published: row", name, allowed) for name in unknown))
         return printed
 
     def balancing_table(self):
@@ -206,8 +197,7 @@ def load_case(path) -> Case:
     if head is not None:
         problems += tolerance_problems(head.tolerances, variants)
         designs = read_designs(head.design, head.reference, variants, problems)
-    if problems:
-        raise CaseError(path, dict.fromkeys(problems))
+    reading.require(path, *dict.fromkeys(problems))
     for doubt in doubtful_tolerances(head.tolerances, variants):
         warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
@@ -216,12 +206,8 @@ def load_case(path) -> Case:
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
-    kept, wanted = _name_variants(path, variants), NamedItems("design", path, designs)
+    kept, wanted = NamedItems("variant", path, variants), NamedItems("design", path, designs)
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
-
-
-def _name_variants(path, variants):
-    return MappingProxyType(NamedItems("variant", path, variants))
 
 
 def _read_variant(name, own, common, folder, problems):
