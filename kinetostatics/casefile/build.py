@@ -25,7 +25,7 @@ from ..numbers.checks import choice
 from ..numbers.files import read_columns
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
-from . import schema
+from .schema import drives, parts, tables, variants
 
 COMPONENTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Index by name of a component of a pair."""
@@ -42,14 +42,14 @@ class NumberPlace(NamedTuple):
 
 def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
     """Place by path of all numbers that can vary in a validated table; a label is appended to the first name."""
-    names = getattr(schema.MADE_OF.get(type(table)), "PATHS", {})
+    names = getattr(parts.MADE_OF.get(type(table)), "PATHS", {})
     found: dict[str, NumberPlace] = {}
     for name, field in type(table).model_fields.items() if _file_of(table) is None else ():
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
-        if isinstance(value, tuple) and value and isinstance(value[0], schema.Table):
-            inner = _places_in_parts(table, value)
+        if isinstance(value, tuple) and value and isinstance(value[0], tables.Table):
+            inner = _places_in_list(table, value)
         elif isinstance(value, dict):
             inner = {
                 path: place._replace(steps=(key, *place.steps))
@@ -59,25 +59,25 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
             }
         else:
             path, meant = f"{prefix}{names.get(name, name)}{label}", _unit_or_rule(field)
-            if isinstance(value, schema.Table):
+            if isinstance(value, tables.Table):
                 inner = places_by_path(value, f"{path}.")
             elif hasattr(meant, "numbers"):
                 inner = {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
             elif meant is not None and isinstance(value, tuple):
-                parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
-                inner = {f"{path}.{part}": NumberPlace((COMPONENTS[part],), meant) for part in parts}
+                names_of_pair = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
+                inner = {f"{path}.{part}": NumberPlace((COMPONENTS[part],), meant) for part in names_of_pair}
             else:
                 inner = {} if meant is None else {path: NumberPlace((), meant)}
         found |= {path: place._replace(steps=(name, *place.steps)) for path, place in inner.items()}
     return found
 
 
-def _places_in_parts(table, parts):
+def _places_in_list(table, items):
     """Places in groups or loads; from the second load of a kind on, its number is appended."""
     found: dict[str, NumberPlace] = {}
     counts: dict[str, int] = {}
-    for number, part in enumerate(parts):
-        named = getattr(schema.MADE_OF[type(part)], "PATH", "")
+    for number, part in enumerate(items):
+        named = getattr(parts.MADE_OF[type(part)], "PATH", "")
         counts[named] = counts.get(named, int(bool(named and getattr(table, named, None)))) + 1
         again = str(counts[named]) if counts[named] > 1 else ""
         label = getattr(part, "label", getattr(part, "name", ""))
@@ -116,7 +116,7 @@ def named_files(table, keys=()):
     if isinstance(table, tuple):
         for number, part in enumerate(table):
             yield from named_files(part, (*keys, number))
-    elif isinstance(table, schema.Table):
+    elif isinstance(table, tables.Table):
         if (name := _file_of(table)) is not None:
             yield keys, table, name
         for name in type(table).model_fields:
@@ -171,11 +171,11 @@ def build_guide(table):
 
 def build_cam(table, read, guide_angle):
     """Cam of its table; `read` is the sampled cam of a file."""
-    if isinstance(table, schema.SampledTable):
+    if isinstance(table, tables.SampledTable):
         return read
-    if isinstance(table, schema.CosineLawTable):
+    if isinstance(table, tables.CosineLawTable):
         return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
-    if isinstance(table, schema.HarmonicTable):
+    if isinstance(table, tables.HarmonicTable):
         return cams.Harmonic(table.cosine, table.sine, guide_angle)
     return cams.Circle(table.radius, table.centre)
 
@@ -210,9 +210,9 @@ def _chain(table, tabulated):
 
 def _group(table, cam, guide_angle):
     """Group of its table; centres at mid-length follow from the lengths of its bars."""
-    kind = schema.MADE_OF[type(table)]
+    kind = parts.MADE_OF[type(table)]
     values = {name: getattr(table, name) for name in type(table).model_fields if name in kind.RULES.rules}
-    links = {name: part for name, part in values.items() if isinstance(part, schema.LinkTable)}
+    links = {name: part for name, part in values.items() if isinstance(part, tables.LinkTable)}
     if "guide" in kind.RULES.rules:
         values["guide"] = build_guide(table)
     if "cam" in values:
@@ -230,7 +230,7 @@ def _group(table, cam, guide_angle):
 
 
 def _load(table, number, tabulated, mechanism, crank_speed):
-    kind = schema.MADE_OF[type(table)]
+    kind = parts.MADE_OF[type(table)]
     names = [name for name in type(table).model_fields if name != "kind"]
     values = {name: tabulated.get(("loads", number, name), getattr(table, name)) for name in names}
     if kind is Spring and isinstance(values["stiffness"], str):
@@ -248,28 +248,28 @@ def read_files(table, folder):
 
 def without_unreadable(table, wrong):
     """A validated variant without the unreadable files at these keys; None if it needs one of them."""
-    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(value_at(table, keys), schema.ValuesTable)}
-    values |= {keys: None for keys in wrong if isinstance(value_at(table, keys), schema.ProcessForceTable)}
-    values |= {keys[:1]: None for keys in wrong if isinstance(value_at(table, keys), schema.TorqueTable)}
+    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(value_at(table, keys), tables.ValuesTable)}
+    values |= {keys: None for keys in wrong if isinstance(value_at(table, keys), variants.ProcessForceTable)}
+    values |= {keys[:1]: None for keys in wrong if isinstance(value_at(table, keys), drives.TorqueTable)}
     return None if len(values) < len(set(wrong)) else with_values(table, values)
 
 
 def _read(path, part, table, keys):
     """Cam, motor or values of a load in the file of a part."""
-    if isinstance(part, schema.TorqueTable):
+    if isinstance(part, drives.TorqueTable):
         columns = read_columns(path, {"speed": "rad/s", "torque": "N m"})
         try:
             return part.of(*columns)
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
-    if isinstance(part, schema.SampledTable):
+    if isinstance(part, tables.SampledTable):
         angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
         try:
             return cams.Sampled(angle, radius, part.noise)
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN
-    if isinstance(part, schema.ValuesTable):
+    if isinstance(part, tables.ValuesTable):
         unit = _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
         return Table.from_csv(path, unit, part.area, period, part.slider, over=part.over)
     return Table.from_csv(path, period=period)
@@ -308,43 +308,36 @@ def require_table_range(table, solution):
 
 
 def _mechanism(table, tabulated):
-    if isinstance(table, schema.ChainVariant):
+    """Mechanism of a variant: its links, and the lengths and places that its builder takes."""
+    if isinstance(table, variants.ChainVariant):
         return _chain(table, tabulated)
-    if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
-        lengths = table.crank_length, table.coupler_length, table.rocker_length
-        links = {
-            name: build_link(getattr(table, name), length)
-            for name, length in zip(("crank", "coupler", "rocker"), lengths, strict=True)
-        }
-        if isinstance(table, schema.ChainUnitVariant):
-            return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, assembly=table.assembly, **links)
-        return four_bar(*lengths, rocker_pivot=table.rocker_pivot, assembly=table.assembly, **links)
-    if isinstance(table, schema.CamVariant):
-        return _cam_crank_slider(table, tabulated.get(("cam",)))
-    crank = build_link(table.crank, table.crank_length)
-    if isinstance(table, schema.SlottedLeverVariant):
-        links = {"crank": crank, "lever": build_link(table.lever), "block": build_link(table.block)}
-        line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
-        return slotted_lever(table.crank_length, **line, assembly=table.assembly, **links)
-    shared = {"guide": build_guide(table), "slider": build_link(table.slider), "crank": crank}
-    if isinstance(table, schema.ScotchYokeVariant):
-        return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=build_link(table.block), **shared)
-    coupler = build_link(table.coupler, table.coupler_length)
-    return crank_slider(table.crank_length, table.coupler_length, assembly=table.assembly, coupler=coupler, **shared)
-
-
-def _cam_crank_slider(table, read):
-    guide = build_guide(table)
-    cam = build_cam(table.cam, read, guide.guide_angle)
-    length = table.coupler_length
-    if length is None:
-        if not isinstance(cam, cams.CosineLaw):
-            raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
-        length = cam.coupler_length
-    links = {name: build_link(getattr(table, name)) for name in ("crank", "block", "slider")}
-    coupler = build_link(table.coupler, length)
-    roller = table.roller and Roller(**dict(table.roller))
-    return cam_crank_slider(cam, length, guide=guide, coupler=coupler, assembly=table.assembly, roller=roller, **links)
+    shared: dict[str, Any] = {name: getattr(table, name) for name in ("assembly",) if hasattr(table, name)}
+    if isinstance(table, variants.GuideVariant):
+        shared["guide"] = build_guide(table)
+    if isinstance(table, variants.CamVariant):
+        cam = build_cam(table.cam, tabulated.get(("cam",)), shared["guide"].guide_angle)
+        if table.coupler_length is None:
+            if not isinstance(cam, cams.CosineLaw):
+                raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
+            table = table.model_copy(update={"coupler_length": cam.coupler_length})
+        shared["roller"] = table.roller and Roller(**dict(table.roller))
+    for name, part in table:
+        if isinstance(part, tables.LinkTable):
+            shared[name] = build_link(part, getattr(table, f"{name}_length", None))
+    match table:
+        case variants.CamVariant():
+            return cam_crank_slider(cam, table.coupler_length, **shared)
+        case variants.CrankSliderVariant():
+            return crank_slider(table.crank_length, table.coupler_length, **shared)
+        case variants.ScotchYokeVariant():
+            return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, **shared)
+        case variants.SlottedLeverVariant():
+            line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
+            return slotted_lever(table.crank_length, **line, **shared)
+    lengths = table.crank_length, table.coupler_length, table.rocker_length
+    if isinstance(table, variants.ChainUnitVariant):
+        return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, **shared)
+    return four_bar(*lengths, rocker_pivot=table.rocker_pivot, **shared)
 
 
 def _balance(mechanism, table):

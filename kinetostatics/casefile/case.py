@@ -5,23 +5,24 @@ import typing
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
 from ..cycle.comparison import Comparison
 from ..design import linkage
 from ..design.counterweights import balancing_table
-from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
+from ..errors import AssemblyError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..solution import parameters
 from ..solution.solution import Solution
-from . import build, reading, schema
+from . import build, reading
 from .build import PartsError
 from .designs import Design, doubtful_tolerances, read_designs, tolerance_problems
 from .reading import shipped_cases
+from .schema.tables import key_path, validate
+from .schema.variants import VARIANTS, CaseTable, PublishedTable
 from .variant import NamedItems, Variant, make_variant
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
@@ -63,15 +64,9 @@ class Case:
     path: Path
     reference: str
     variants: typing.Mapping[str, Variant]
-    published: schema.PublishedTable = field(repr=False)
+    published: PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
     designs: typing.Mapping[str, Design] = field(default_factory=dict)
-
-    def __getstate__(self):
-        return {**vars(self), "variants": dict(self.variants)}
-
-    def __setstate__(self, state):
-        vars(self).update(state, variants=_name_variants(state["path"], state["variants"]))
 
     @property
     def files(self):
@@ -134,9 +129,7 @@ class Case:
             mechanisms = [variant.mechanism for variant in self.variants.values()]
             known = [item for made in mechanisms for item in of_mechanism(made).values() if item.kind == "reaction"]
             allowed = tuple(dict.fromkeys([*rows, *(f"largest {item.label}" for item in known), *CAM_FORCE]))
-            problems = [checks.choice("published: row", name, allowed) for name in unknown]
-            if any(problems):
-                raise CaseError(self.path, [problem for problem in problems if problem])
+            reading.require(self.path, *(checks.choice("published: row", name, allowed) for name in unknown))
         return printed
 
     def balancing_table(self):
@@ -191,7 +184,7 @@ def load_case(path) -> Case:
     286772 N
     """
     path, raw = reading.read_toml(reading.find_case(path))
-    head, problems = schema.validate(schema.CaseTable, raw, lambda keys: keys)
+    head, problems = validate(CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
     common = raw.get("common", {})
@@ -204,8 +197,7 @@ def load_case(path) -> Case:
     if head is not None:
         problems += tolerance_problems(head.tolerances, variants)
         designs = read_designs(head.design, head.reference, variants, problems)
-    if problems:
-        raise CaseError(path, dict.fromkeys(problems))
+    reading.require(path, *dict.fromkeys(problems))
     for doubt in doubtful_tolerances(head.tolerances, variants):
         warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
@@ -214,12 +206,8 @@ def load_case(path) -> Case:
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
-    kept, wanted = _name_variants(path, variants), NamedItems("design", path, designs)
+    kept, wanted = NamedItems("variant", path, variants), NamedItems("design", path, designs)
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
-
-
-def _name_variants(path, variants):
-    return MappingProxyType(NamedItems("variant", path, variants))
 
 
 def _read_variant(name, own, common, folder, problems):
@@ -231,19 +219,19 @@ def _read_variant(name, own, common, folder, problems):
         return ("common", *keys) if inherited else ("variants", name, *keys)
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
-    if not isinstance(kind, str) or kind not in schema.VARIANTS:
-        path, meant = schema.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
-        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
+    if not isinstance(kind, str) or kind not in VARIANTS:
+        path, meant = key_path(place(("mechanism",))), checks.nearest(kind, VARIANTS)
+        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(VARIANTS)))
         if meant is not None:  # faults of its other keys
-            problems += schema.validate(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
+            problems += validate(VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
         return None
-    table, found = schema.validate(schema.VARIANTS[kind], merged, place)
+    table, found = validate(VARIANTS[kind], merged, place)
     problems += found
     if table is None:
         return None
 
     def tell(error):
-        problems.extend(f"{schema.key_path(place(keys))}: {text}" for keys, text in error.problems)
+        problems.extend(f"{key_path(place(keys))}: {text}" for keys, text in error.problems)
 
     try:
         read = build.read_files(table, folder)

@@ -16,9 +16,10 @@ from ..numbers import checks
 from ..numbers.formatting import heading, si_columns
 from ..numbers.spreads import parse_spread, read_spreads
 from ..numbers.units import base_factor
-from . import schema
+from .schema.designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
+from .schema.tables import validate
 
-CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
+CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in TorqueFreeCamTable.model_fields)
 """Keys of a torque-free cam that are arguments of `torque_free_cam`."""
 
 
@@ -66,11 +67,11 @@ class Design:
         source, reference = self._variants[self.source], self._variants[self.reference]
         shared: dict[str, Any] = {"limits": table.limits, "reference": reference, "seed": table.seed}
         shared |= {"starts": table.starts if starts is None else starts, "progress": progress}
-        if isinstance(table, schema.FrontTable):
+        if isinstance(table, FrontTable):
             return pareto(source, table.vary, table.minimise, points=table.points, angles=table.angles, **shared)
         shared |= {"minimise": table.minimise, "maximise": table.maximise}
         shared |= {"robust": self.spread}
-        if isinstance(table, schema.OptimumTable):
+        if isinstance(table, OptimumTable):
             return optimise(source, table.vary, angles=table.angles, **shared)
         own = {name: getattr(table, name) for name in CAM_KEYS}
         return torque_free_cam(source, vary=table.vary, **own, **shared)
@@ -103,9 +104,7 @@ def read_designs(tables, reference, variants, problems):
     """Designs by name, of the tables in the file; appends their faults to `problems`."""
     found = {}
     for name, raw in tables.items():
-        read, wrong = schema.validate(
-            schema.OneDesign, {"design": raw}, lambda keys, name=name: ("design", name, *keys[1:])
-        )
+        read, wrong = validate(OneDesign, {"design": raw}, lambda keys, name=name: ("design", name, *keys[1:]))
         problems += wrong
         if read is None:
             continue
@@ -125,7 +124,7 @@ def read_designs(tables, reference, variants, problems):
 def _problems(table, source, reference):
     """Faults of a design of right variants, each after its key."""
     scene, vary, varied = source.scene, table.vary, source
-    if isinstance(table, schema.TorqueFreeCamTable):
+    if isinstance(table, TorqueFreeCamTable):
         try:
             start = starting_machine(scene, Options.checked(**{name: getattr(table, name) for name in CAM_KEYS}))
         except DesignError:  # the search reports it with the numbers
@@ -136,7 +135,7 @@ def _problems(table, source, reference):
         scene, varied, vary = start.scene, start.machine, start.vary | vary
     if vary:
         yield from _problem_of(".vary", parse_bounds, varied, vary)
-    if isinstance(table, schema.FrontTable):
+    if isinstance(table, FrontTable):
         texts = {f".minimise[{at}]": text.strip().removeprefix("-") for at, text in enumerate(table.minimise, 1)}
     else:
         texts = {f".{key}": text for key in ("minimise", "maximise") if (text := getattr(table, key)) is not None}

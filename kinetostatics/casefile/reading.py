@@ -87,6 +87,12 @@ def read_toml(path):
     return path, raw
 
 
+def require(path, *problems):
+    """Raise one `CaseError` that lists every problem found."""
+    if any(problems):
+        raise CaseError(path, [problem for problem in problems if problem])
+
+
 def inherit(common, own):
     """Table with the keys of `common`, overridden by its own at every level."""
     found = dict(common)

@@ -4,7 +4,9 @@
 """
 
 import typing
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,8 @@ from ..numbers.formatting import normalise
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from . import build, schema
+from . import build
+from .schema.variants import MechanismVariant
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,35 +52,16 @@ class Variant:
     """
 
     scene: Scene
-    table: schema.MechanismVariant = field(repr=False)
+    table: MechanismVariant = field(repr=False)
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
-    tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
+    tabulated: Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
 
-    @property
-    def mechanism(self):
-        """Crank and groups."""
-        return self.scene.mechanism
-
-    @property
-    def friction(self):
-        """Friction by joint."""
-        return self.scene.friction
-
-    @property
-    def crank_speed(self):
-        """rad/s."""
-        return self.scene.crank_speed
-
-    @property
-    def crank_acceleration(self):
-        """rad/s2."""
-        return self.scene.crank_acceleration
-
-    @property
-    def loads(self):
-        """Loads, a tuple."""
-        return self.scene.loads
+    mechanism = property(attrgetter("scene.mechanism"), doc="Crank and groups.")
+    loads = property(attrgetter("scene.loads"), doc="Loads, a tuple.")
+    friction = property(attrgetter("scene.friction"), doc="Friction by joint.")
+    crank_speed = property(attrgetter("scene.crank_speed"), doc="rad/s.")
+    crank_acceleration = property(attrgetter("scene.crank_acceleration"), doc="rad/s2.")
 
     @cached_property
     def motor(self) -> Motor | None:
@@ -177,8 +161,8 @@ def make_variant(table, folder, tabulated):
     return Variant(scene, table, balanced, folder, tabulated)
 
 
-class NamedItems(dict):
-    """Items of a case by name, in any Unicode form.
+class NamedItems(Mapping):
+    """Items of a case by name, in any Unicode form; it does not change.
 
     Attributes
     ----------
@@ -189,19 +173,22 @@ class NamedItems(dict):
     """
 
     def __init__(self, kind, path, items):
-        super().__init__(items)
-        self.kind, self.path = kind, path
+        self.kind, self.path, self._items = kind, path, dict(items)
 
     def __getitem__(self, name):
-        return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
+        problem = checks.choice(self.kind, normalise(name), tuple(self))
+        if problem:
+            raise NoSuchNameError(self.path, [problem])
+        return self._items[normalise(name)]
 
-    def __contains__(self, name):
-        return isinstance(name, str) and super().__contains__(normalise(name))
+    def __iter__(self):
+        return iter(self._items)
 
-    def __missing__(self, name):
-        if isinstance(name, str) and normalise(name) != name:
-            return self[normalise(name)]
-        raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
+    def __len__(self):
+        return len(self._items)
+
+    def __repr__(self):
+        return repr(self._items)
 
 
 class NoSuchNameError(CaseError, KeyError):

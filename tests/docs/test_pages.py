@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile import schema
-from kinetostatics.casefile.schema import MechanismVariant
+from kinetostatics.casefile.schema import designs, parts, variants
 from support.every import every
 from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, script, shown_code, text_of
 
@@ -139,14 +138,14 @@ MODELS = {title: model for title, model, _ in KEYS.sections.sections()}
 
 
 def test_every_table_of_a_case_file_has_a_section():
-    whole = KEYS.sections.reached([schema.CaseTable, *schema.VARIANTS.values(), *schema.designs.KINDS.values()])
-    told = set(MODELS.values()) - {MechanismVariant}
+    whole = KEYS.sections.reached([variants.CaseTable, *variants.VARIANTS.values(), *designs.KINDS.values()])
+    told = set(MODELS.values()) - {variants.MechanismVariant}
     assert {model.__name__ for model in whole} == {model.__name__ for model in told}
 
 
 @every("part", PARTS, ids=lambda part: part.title)
 def test_every_key_of_a_table_is_told_of(part):
-    elsewhere = set(MechanismVariant.model_fields) if part.title.startswith("Mechanism") else set()
+    elsewhere = set(variants.MechanismVariant.model_fields) if part.title.startswith("Mechanism") else set()
     assert {key.name for key in part.keys} | elsewhere >= set(MODELS[part.title].model_fields)
     for key in part.keys:
         assert key.meaning.endswith("."), key.name
@@ -170,6 +169,6 @@ def test_reference_links_lead_to_sections():
 
 def test_documented_meanings_belong_to_known_keys():
     keys = {
-        name for model in schema.MADE_OF for key in model.model_fields for name in (key, f"{KEYS.word_of(model)}.{key}")
+        name for model in parts.MADE_OF for key in model.model_fields for name in (key, f"{KEYS.word_of(model)}.{key}")
     }
-    assert set(KEYS.parts.MEANINGS) <= keys
+    assert set(KEYS.MEANINGS) <= keys

@@ -8,7 +8,8 @@ import pytest
 from scipy import stats
 
 import kinetostatics as ks
-from kinetostatics.casefile import build, schema
+from kinetostatics.casefile import build
+from kinetostatics.casefile.schema import variants
 from kinetostatics.numbers.formatting import si_columns
 from kinetostatics.sweeps import designs
 from support.case_files import shipped
@@ -155,8 +156,8 @@ def test_what_the_file_fixes_otherwise_is_no_path():
     table = shipped("mower_drive").variant("unbalanced").table
     assert not {"guide_angle", "guide_offset"} & build.places_by_path(table).keys()
     for force, there in (
-        (schema.ProcessForceTable(force="2 N"), True),
-        (schema.ProcessForceTable(table="f.csv"), False),
+        (variants.ProcessForceTable(force="2 N"), True),
+        (variants.ProcessForceTable(table="f.csv"), False),
     ):
         assert (
             "process_force.force" in build.places_by_path(table.model_copy(update={"process_force": force}))

@@ -1,6 +1,6 @@
 """The case-file reference, made of the schema: every key with what may stand there, default, meaning and example.
 
-Meanings are the texts below the keys in ``kinetostatics/casefile/schema``, and its `MEANINGS` for groups and loads;
+Meanings are the texts below the keys in ``kinetostatics/casefile/schema``, and `MEANINGS` for groups and loads;
 examples come from the shipped cases and their starters, where they have the key.
 """
 
@@ -12,11 +12,11 @@ from itertools import pairwise
 from textwrap import dedent
 from typing import NamedTuple
 
-from kinetostatics.casefile import schema
 from kinetostatics.casefile.schema import parts
 
 from . import sections
 from .examples import example
+from .meanings import MEANINGS
 from .sections import anchor, own_text, word_of
 from .words import default, takes
 
@@ -91,11 +91,11 @@ def keys(model, left_out=()):
 
 def meaning(model, name):
     """The text of a key."""
-    if model in schema.MADE_OF:
+    if model in parts.MADE_OF:
         if name == "kind":
             return "Which kind it is."
-        known = parts.MEANINGS.get(f"{word_of(model)}.{name}") or parts.MEANINGS.get(name)
-        return known or parameter(schema.MADE_OF[model], name)
+        known = MEANINGS.get(f"{word_of(model)}.{name}") or MEANINGS.get(name)
+        return known or parameter(parts.MADE_OF[model], name)
     owners = [base for base in model.__mro__ if name in vars(base).get("__annotations__", ())]
     told = model.model_fields[name].description or (texts_below(owners[0]).get(name, "") if owners else "")
     return told[:1].upper() + told[1:].removesuffix(".") + "." if told else ""

@@ -6,7 +6,6 @@ import types
 import typing
 from functools import cache
 
-from kinetostatics.casefile import schema
 from kinetostatics.casefile.schema import designs, drives, parts, tables, variants
 
 
@@ -71,26 +70,26 @@ def tables_within(annotation):
 
 def of_kinds(kinds):
     """Tables of groups or loads by their word."""
-    made = {kind: model for model, kind in schema.MADE_OF.items()}
+    made = {kind: model for model, kind in parts.MADE_OF.items()}
     return {word: made[kind] for word, kind in kinds.items()}
 
 
 def chosen(family):
     """Tables of several kinds, by their word."""
-    tagged = ((tag.partition(":"), model) for tag, model in schema.TAGS.items())
+    tagged = ((tag.partition(":"), model) for tag, model in tables.TAGS.items())
     return {word: model for (name, _, word), model in tagged if name == family}
 
 
 def own_text(model):
     """What a table says of itself."""
-    if model in schema.MADE_OF:
-        return inspect.getdoc(schema.MADE_OF[model]).partition("\n\n")[0]
+    if model in parts.MADE_OF:
+        return inspect.getdoc(parts.MADE_OF[model]).partition("\n\n")[0]
     return vars(model).get("__doc__") or ""
 
 
 def word_of(model):
     """The kind of a group or load, as its tables say it."""
-    return typing.get_args(model.model_fields["kind"].annotation)[0] if model in schema.MADE_OF else ""
+    return typing.get_args(model.model_fields["kind"].annotation)[0] if model in parts.MADE_OF else ""
 
 
 def anchor(title):

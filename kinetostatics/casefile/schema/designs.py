@@ -8,9 +8,8 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...design.robust import Spread
-from ...errors import ParameterError
 from ...numbers.units import quoted
-from .tables import Table, one_of
+from .tables import Table, must_describe, one_of
 from .texts import Angle, Coordinate, Mass, pair_of
 
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
@@ -48,13 +47,7 @@ class RobustTable(Table):
         """The spread that it describes."""
         return Spread(**dict(self))
 
-    @model_validator(mode="after")
-    def _a_spread(self):
-        try:
-            self.spread  # noqa: B018
-        except ParameterError as error:
-            raise ValueError(f"is no spread: {str(error).partition(': ')[2]}") from None
-        return self
+    _check = must_describe("spread")
 
 
 class DesignTable(Table):

@@ -8,8 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...drive.motor import Motor
-from ...errors import ParameterError
-from .tables import Table, one_of
+from .tables import Table, must_describe, one_of
 from .texts import reader, series_of
 
 Factor = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -39,13 +38,7 @@ class MotorTable(Table):
         arguments = dict(self)
         return getattr(Motor, arguments.pop("kind"))(**arguments)
 
-    @model_validator(mode="after")
-    def _a_motor(self):
-        try:
-            self.motor  # noqa: B018
-        except ParameterError as error:
-            raise ValueError(f"is no motor: {str(error).partition(': ')[2]}") from None
-        return self
+    _check = must_describe("motor")
 
 
 class KlossTable(MotorTable):

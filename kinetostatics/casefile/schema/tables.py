@@ -8,9 +8,10 @@ import typing
 from typing import Annotated, Any, Literal
 
 import pydantic
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from ...design.balancing import NAMED_RATIOS, ratio_problem
+from ...errors import ParameterError
 from ...machine.cams.cams import Harmonic
 from ...machine.cams.roller import MAX_POISSONS_RATIO
 from ...numbers import checks
@@ -39,6 +40,19 @@ class Table(BaseModel):
     """A table of a case file: unknown keys are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+
+def must_describe(name) -> Any:
+    """Validator of tables: the object that they describe can be made; it is their attribute of this name."""
+
+    def check(table):
+        try:
+            getattr(table, name)
+        except ParameterError as error:
+            raise ValueError(f"is no {name}: {str(error).partition(': ')[2]}") from None
+        return table
+
+    return model_validator(mode="after")(check)
 
 
 TAGS: dict[str, Any] = {}
