@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
-from ..numbers.planar import add_vectors, minus, number_or_zero, subtract_vectors, vector_or_zero
+from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
 from .group import EMPTY, FRAME, Bar, Group, Output, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
-from .links import Joint, Link, LinkMotion, Turning, arm, first_at, present, second_at
+from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
 ORIGIN = Joint((0.0, 0.0), None, None)
 
@@ -137,12 +137,6 @@ class Crank(checks.Checked):
         return Resolved({"O": support}, {"balancing_torque": torque}, {})
 
 
-def place(link: LinkMotion, along, across):
-    """Point of a link at distances along its direction and across it, to the left, as joint (kernel); None is zero."""
-    lever = arm(link.direction, along, across)
-    return Joint(add_vectors(link.joint.position, lever), first_at(link, lever), second_at(link, lever))
-
-
 @dataclass(frozen=True, eq=False)
 class Pin(checks.Checked, Group):
     """Joint `name` fixed to the link `on`, which supplies the force of the groups that hang on it.
@@ -208,7 +202,7 @@ class Pin(checks.Checked, Group):
 
     def place(self, placement):
         fixed = self.on == FRAME
-        at = Joint(self.at, None, None) if fixed else place(placement.links[self.on], *map(present, self.at))
+        at = Joint(self.at, None, None) if fixed else joint_at(placement.links[self.on], *map(present, self.at))
         placement.joints[self.name] = at
         placement.courses.update({name: Course(throw=throw) for name, throw in self.throws.items()})
 

@@ -339,12 +339,17 @@ class Group:
     def _key(self):
         return self.called(next(iter(self.LINKS)))
 
-    def resolved(self, reactions, scalars, demands) -> Resolved:
-        """Result of `resolve`, from vectors and scalars in the order of `outputs`."""
+    def resolved(self, reactions, scalars=(), demands=None) -> Resolved:
+        """Result of `resolve`, from vectors and scalars in the order of `outputs`.
+
+        By default the first vector is all that the group demands, at the joint it hangs on.
+        """
         names: dict[bool, list[str]] = {True: [], False: []}
         for name, output in self.outputs.items():
             names[output.vector].append(name)
         vectors = dict(zip(names[True], reactions, strict=True))
+        if demands is None:
+            demands = {self.hangs_on[0]: Wrench(reactions[0], None)}
         return Resolved(vectors, dict(zip(names[False], scalars, strict=True)), demands)
 
     # Change points

@@ -32,7 +32,7 @@ from ..numbers.planar import (
 )
 
 TERMS = {
-    "tip.reach": ("h", "from the pivot to the pin"),
+    "joint_at.reach": ("h", "from the reference joint to the point"),
     "load.scale": ("W", "mass times the square of the crank speed"),
     "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
 }
@@ -157,15 +157,10 @@ def link_between(start, end, length):
     return LinkMotion(start, direction, cross(direction, first), cross(direction, second))
 
 
-def tip(pivot, length, direction, ratio, slope):
-    """Joint at the end of a link that turns about a fixed pivot."""
-    reach = scale_vector(length, direction)
-    aside = left(reach)
-    return Joint(
-        add_vectors(pivot, reach),
-        scale_vector(ratio, aside),
-        subtract_vectors(scale_vector(slope, aside), scale_vector(product(ratio, ratio), reach)),
-    )
+def joint_at(link, along, across=None):
+    """Point of a link at distances along its direction and across it, to the left, as joint (kernel); None is zero."""
+    reach = arm(link.direction, along, across)
+    return Joint(add_vectors(link.joint.position, reach), first_at(link, reach), second_at(link, reach))
 
 
 def first_at(link, arm):

@@ -58,12 +58,13 @@ def test_four_bar_equals_its_joint_motion(seed):
     placement = placed(a, None if seed % 2 else (a, aside))
     name = "A" if seed % 2 else "C"
     for side, is_close in product(SIDES, (False, True)):
-        found = rocker.turned_by_crank(placement, name, b, h, pivot, near_dead_centre.place, side, is_close)
-        wanted = rocker.place(placement.joints[name], b, h, pivot, side)
+        joint = placement.joints[name]
+        links = near_dead_centre.place(placement, name, b, h, pivot, side, is_close)
+        found, wanted = rocker.joined(joint, h, pivot, *links), rocker.place(joint, b, h, pivot, side)
         for part in ("coupler", "rocker"):
             same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)
         same(pin(found.pin), pin(wanted.pin), wanted.closure)
-        same(found[3:], wanted[3:], wanted.closure)
+        same((found.divisor[0], found.closure), (wanted.divisor[0], wanted.closure), wanted.closure)
 
 
 @every("seed", range(20))
@@ -72,10 +73,10 @@ def test_slotted_lever_equals_its_joint_motion(seed):
     placement = placed(a, None if seed % 2 else (a, offset))
     name, offset = "A" if seed % 2 else "C", None if seed % 4 == 0 else offset
     for side in SIDES:
-        found = lever.passed(placement, name, pivot, offset, near_dead_centre.slotted, side)
-        wanted = lever.place(placement.joints[name], pivot, offset, side)
-        same(link(found.lever), link(wanted.lever), wanted.closure)
-        same(found[2:], wanted[2:], wanted.closure)
+        direction, *found = near_dead_centre.slotted(placement, name, pivot, offset, side)
+        way, *wanted = lever.place(placement.joints[name], pivot, offset, side)
+        (found[3], _), (wanted[3], _) = found[3], wanted[3]
+        same((*direction, *found), (*way, *wanted), wanted[-1])
 
 
 @every("seed", range(20))
@@ -85,10 +86,12 @@ def test_slider_equals_its_joint_motion(seed):
     name = "A" if seed % 2 else "C"
     guide = Line(None if seed % 3 else (math.cos(angle), math.sin(angle)), None if seed % 4 == 0 else offset)
     for side in SIDES:
-        found = slider.passed(placement, name, length, guide, near_dead_centre.slid, side)
-        wanted = slider.place(placement.joints[name], length, guide, side)
+        joint, reached = placement.joints[name], near_dead_centre.slid(placement, name, length, guide, side)
+        found = slider.place(joint, length, guide, side, None, reached)
+        wanted = slider.place(joint, length, guide, side)
         same(link(found.coupler), link(wanted.coupler), wanted.closure)
-        same((*found.travel, *found[2:6]), (*wanted.travel, *wanted[2:6]), wanted.closure)
+        one, other = ((*m.travel, m.sine, m.cosine, m.divisor[0], m.closure) for m in (found, wanted))
+        same(one, other, wanted.closure)
 
 
 def test_pivot_at_the_centre_has_finite_motion():

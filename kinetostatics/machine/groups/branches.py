@@ -42,10 +42,11 @@ class Branch:
     """Kinds of change points, in messages."""
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
-    clearance: ClassVar[Any]
-    """Offset, and length or pivot, for `has_small_clearance`."""
-    passage_on: ClassVar[Any]
-    """``passage_on(throw)``: kind of the change points on a pin of a crank and quadrant of `start`; "" without any."""
+    sizes: ClassVar[Any]
+    """Lengths that decide on change points, besides the radius of the pin and the length of `start`."""
+    change_kinds: ClassVar[Any]
+    """``change_kinds(radius, distance, *sizes)``: masks of designs by kind of change points; the first one counts."""
+    offset = 0.0
 
     @property
     def start(self: Any):
@@ -53,17 +54,21 @@ class Branch:
         return self.pivot
 
     @property
+    def clearance(self: Any):
+        """Offset, and length or pivot, for `has_small_clearance`."""
+        return self.offset, self.pivot
+
+    @property
     def side(self: Any):
         """+1 or -1: its side where no change point is passed."""
         return SIDES.get(self.assembly, self.assembly)
 
-    @property
-    def branch(self):
-        """Kernel and arguments of its branch; empty for the plain kernel."""
+    def by_branch(self: Any, placement, *given):
+        """Result of the kernel of its branch for a pin of the crank; None for the plain kernel."""
         passing, close = self.kernels
         if self.passage:
-            return passing, self.passage, self.side
-        return (close, self.side) if self.is_close else ()
+            return passing(placement, self.on, *given, self.passage, self.side)
+        return close(placement, self.on, *given, self.side) if self.is_close else None
 
     def closure(self: Any, placement):
         return self.placed(placement).closure
@@ -76,33 +81,33 @@ class Branch:
             return self
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
-    def known(self: Any, throw, *lengths):
-        """Radius of the pin, the direction `start` from the pin's at crank angle 0, and lengths, in extended precision.
+    def passage_on(self: Any, throw):
+        """Kind of the change points on a pin of a crank, and quadrant of `start` from it; "" without any.
+
+        Lengths are compared in extended precision.
 
         Raises
         ------
         ParameterError
-            It hangs on no crank pin, or a length is not known.
+            It hangs on no crank pin, a length is not known, or designs are of several kinds.
         """
-        problem, start = None, self.start
+        problem, given = None, (*self.start, *self.sizes)
         if throw is None:
             where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
             problem = (
                 f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
             )
-        elif not all(map(checks.has_known_values, (*throw.at, *start, *lengths))):
+        elif not all(map(checks.has_known_values, (*throw.at, *given))):
             problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made"
         checks.require(self.RULES.owner, f"{problem}; give +1 or -1" if problem else None)
-        parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
-        *at, x, y = np.broadcast_arrays(*parts)[:4]
-        radius, direction = throw._replace(at=at).polar
+        parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *given))
+        along, across, x, y, *sizes = np.broadcast_arrays(*parts)
+        radius, direction = throw._replace(at=(along, across)).polar
         x, y = rotate_back((x, y), direction)
         if direction is not None:
             y = np.where(abs(y) <= equality(x), 0.0, y)
-        return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
-
-    def one_passage(self: Any, kind, x, y):
-        """Kind and quadrant of a direction in one text, if all designs have the same."""
+        masks = self.change_kinds(radius, np.sqrt(x * x + y * y), *sizes)
+        kind = np.select(list(masks.values()), list(masks), "")
         facing = np.where(x >= 0, 0, np.where(y >= 0, 1, -1))
         problems = []
         for found, what, called in ((kind, "change points", self.KINDS), (facing, "directions", QUADRANTS)):

@@ -23,7 +23,6 @@ from typing import Any, NamedTuple
 
 from ...numbers.arithmetic import clamped_sqrt, compensated_sum, cos, guarded_divisor, offset_from_zero, sin, sqrt
 from ...numbers.planar import (
-    add_vectors,
     cross,
     dot,
     length_with_error,
@@ -31,7 +30,6 @@ from ...numbers.planar import (
     number_or_zero,
     rotate,
     rotate_back,
-    scale_vector,
     subtract_vectors,
 )
 from ..links import present
@@ -131,7 +129,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
     coupler, rocker = ((rotate(link[0], direction), *link[1:]) for link in (coupler, rocker))
-    return coupler, rocker, None, None, (rest[1], offset_from_zero(rest[2], MIN_DISTANCE)), rest[0]
+    return coupler, rocker, (rest[1], offset_from_zero(rest[2], MIN_DISTANCE)), rest[0]
 
 
 def slid(placement, on, coupler_length, guide, passage, side):
@@ -197,13 +195,13 @@ def slotted(placement, on, pivot, offset, passage, side):
     return rotate(rotate(direction, half.frame), ahead), minus(0.5, lag), slope, factor * half.sine, divided, closure
 
 
-def divide_by_factors(parts, divisor):
-    """Components of a force over a factor and the distance from a change point (kernel).
+def divide(parts, divisor):
+    """Components of a force over a factor and the distance from a change point, if there is one (kernel).
 
     Each is divided by itself: at the change point one that vanishes stays 0, the others are infinite.
     """
     factor, distance = divisor
-    return tuple(part / factor / distance for part in parts)
+    return tuple(part / factor if distance is None else part / factor / distance for part in parts)
 
 
 def _mirrored(half, kind, a, d, m, side):
@@ -276,20 +274,3 @@ def _meeting(half, a, b, h, d, constant, side):
     coupler = rotate((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
     rocker = rotate((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
     return coupler, rocker, closure, factor, passed
-
-
-def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
-    """Force of the coupler on the rocker, by moments of both (kernel); infinite at a change point.
-
-    Their sum is divided as a whole, so that what does not grow there is not lost in what does.
-    """
-    q, p = motion.coupler.direction, motion.rocker.direction
-    along = rocker_load.moment, coupler_load.moment
-    parts = (
-        scale_vector(None if moment is None else moment / length, direction)
-        for moment, length, direction in zip(along, (rocker_length, coupler_length), (q, p), strict=True)
-    )
-    whole = add_vectors(*parts)
-    if whole is None:
-        return (0.0, 0.0)
-    return divide_by_factors(whole, motion.divisor)

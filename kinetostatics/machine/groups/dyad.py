@@ -10,11 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.planar import add_vectors, cross, dot, subtract_vectors
+from ...numbers.planar import add_vectors, subtract_vectors
 from ..group import Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
-from ..links import Joint, Link, Turning, Wrench, link_between
+from ..links import Joint, Link, Turning, Wrench
 from . import rocker
-from .rocker import RockerMotion
 
 
 class TwoJoints:
@@ -136,13 +135,8 @@ class Dyad(checks.Checked, Group):
 
     def follow(self, placement, joints):
         """Place both links at known joints."""
-        pin = joints[self.pin]
-        first, second = (
-            link_between(placement.joints[name], pin, length)
-            for name, length in zip(self.on, (self.length1, self.length2), strict=True)
-        )
-        sine, cosine = cross(first.direction, second.direction), dot(first.direction, second.direction)
-        self.enter(placement, RockerMotion(first, second, pin, sine, cosine, sine, None), {self.pin: pin})
+        pin, (first, second) = joints[self.pin], (placement.joints[name] for name in self.on)
+        self.enter(placement, rocker.between(first, second, pin, self.length1, self.length2), {self.pin: pin})
 
     def closure(self, placement):
         """Squared sine of the angle between the links."""
@@ -156,7 +150,6 @@ class Dyad(checks.Checked, Group):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = rocker.resolve(self.placed(placement), self.length1, self.length2, *self.of_links(loads))
-        inner = found.inner, found.pivot
-        demands = {name: Wrench(force, None) for name, force in zip(self.on, inner, strict=True)}
-        return self.resolved((*inner, found.pin), (), demands)
+        first, pin, second = rocker.resolve(self.placed(placement), self.length1, self.length2, *self.of_links(loads))
+        demands = {name: Wrench(force, None) for name, force in zip(self.on, (first, second), strict=True)}
+        return self.resolved((first, second, pin), (), demands)

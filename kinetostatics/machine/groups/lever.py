@@ -1,4 +1,4 @@
-"""Lever group (RPR): block on a pin, sliding in a straight slot of a lever that turns about a fixed pivot.
+"""Lever group (RPR): block on a pin, sliding in a slotted lever about a fixed pivot; and its inversion, the cylinder.
 
 With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
 s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
@@ -6,6 +6,9 @@ and s is a product, so no digit is lost where it vanishes, which divides rates a
 
 Where the crank is as long as the pivot's distance, A meets the pivot: on a chosen side the lever turns about there at
 once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
+
+The swinging cylinder is the lever turned inside out, without offset: its rod points at the pivot, about which the
+couple of the pair is taken.
 """
 
 from dataclasses import dataclass
@@ -29,10 +32,10 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench, present
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, present
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
-from .change_points import MEETING, NEAR, OPPOSITE
+from .change_points import MEETING, NEAR, OPPOSITE, divide
 
 MIN_REACH_SHARE = 2.0**-53
 """Least reach along the slot over the distance from pivot to pin, by which rates and forces are divided."""
@@ -52,32 +55,24 @@ TERMS = {
 
 
 class LeverMotion(NamedTuple):
-    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by, never zero.
+    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by.
 
-    `closure` is the reach squared over the squares of distance and speed of the pin: small where the lever spins fast.
-    On a branch through a change point `divisor` is two factors, of which the second is smallest there, and `closure`
-    leaves that out.
+    `change_points.divide` takes the divisor. `closure` is the reach squared over the squares of distance and speed of
+    the pin, without change points: small where the lever spins fast.
     """
 
     lever: LinkMotion
     block: LinkMotion
     reach: Any
-    divisor: Any
+    divisor: tuple[Any, Any]
     closure: Any
 
 
-class LeverForces(NamedTuple):
-    """`inner`: on the block at its joint; `slot`: lever on block, along the lever's left normal; `pivot`: ground on
-    lever.
-    """
-
-    inner: Any
-    slot: Any
-    pivot: Any
-
-
 def place(joint, pivot, offset, assembly):
-    """Lever and block for a given joint (kernel); an offset of None is zero."""
+    """Direction of the lever for a given joint, its ratio and slope, then the last fields of `LeverMotion` (kernel).
+
+    An offset of None is zero.
+    """
     d = (offset_from_zero(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
@@ -96,39 +91,83 @@ def place(joint, pivot, offset, assembly):
     sliding = plus(along, product(offset, ratio))
     swing = minus(2.0 * sliding, product(offset, ratio)) * ratio
     ratio_slope = (cross(direction, second) - swing) / divided
-    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, ratio_slope)
-    closure = reach_square / (square + dot(first, first))
-    return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
-
-
-def passed(placement, on, pivot, offset, slotted, *branch):
-    """Lever and block for the pin `on` of a crank, by the kernel `slotted` of a branch (kernel)."""
-    direction, ratio, slope, *rest = slotted(placement, on, pivot, offset, *branch)
-    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
-    return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
+    return direction, ratio, ratio_slope, reach, (divided, None), reach_square / (square + dot(first, first))
 
 
 def resolve(motion, lever_load, block_load):
-    """Forces on lever and block (kernel).
+    """Forces on the block at its joint and on the lever at its pivot, and of the slot on the block (kernel).
 
     Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of both links
     together about the pivot give the force across the slot.
     """
     moment, across = number_or_zero(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
-    if isinstance(motion.divisor, tuple):
-        slot, *on_block = change_points.divide_by_factors((moment, *scale_vector(moment, across)), motion.divisor)
-    else:
-        slot = moment / motion.divisor
+    if motion.divisor[1] is None:
+        (slot,) = divide((moment,), motion.divisor)
         on_block = scale_vector(slot, across)
-    return LeverForces(
-        inner=subtract_vectors(subtract_vectors(None, on_block), block_load.force),
-        slot=slot,
-        pivot=subtract_vectors(on_block, lever_load.force),
-    )
+    else:
+        slot, *on_block = divide((moment, *scale_vector(moment, across)), motion.divisor)
+    inner = subtract_vectors(subtract_vectors(None, on_block), block_load.force)
+    return (inner, subtract_vectors(on_block, lever_load.force)), slot
+
+
+class RPRGroup(checks.Checked, Branch, Group):
+    """Group of a `LEVER` about the fixed joint `pivot_name` and a `BLOCK` on joint `on` that slides in it."""
+
+    pivot: Any
+    on: str
+    pivot_name: str
+
+    LEVER: ClassVar[str]
+    BLOCK: ClassVar[str]
+    PAIR: ClassVar[str]
+    """Name of the sliding pair."""
+    is_rod = False
+    """Whether the block is a rod that points at the pivot; the couple of the pair is then taken about that."""
+    kernels = change_points.slotted, near_dead_centre.slotted
+
+    @property
+    def declaration(self):
+        about = self.pivot_name if self.is_rod else ""
+        pair = Sliding(self.BLOCK, self.on, self.LEVER, f"{self.PAIR}_force", f"{self.PAIR}_moment", about)
+        return Declaration(
+            joints={self.pivot_name: Point(FRAME, *self.pivot)},
+            slots=(Slot(self.LEVER, self.on, self.BLOCK if self.is_rod else "", self.offset),),
+            inner=(Turning(self.BLOCK, self.on),),
+            pairs=(Turning(self.LEVER, self.pivot_name), pair),
+            lengths=(*self.pivot, self.offset),
+        )
+
+    def sliding(self, name, placement):
+        motion, offset = self.placed(placement), present(self.offset)
+        slid = dot(vector_or_zero(motion.block.joint.first), motion.lever.direction)
+        return Slide(motion.lever.direction, plus(slid, product(offset, motion.lever.ratio)), minus(None, offset))
+
+    def motion(self, name, placement):
+        return self.placed(placement).reach
+
+    def place(self, placement):
+        joint, given = placement.joints[self.on], (self.pivot, present(self.offset))
+        found = self.by_branch(placement, *given) or place(joint, *given, self.side)
+        lever = LinkMotion(Joint(self.pivot, None, None), *found[:3])
+        block = lever._replace(joint=joint)
+        if self.is_rod:
+            block = block._replace(direction=scale_vector(-1.0, lever.direction))
+        links = {self.LEVER: lever, self.BLOCK: block}
+        self.enter(placement, LeverMotion(lever, block, *found[3:]), {self.pivot_name: lever.joint}, links)
+
+    def follow(self, placement, joints):
+        """Place both links, which add no moving joint."""
+        self.place(placement)
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        lever_load, block_load = (loads[self.called(name)] for name in (self.LEVER, self.BLOCK))
+        reactions, slot = resolve(self.placed(placement), lever_load, block_load)
+        couple = lever_load.moment if self.is_rod else minus(None, block_load.moment)
+        return self.resolved(reactions, (slot, number_or_zero(couple)))
 
 
 @dataclass(frozen=True, eq=False)
-class LeverGroup(checks.Checked, Branch, Group):
+class LeverGroup(RPRGroup):
     """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
 
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
@@ -193,11 +232,11 @@ class LeverGroup(checks.Checked, Branch, Group):
     label: str = ""
     assembly: int = 1
     LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
+    LEVER, BLOCK, PAIR = "lever", "block", "slot"
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
     KINDS: ClassVar = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
     """Crank a, distance d from O to the pivot, offset o of the slot."""
-    kernels = change_points.slotted, near_dead_centre.slotted
     RULES = checks.Rules(
         "lever group",
         pivot=checks.Pair("m", "lever pivot"),
@@ -207,66 +246,85 @@ class LeverGroup(checks.Checked, Branch, Group):
     )
 
     @property
-    def declaration(self):
-        return Declaration(
-            joints={self.pivot_name: Point(FRAME, *self.pivot)},
-            slots=(Slot("lever", self.on, offset=self.offset),),
-            inner=(Turning("block", self.on),),
-            pairs=(Turning("lever", self.pivot_name), Sliding("block", self.on, "lever", "slot_force", "slot_moment")),
-            lengths=(*self.pivot, self.offset),
-        )
-
-    @property
     def motions(self):
         text = f"of {self.on} along the slot, from the foot of {self.pivot_name}"
         return {f"{self.called('block')}_position": Output("m", False, text)}
 
-    def sliding(self, name, placement):
-        motion, offset = self.placed(placement), present(self.offset)
-        rate = plus(slid(motion), product(offset, motion.lever.ratio))
-        return Slide(motion.lever.direction, rate, minus(None, offset))
-
-    def motion(self, name, placement):
-        return self.placed(placement).reach
-
     @property
-    def clearance(self):
-        """Offset and pivot, for `near_dead_centre.has_small_clearance`."""
-        return self.offset, self.pivot
+    def sizes(self):
+        return (self.offset,)
 
-    def passage_on(self, throw):
-        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
-        a, x, y, o = self.known(throw, self.offset)
-        d = np.sqrt(x * x + y * y)
+    def change_kinds(self, a, d, o):
         unit = equality(a, abs(o), d)
         near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
         near, opposite = near & (d > unit), opposite & (d > unit)
-        kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
-        return self.one_passage(kind, x, y)
-
-    def place(self, placement):
-        given = self.pivot, present(self.offset)
-        if self.branch:
-            motion = passed(placement, self.on, *given, *self.branch)
-        else:
-            motion = place(placement.joints[self.on], *given, self.side)
-        self.enter(placement, motion)
-
-    def follow(self, placement, joints):
-        """Place lever and block, which add no moving joint."""
-        self.place(placement)
+        return {MEETING: near & opposite, NEAR: near, OPPOSITE: opposite}
 
     def requirement(self, placement):
         offset = np.max(np.abs(self.offset))
         return f"{separation(placement, self.on, self.pivot_name)} be greater than the slot's offset, {offset:.6g} m"
 
-    def resolve(self, placement, loads, along) -> Resolved:
-        lever_load, block_load = self.of_links(loads)
-        found = resolve(self.placed(placement), lever_load, block_load)
-        scalars = found.slot, number_or_zero(minus(None, block_load.moment))
-        return self.resolved((found.inner, found.pivot), scalars, {self.on: Wrench(found.inner, None)})
 
+@dataclass(frozen=True, eq=False)
+class CylinderGroup(RPRGroup):
+    """Rod on joint `on`, sliding in a cylinder about the fixed joint `pivot_name`: swinging cylinder.
 
-def slid(motion):
-    """Rate of the pin along the lever."""
-    return dot(vector_or_zero(motion.block.joint.first), motion.lever.direction)
+    The pin must not meet the pivot. A fluid's pressure is a `PointForce` between places on rod and cylinder, as
+    ``between=(("rod", along, 0.0), "O2")``; the joint `on` itself belongs to what the rod hangs on.
+
+    Parameters
+    ----------
+    pivot : (x, y)
+        Fixed pivot of the cylinder, m.
+    on, pivot_name : str
+        Names of the joint it hangs on and of the joint it adds.
+    rod : Link
+        Reference joint `on`, along the rod into the cylinder, toward the pivot.
+    cylinder : Link
+        Reference joint `pivot_name`, along the cylinder toward the rod's pin.
+    label : str
+        Appended to the names of links and forces of a second cylinder group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+
+    Notes
+    -----
+    Reactions: `on` (N) on the rod, from what carries the joint; `pivot_name` (N), ground on cylinder; "cylinder_force"
+    (N), cylinder on rod along the cylinder's left normal, and "cylinder_moment" (N m) about the pivot.
+    "cylinder_length" (m) is the distance from pivot to pin.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> engine = ks.Mechanism("oscillating engine", ks.Crank(0.1), (ks.CylinderGroup((0.0, -0.4)),))
+    >>> round(float(ks.solve(engine, 0.0, crank_speed=6.0).measure("cylinder_length")), 6)
+    0.412311
+    """
+
+    pivot: Any
+    on: str = "A"
+    rod: Link = Link()
+    cylinder: Link = Link()
+    pivot_name: str = "O2"
+    label: str = ""
+
+    LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
+    LEVER, BLOCK, PAIR = "cylinder", "rod", "cylinder"
+    TRUSTED = is_rod = True
+    PATHS: ClassVar = {"pivot": "cylinder_pivot"}
+    assembly: ClassVar = 1
+    RULES = checks.Rules(
+        "cylinder group",
+        pivot=checks.Pair("m", "cylinder pivot"),
+        **rules_of_parts(("rod", "cylinder"), "on", "pivot_name"),
+    )
+
+    @property
+    def motions(self):
+        return {self.called("cylinder_length"): Output("m", False, f"from {self.pivot_name} to {self.on}")}
+
+    def requirement(self, placement):
+        return f"{separation(placement, self.on, self.pivot_name)} be greater than zero"

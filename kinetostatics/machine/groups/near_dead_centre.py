@@ -189,8 +189,8 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     size = clamped_sqrt(closure, 1.0)
     sine, divided = assembly * size, assembly * guarded_divisor(size, MIN_ROOT)
 
-    d, square, over = line.d, line.square, 1.0 / line.square
-    share, aside = 0.5 * gap * both * over, assembly * b * h * size * over
+    d, over = line.d, 1.0 / line.square
+    share, aside = 0.5 * gap * both * over, b * h * sine * over
     along, back, across = 0.5 + share, share - 0.5, (aside * d[0], aside * d[1])
     q = ((along * d[0] - across[1]) / b, (along * d[1] + across[0]) / b)
     p = ((back * d[0] - across[1]) / h, (back * d[1] + across[0]) / h)
@@ -202,7 +202,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     change = sweep / line.reach * line.turn * over * (turning - share * rate)
     ratio, slope = 0.5 - turning + back * rate, change + back * bend
     coupler, rocker = (q, ratio, slope), (p, ratio + rate, slope + bend)
-    return coupler, rocker, sine, (b * b + h * h - square) / product, divided, closure
+    return coupler, rocker, (divided, None), closure
 
 
 def slid(placement, on, coupler_length, guide, assembly):
@@ -227,7 +227,7 @@ def slid(placement, on, coupler_length, guide, assembly):
     divided = assembly * guarded_divisor(size, MIN_ROOT)
     inverse, share = 1.0 / divided, r / length
     bend = share * (high * near - low * far) * (inverse * inverse * inverse)
-    return assembly * length * size, -share * x * inverse, bend, divided, closure
+    return assembly * length * size, -share * x * inverse, bend, (divided, None), closure
 
 
 def slotted(placement, on, pivot, offset, assembly):
@@ -249,7 +249,7 @@ def slotted(placement, on, pivot, offset, assembly):
     turning, change = 0.5 * line.gap * (ground + a) * over, 2.0 * swept * over
     ratio = 0.5 - turning + across * rate
     slope = change * (turning - across * rate) + across * bend
-    return direction, ratio, slope, reach, divided, near / (square + a * a)
+    return direction, ratio, slope, reach, (divided, None), near / (square + a * a)
 
 
 def has_small_clearance(throw, offset, length):

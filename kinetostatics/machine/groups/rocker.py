@@ -28,11 +28,10 @@ from ...numbers.planar import (
 )
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
-from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between, tip
+from ..links import Joint, Link, LinkMotion, Turning, joint_at, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
-from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS
-from .near_dead_centre import straighten_rocker
+from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS, divide
 
 MIN_SINE = 2.0**-53
 """Least sine of the transmission angle by which rates and forces are divided."""
@@ -56,27 +55,16 @@ TERMS = {
 
 
 class RockerMotion(NamedTuple):
-    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared.
+    """A placed rocker group; `closure` is the squared sine of the transmission angle, without change points.
 
-    `divisor` is the sine to divide by, which never vanishes; on a branch through change points a factor and a distance,
-    see `change_points.place`, without `sine` and `cosine`.
+    `divisor` is that sine to divide by, as `change_points.divide` takes it.
     """
 
     coupler: LinkMotion
     rocker: LinkMotion
     pin: Joint
-    sine: Any
-    cosine: Any
-    divisor: Any
+    divisor: tuple[Any, Any]
     closure: Any
-
-
-class RockerForces(NamedTuple):
-    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the rocker; `pivot`: ground on rocker."""
-
-    inner: Any
-    pin: Any
-    pivot: Any
 
 
 def place(joint, coupler_length, rocker_length, pivot, assembly):
@@ -95,7 +83,6 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
     p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
-    sine = area / product
     cosine = (c * c + h * h - square) / product
 
     first, second = vector_or_zero(joint.first), vector_or_zero(joint.second)
@@ -105,37 +92,38 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     ratio_slope = (lag * cosine - swing_lag - dot(second, p)) / (c * divided)
     swing_slope = (lag - swing_lag * cosine - dot(second, q)) / (h * divided)
 
-    pin = tip(pivot, h, p, swing, swing_slope)
-    coupler = LinkMotion(joint, q, ratio, ratio_slope)
-    rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
-    return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
+    links = (q, ratio, ratio_slope), (p, swing, swing_slope)
+    return joined(joint, h, pivot, *links, (divided, None), heron / unit)
 
 
-def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, turned, *branch, toggle=""):
-    """Coupler and rocker for the pin `on` of the crank, by the kernel `turned` of a branch (kernel)."""
-    joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
-    coupler, (p, *rates), *rest = turned(placement, on, *given, *branch)
-    if toggle:
-        p = straighten_rocker(p, coupler[0], joint, *given, toggle)
-    pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
-    return RockerMotion(LinkMotion(joint, *coupler), LinkMotion(fixed, p, *rates), pin, *rest)
+def joined(joint, rocker_length, pivot, coupler, rocker, divisor, closure):
+    """Motion of the group from direction, ratio and slope of both links (kernel)."""
+    rocker = LinkMotion(Joint(pivot, None, None), *rocker)
+    return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), divisor, closure)
+
+
+def between(start, end, pin, coupler_length, rocker_length):
+    """Motion of two links from their ends to a pin at known joints."""
+    coupler, rocker = link_between(start, pin, coupler_length), link_between(end, pin, rocker_length)
+    return RockerMotion(coupler, rocker, pin, (cross(coupler.direction, rocker.direction), None), None)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
-    """Forces on rocker and coupler (kernel).
+    """Forces on the coupler at its inner joint, on the rocker at its pin and at its pivot (kernel).
 
     Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of the coupler
     about A and of the rocker about O2 give the pin force by its parts along both links.
     """
-    if isinstance(motion.divisor, tuple):
-        pin = change_points.pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load)
-    else:
-        q, p = motion.coupler.direction, motion.rocker.direction
-        along_coupler = number_or_zero(quotient(rocker_load.moment, rocker_length)) / motion.divisor
-        along_rocker = number_or_zero(quotient(coupler_load.moment, coupler_length)) / motion.divisor
+    q, p = motion.coupler.direction, motion.rocker.direction
+    moments = quotient(rocker_load.moment, rocker_length), quotient(coupler_load.moment, coupler_length)
+    if motion.divisor[1] is None:
+        along_coupler, along_rocker = divide(map(number_or_zero, moments), motion.divisor)
         pin = add_vectors(scale_vector(along_coupler, q), scale_vector(along_rocker, p))
+    else:  # as a whole, so that what does not grow at the change point is not lost in what does
+        whole = vector_or_zero(add_vectors(*map(scale_vector, moments, (q, p))))
+        pin = divide(whole, motion.divisor)
     pivot = subtract_vectors(subtract_vectors(None, pin), rocker_load.force)
-    return RockerForces(subtract_vectors(pin, coupler_load.force), pin, pivot)
+    return subtract_vectors(pin, coupler_load.force), pin, pivot
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,21 +215,17 @@ class RockerGroup(checks.Checked, Branch, Group):
         )
 
     @property
-    def clearance(self):
-        """Offset and pivot, for `near_dead_centre.has_small_clearance`."""
-        return 0.0, self.pivot
+    def sizes(self):
+        return self.coupler_length, self.rocker_length
 
-    def passage_on(self, throw):
-        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
-        a, x, y, b, h = self.known(throw, self.coupler_length, self.rocker_length)
-        d = np.sqrt(x * x + y * y)
+    def change_kinds(self, a, d, b, h):
         unit = equality(a, b, h, d)
         far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
         far, near = far & (d > unit), near & (d > unit)
         meeting = near & (abs(d - a) <= unit)
         kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
-        cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
-        return self.one_passage(np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], ""), x, y)
+        both = far & near
+        return {RHOMBUS: far & meeting, KITE: both & kite, PARALLEL: both, FAR: far, MEETING: meeting, NEAR: near}
 
     def beside(self, groups, throws):
         """The group with the axis of the toggle that it is with a slider beside it."""
@@ -253,23 +237,23 @@ class RockerGroup(checks.Checked, Branch, Group):
         return self if toggle == self.toggle else replace_unchecked(self, toggle=toggle)
 
     def place(self, placement):
-        given = self.on, self.coupler_length, self.rocker_length, self.pivot
+        joint, given = placement.joints[self.on], (self.coupler_length, self.rocker_length, self.pivot)
         if self.passage:
-            motion = turned_by_crank(placement, *given, change_points.place, self.passage, self.side)
+            found = change_points.place(placement, self.on, *given, self.passage, self.side)
         elif placement.course(self.on).throw is not None:
-            branch = near_dead_centre.place, self.side, self.is_close
-            motion = turned_by_crank(placement, *given, *branch, toggle=self.toggle)
+            found = near_dead_centre.place(placement, self.on, *given, self.side, self.is_close)
         else:
-            motion = place(placement.joints[self.on], *given[1:], self.side)
-        self._enter(placement, motion)
+            return self._enter(placement, place(joint, *given, self.side))
+        coupler, rocker, *rest = found
+        if self.toggle:
+            p = near_dead_centre.straighten_rocker(rocker[0], coupler[0], joint, *given, self.toggle)
+            rocker = (p, *rocker[1:])
+        return self._enter(placement, joined(joint, *given[1:], coupler, rocker, *rest))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at known joints."""
-        pin, pivot = joints[self.pin], Joint(self.pivot, None, None)
-        coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
-        rocker = link_between(pivot, pin, self.rocker_length)
-        sine, cosine = cross(coupler.direction, rocker.direction), dot(coupler.direction, rocker.direction)
-        self._enter(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
+        ends = placement.joints[self.on], Joint(self.pivot, None, None), joints[self.pin]
+        self._enter(placement, between(*ends, self.coupler_length, self.rocker_length))
 
     def _enter(self, placement, motion):
         self.enter(placement, motion, {self.pin: motion.pin})
@@ -284,5 +268,5 @@ class RockerGroup(checks.Checked, Branch, Group):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(self.placed(placement), self.coupler_length, self.rocker_length, *self.of_links(loads))
-        return self.resolved((found.inner, found.pin, found.pivot), (), {self.on: Wrench(found.inner, None)})
+        lengths = self.coupler_length, self.rocker_length
+        return self.resolved(resolve(self.placed(placement), *lengths, *self.of_links(loads)))

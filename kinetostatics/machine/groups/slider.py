@@ -31,10 +31,10 @@ from ...numbers.planar import (
 )
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, Wrench, link_between
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
-from .change_points import BOTH, FAR, NEAR
+from .change_points import BOTH, FAR, NEAR, divide
 
 MIN_COSINE = 2.0**-27
 """Least cosine of the coupler: its square is a difference with a rounding error of 2^-53."""
@@ -56,70 +56,49 @@ TERMS = {
 class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
-    `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
-    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes
-    from the second derivative of the travel; None where that was not found so.
+    `divisor` is the cosine to divide by, as `change_points.divide` takes it; `closure` leaves out change points.
+    `drawn_in` is what the coupler's turning takes from the second derivative of the travel; None if it is unknown.
     """
 
     coupler: LinkMotion
     slider: LinkMotion
     sine: Any
     cosine: Any
-    divisor: Any
+    divisor: tuple[Any, Any]
     closure: Any
     travel: Joint
     drawn_in: Any = None
 
 
-class SliderForces(NamedTuple):
-    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide*`: ground on slider."""
+def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
+    """Coupler and slider for a given inner joint (kernel); a guide of None is +x, without offset.
 
-    inner: Any
-    pin: Any
-    guide: Any
-    guide_force: Any
-    guide_moment: Any
-
-
-def place(joint, coupler_length, guide, assembly, swing=None):
-    """Coupler and slider for a given inner joint, and its swing (kernel); None is +x, no offset, no swing."""
+    A joint on a pin of the crank may have `reached`, by a kernel for that; a joint that a link swings has its `swing`.
+    """
     position = rotate_back(joint.position, guide.direction)
     first = rotate_back(vector_or_zero(joint.first), guide.direction)
     second = rotate_back(vector_or_zero(joint.second), guide.direction)
 
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
-    square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
-    reach = clamped_sqrt(square, unit)
-    along, divided = assembly * reach, assembly * guarded_divisor(reach, MIN_COSINE * coupler_length)
-    ratio = -first[1] / divided
-    ratio_slope = (ratio * ratio * across - second[1]) / divided
-    reached = along, ratio, ratio_slope, divided / coupler_length, square / unit
-    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
+    if reached is None:
+        square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
+        reach = clamped_sqrt(square, unit)
+        divided = assembly * guarded_divisor(reach, MIN_COSINE * coupler_length)
+        ratio = -first[1] / divided
+        ratio_slope = (ratio * ratio * across - second[1]) / divided
+        reached = assembly * reach, ratio, ratio_slope, (divided / coupler_length, None), square / unit
+    along, ratio, ratio_slope, divisor, closure = reached
 
-
-def passed(placement, on, coupler_length, guide, slid, *branch):
-    """Coupler and slider for the pin `on` of a crank, by the kernel `slid` of a branch (kernel)."""
-    joint = placement.joints[on]
-    position = rotate_back(joint.position, guide.direction)
-    first, second = rotate_back(joint.first, guide.direction), rotate_back(joint.second, guide.direction)
-    reached = slid(placement, on, coupler_length, guide, *branch)
-    across = minus(guide.offset, position[1])
-    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
-
-
-def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, ratio_slope, divided, closure):
-    """Coupler and slider, from reach along and across the guide and the coupler's rate."""
-    position, first, second = along_guide
     sine, cosine = across / coupler_length, along / coupler_length
     drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
     travel = Joint(position[0] + along, first[0] - ratio * across, second[0] - drawn_in)
     coupler = LinkMotion(joint, rotate((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = slider_motion(joint.position, (along, across), travel, guide)
-    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel, drawn_in)
+    return SliderMotion(coupler, slider, sine, cosine, divisor, closure, travel, drawn_in)
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
-    """Forces on slider and coupler, from the slider inwards (kernel).
+    """Forces on the coupler at its inner joint, on the slider at its pin and guide, and the guide's numbers (kernel).
 
     `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
     the demands of further groups. The slider's balance along the guide gives the pin force along it, moments of the
@@ -128,22 +107,17 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number_or_zero(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
-    if isinstance(motion.divisor, tuple):
-        aside = change_points.divide_by_factors(rotate((0.0, across), guide.direction), motion.divisor)
-        (across,) = change_points.divide_by_factors((across,), motion.divisor)
-        pin = add_vectors(rotate((along, 0.0), guide.direction), aside)
-        carried = subtract_vectors(rotate((0.0, -on_slider[1]), guide.direction), aside)
-    else:
-        across = across / motion.divisor
+    if motion.divisor[1] is None:
+        (across,) = divide((across,), motion.divisor)
         pin = rotate((along, across), guide.direction)
         carried = rotate((0.0, -(on_slider[1] + across)), guide.direction)
-    return SliderForces(
-        inner=subtract_vectors(pin, coupler_load.force),
-        pin=pin,
-        guide=carried,
-        guide_force=-(on_slider[1] + across),
-        guide_moment=number_or_zero(minus(None, slider_load.moment)),
-    )
+    else:
+        aside = divide(rotate((0.0, across), guide.direction), motion.divisor)
+        (across,) = divide((across,), motion.divisor)
+        pin = add_vectors(rotate((along, 0.0), guide.direction), aside)
+        carried = subtract_vectors(rotate((0.0, -on_slider[1]), guide.direction), aside)
+    guide_force, guide_moment = -(on_slider[1] + across), number_or_zero(minus(None, slider_load.moment))
+    return (subtract_vectors(pin, coupler_load.force), pin, carried), (guide_force, guide_moment)
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,23 +204,22 @@ class SliderGroup(checks.Checked, Branch, Group):
         return y, -x
 
     @property
+    def sizes(self):
+        return self.coupler_length, self.guide.guide_offset
+
+    @property
     def clearance(self):
-        """Offset and length, for `near_dead_centre.has_small_clearance`."""
         return self.guide.guide_offset, self.coupler_length
 
-    def passage_on(self, throw):
-        """Kind of its change points on a pin of the crank, and quadrant of `start`; "" without any."""
-        a, x, y, b, e = self.known(throw, self.coupler_length, self.guide.guide_offset)
+    def change_kinds(self, a, d, b, e):
         unit = equality(a, b, abs(e))
         far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
-        return self.one_passage(np.select([far & near, far, near], [BOTH, FAR, NEAR], ""), x, y)
+        return {BOTH: far & near, FAR: far, NEAR: near}
 
     def place(self, placement):
         given = self.coupler_length, self.guide.line
-        if self.branch:
-            motion = passed(placement, self.on, *given, *self.branch)
-        else:
-            motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
+        reached, swing = self.by_branch(placement, *given), placement.course(self.on).swing
+        motion = place(placement.joints[self.on], *given, self.side, swing, reached)
         self.enter(placement, motion, travels={"slider": motion.travel})
 
     def follow(self, placement, joints):
@@ -256,7 +229,7 @@ class SliderGroup(checks.Checked, Branch, Group):
         sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
         travel = Joint(*(dot(direction, part) for part in pin))
         slider = LinkMotion(pin, direction, None, None)
-        motion = SliderMotion(coupler, slider, sine, cosine, cosine, None, travel)
+        motion = SliderMotion(coupler, slider, sine, cosine, (cosine, None), None, travel)
         self.enter(placement, motion, travels={"slider": travel})
 
     def requirement(self, placement):
@@ -294,6 +267,4 @@ class SliderGroup(checks.Checked, Branch, Group):
     def resolve(self, placement, loads, along) -> Resolved:
         (coupler_load, slider_load), (_, push) = self.of_links(loads), self.of_links(along)
         given = self.coupler_length, self.guide.line
-        found = resolve(self.placed(placement), *given, coupler_load, slider_load, push)
-        reactions, scalars = (found.inner, found.pin, found.guide), (found.guide_force, found.guide_moment)
-        return self.resolved(reactions, scalars, {self.on: Wrench(found.inner, None)})
+        return self.resolved(*resolve(self.placed(placement), *given, coupler_load, slider_load, push))

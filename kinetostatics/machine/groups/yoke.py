@@ -23,7 +23,7 @@ from ...numbers.planar import (
 )
 from ..group import FRAME, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, Wrench
+from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning
 
 MIN_SLOT_SINE = 1e-9
 """Sine of the slot's angle below which the slot counts as parallel to the guide."""
@@ -47,16 +47,6 @@ class YokeMotion(NamedTuple):
     slot: Any
 
 
-class YokeForces(NamedTuple):
-    """`inner`: on the block at its joint; `slot_*`: slider on block; `guide_*`: ground on slider."""
-
-    inner: Any
-    slot_force: Any
-    slot_moment: Any
-    guide_force: Any
-    guide_moment: Any
-
-
 def place(joint, guide, slot_angle):
     """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None zero."""
     slot = cos(slot_angle), sin(slot_angle)
@@ -70,7 +60,7 @@ def place(joint, guide, slot_angle):
 
 
 def resolve(motion, guide, block_load, slider_load, push):
-    """Forces on slider and block, from the slider inwards (kernel).
+    """Forces on the block at its joint and of the ground on the slider; slot's and guide's numbers (kernel).
 
     `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
     the demands of further groups. The slider's balance along the guide gives the slot force, which stands across the
@@ -81,13 +71,11 @@ def resolve(motion, guide, block_load, slider_load, push):
     slot = -plus(along, push) / sine
     couple = minus(None, block_load.moment)
     on_block = scale_vector(slot, rotate((-sine, cosine), guide.direction))
-    return YokeForces(
-        inner=subtract_vectors(subtract_vectors(None, on_block), block_load.force),
-        slot_force=slot,
-        slot_moment=number_or_zero(couple),
-        guide_force=cosine * slot - across,
-        guide_moment=plus(minus(couple, slider_load.moment), motion.rise / sine * slot),
-    )
+    inner = subtract_vectors(subtract_vectors(None, on_block), block_load.force)
+    guide_force = cosine * slot - across
+    guide_moment = plus(minus(couple, slider_load.moment), motion.rise / sine * slot)
+    scalars = slot, number_or_zero(couple), guide_force, guide_moment
+    return (inner, rotate((0.0, guide_force), guide.direction)), scalars
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,7 +201,4 @@ class YokeGroup(checks.Checked, Group):
 
     def resolve(self, placement, loads, along) -> Resolved:
         (block_load, slider_load), (_, push) = self.of_links(loads), self.of_links(along)
-        guide = self.guide.line
-        inner, *scalars = found = resolve(self.placed(placement), guide, block_load, slider_load, push)
-        on_slider = rotate((0.0, found.guide_force), guide.direction)
-        return self.resolved((inner, on_slider), scalars, {self.on: Wrench(inner, None)})
+        return self.resolved(*resolve(self.placed(placement), self.guide.line, block_load, slider_load, push))

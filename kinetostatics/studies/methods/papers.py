@@ -298,7 +298,7 @@ class SliderByVectors(SliderGroup):
         q = scale_vector(1 / length, AB)
         coupler, slider = LinkMotion(A, q, ratio, ratio_slope), LinkMotion(pin, u, None, None)
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
-        motion = SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel)
+        motion = SliderMotion(coupler, slider, sine, cosine, (cosine, None), cosine * cosine, travel)
         self.enter(placement, motion, travels={"slider": travel})
 
 
@@ -334,7 +334,7 @@ class RockerByAtanAcos(RockerGroup):
         pin = Joint(add_vectors(self.pivot, arm), scale_vector(swing, left(arm)), second)
         coupler = LinkMotion(placement.joints[self.on], q, ratio, ratio_slope)
         rocker, sine = LinkMotion(pivot, p, swing, swing_slope), cross(q, p)
-        self._enter(placement, RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine))
+        self._enter(placement, RockerMotion(coupler, rocker, pin, (sine, None), sine * sine))
 
 
 def _convert(kind, original, **more):
