@@ -166,7 +166,7 @@ def _(cam):
 
 @mirrored.register(ks.cams.Sampled)
 def _(cam):
-    return ks.cams.Sampled(*reversed_rows(cam.angle, cam.samples))
+    return ks.cams.Sampled(*reversed_rows(cam.angle, cam.values))
 
 
 @mirrored.register(ks.cams.LawCam)
