@@ -123,7 +123,7 @@ def _files(variant, scene, path):
             yield _table_file(path.stem, variant, f"load_{number}"), _columns(columns)
     for group in scene.mechanism.groups:
         if type(cam := getattr(group, "cam", None)) is Sampled:
-            columns = {"angle [rad]": cam.angle, "radius [m]": cam.samples}
+            columns = {"angle [rad]": cam.angle, "radius [m]": cam.values}
             yield _table_file(path.stem, variant, "cam"), _columns(columns)
 
 

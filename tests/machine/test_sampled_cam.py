@@ -203,7 +203,7 @@ def uneven(count, start=0.3):
 
 
 def table(angle, values, noise=None):
-    return TurnTable.of("table", angle, values, "value", noise)
+    return TurnTable(angle, values, noise)
 
 
 def test_second_derivative_is_continuous():

@@ -231,7 +231,7 @@ IMAGES: dict[type, Callable] = {
     ks.cams.Circle: lambda cam: ks.cams.Circle(cam.pitch_radius, across(cam.centre)),
     ks.cams.CosineLaw: lambda cam: ks.cams.CosineLaw(cam.amplitude, cam.mean, negated(cam.guide_angle)),
     ks.cams.Harmonic: lambda cam: ks.cams.Harmonic(cam.cosine, tuple(map(negated, cam.sine)), negated(cam.guide_angle)),
-    ks.cams.Sampled: lambda cam: ks.cams.Sampled(*reversed_rows(cam.angle, cam.samples)),
+    ks.cams.Sampled: lambda cam: ks.cams.Sampled(*reversed_rows(cam.angle, cam.values)),
     ks.cams.LawCam: _of_law_cam,
     ks.Gravity: lambda load: replace(load, direction=negated(load.direction)),
     ks.Spring: lambda load: load,

@@ -17,8 +17,16 @@ from .profile import POSITIVE, SIDE_SIGNS, Profile, profile
 
 MM_PER_M = 1000.0
 """Millimetres in a metre; the drawing is in mm, so that it prints one to one."""
-CURVE_CLASSES = {"surface": "cam", "pitch": "pitch", "cutter": "cutter"}
-"""CSS class of each curve."""
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+"""Metres in each unit of a file."""
+DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
+MAX_POINTS = 100_000
+STYLES = {
+    "surface": ("cam", "surface", "SURFACE", 7),
+    "pitch": ("pitch", "roller", "PITCH", 1),
+    "cutter": ("cutter", "cutter", "CUTTER", 3),
+}
+"""CSS class, heading of columns, layer and colour of each curve, in the order of drawing."""
 SVG_STYLE = (
     "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
     ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"
@@ -27,135 +35,6 @@ SVG_STYLE = (
     ".axis{stroke-dasharray:10 1.5 1 1.5;stroke-width:.18}.thin{stroke-width:.18}"
     "text{font-family:sans-serif;fill:#222}.tip{fill:#222;stroke:none}"
 )
-
-
-class SvgDrawing:
-    """SVG drawing of a sheet, in mm with y upward; the file has y downward."""
-
-    def __init__(self, sheet):
-        self.sheet, self.items = sheet, []
-        self.radius = MM_PER_M * sheet.radius
-        self.curves = {name: MM_PER_M * points for name, points in sheet.paths.items()}
-        self.roller = MM_PER_M * sheet.profile.roller_radius
-        every = np.concatenate(list(self.curves.values()), axis=1)
-        self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
-        self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
-
-    def text(self):
-        """Text of the SVG file."""
-        size = self.size
-        self._draw_cam()
-        self._draw_dimensions()
-        notes = [*self.sheet.notes, "scale 1:1, print without scaling; the bar is 100 mm"]
-        top = self.low[1] - 10 * size
-        for number, note in enumerate(notes):
-            self._words((self.low[0] - 4 * size, top - 1.6 * size * number), note)
-        bottom = top - 1.6 * size * len(notes)
-        x = self.low[0] - 4 * size
-        self._line((x, bottom), (x + 100.0, bottom))
-        for end in (x, x + 100.0):
-            self._line((end, bottom - size / 2), (end, bottom + size / 2))
-        wide = max(self.high[0] + 14 * size, x + 0.55 * size * max(map(len, notes)))
-        left, up, width = x - 2 * size, self.high[1] + 8 * size, wide - x + 4 * size
-        height = up - bottom + 3 * size
-        box = f"{left:.6g} {-up:.6g} {width:.6g} {height:.6g}"
-        return "\n".join(
-            [
-                '<?xml version="1.0" encoding="UTF-8"?>',
-                f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
-                f'viewBox="{box}">',
-                f"<title>{escape(self.sheet.notes[0])}</title>",
-                f"<style>{SVG_STYLE}</style>",
-                *self.items,
-                "</svg>",
-                "",
-            ]
-        )
-
-    def _draw_cam(self):
-        """The curves, with the material of a disk inside its working curve, of a ring outside; axes, roller, sense."""
-        if self.sheet.profile.side == "ring":
-            reach = 1.05 * np.max(np.hypot(*self.curves["surface"]))
-            self.items.append(f'<circle class="cam" cx="0" cy="0" r="{reach:.6g}"/>')
-        for name in ("surface", "pitch", "cutter"):
-            if name in self.curves:
-                kind = "hole" if name == "surface" and self.sheet.profile.side == "ring" else CURVE_CLASSES[name]
-                self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
-
-        size, (left, below), (right, above) = self.size, self.low, self.high
-        self._line((left - 2 * size, 0.0), (right + 2 * size, 0.0), "axis")
-        self._line((0.0, below - 2 * size), (0.0, above + 2 * size), "axis")
-        self._words((0.5 * size, -1.5 * size), "O")
-        x, y = self.curves["pitch"][:, 0]
-        self.items.append(f'<circle class="thin" cx="{x:.6g}" cy="{-y:.6g}" r="{self.roller:.6g}"/>')
-        along = np.array([x, y]) / np.hypot(x, y)
-        outer = np.hypot(x, y) + self.roller
-        self._line(outer * along, (outer + 5 * size) * along)
-        self._words(outer * along + [0.2 * size, -1.3 * size], "0° zero mark")
-        sign, reach = (-1.0 if self.sheet.clockwise else 1.0), 0.45 * float(self.radius.min())
-        turn = np.radians(sign * np.linspace(20.0, 100.0, 41))
-        arc = reach * np.stack([np.cos(turn), np.sin(turn)])
-        self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
-        self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
-        self._words(arc[:, 20] + [size, 0.0], f"roller goes {self.sheet.sense}")
-
-    def _draw_dimensions(self):
-        size, surface, sheet = self.size, self.curves["surface"], self.sheet
-        (left, below), (right, above) = surface.min(axis=1), surface.max(axis=1)
-        base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
-        for x in (left, right):
-            self._line((x, 0.0), (x, base - size), "thin")
-        self._measure((left, base), (right, base), sheet.length_text((right - left) / MM_PER_M))
-        for y in (below, above):
-            self._line((0.0, y), (side + size, y), "thin")
-        self._measure((side, below), (side, above), sheet.length_text((above - below) / MM_PER_M))
-        for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
-            end = self.curves["pitch"][:, place]
-            self._line((0.0, 0.0), end, "thin")
-            self._tip(end, end)
-            degrees = np.degrees(sheet.profile.crank_angle[place])
-            text = f"{name} R {sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
-            share, lower = (0.3, 0.6) if name == "largest" else (0.45, 2.2)
-            self._words(share * end + [0.0, lower * size], text)
-        x, y = self.curves["pitch"][:, 0]
-        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
-        self._words((x + 0.75 * self.roller, y + 0.8 * self.roller), text)
-
-    def _measure(self, start, stop, text):
-        """A dimension line with two tips and its text."""
-        start, stop = np.array(start), np.array(stop)
-        self._line(start, stop, "thin")
-        self._tip(stop, stop - start)
-        self._tip(start, start - stop)
-        upright = abs(stop[1] - start[1]) > abs(stop[0] - start[0])
-        x, y = start + (0.8 if upright else 0.5) * (stop - start)  # clear of the zero mark
-        self._words((x + (0.6 * self.size if upright else 0.0), y + (0.0 if upright else 0.5 * self.size)), text)
-
-    def _line(self, start, stop, kind="thin"):
-        (x1, y1), (x2, y2) = start, stop
-        self.items.append(f'<line class="{kind}" x1="{x1:.6g}" y1="{-y1:.6g}" x2="{x2:.6g}" y2="{-y2:.6g}"/>')
-
-    def _tip(self, point, direction):
-        ahead = np.asarray(direction) / np.hypot(*direction) * self.size
-        beside = np.array([-ahead[1], ahead[0]]) / 5
-        corners = np.stack([point, point - ahead + beside, point - ahead - beside], axis=1)
-        self.items.append(f'<path class="tip" d="{_path(corners)}"/>')
-
-    def _words(self, place, text):
-        x, y = place
-        self.items.append(f'<text x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}">{escape(text)}</text>')
-
-
-def _path(points, closed=True):
-    """Path through points (2, N) in mm, to a nanometre."""
-    steps = " L ".join(f"{x:.6f} {-y:.6f}" for x, y in points.T)
-    return f"M {steps}{' Z' if closed else ''}"
-
-
-UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
-"""Metres in each unit of a file."""
-DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
-MAX_POINTS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +71,11 @@ class Sheet:
     def sense(self):
         return "clockwise" if self.clockwise else "counter-clockwise"
 
+    def sense_arc(self, degrees, radius):
+        """Points (2, N) of an arc about O in the sense in which the roller goes around."""
+        turn = np.radians((-1.0 if self.clockwise else 1.0) * degrees)
+        return radius * np.stack([np.cos(turn), np.sin(turn)])
+
     @property
     def notes(self):
         """Lines of notes for the workshop."""
@@ -211,6 +95,185 @@ class Sheet:
         if error is not None:
             lines.append(f"from a measured table: forces are uncertain by {error:.2g} of the largest")
         return lines
+
+
+def arrow_head(point, direction, size, slenderness):
+    """Points of an arrow's head: one corner, the tip, the other corner."""
+    ahead = np.asarray(direction) / np.hypot(*direction) * size
+    beside = np.array([-ahead[1], ahead[0]]) / slenderness
+    return point - ahead + beside, point, point - ahead - beside
+
+
+class SvgDrawing:
+    """SVG drawing of a sheet, in mm with y upward; the file has y downward."""
+
+    def __init__(self, sheet):
+        self.sheet, self.items = sheet, []
+        self.radius = MM_PER_M * sheet.radius
+        self.curves = {name: MM_PER_M * points for name, points in sheet.paths.items()}
+        self.roller = MM_PER_M * sheet.profile.roller_radius
+        every = np.concatenate(list(self.curves.values()), axis=1)
+        self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
+        self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
+
+    def text(self):
+        """Text of the SVG file."""
+        size = self.size
+        self._draw_cam()
+        self._draw_dimensions()
+        notes = [*self.sheet.notes, "scale 1:1, print without scaling; the bar is 100 mm"]
+        x, top = self.low - [4 * size, 10 * size]
+        bottom = top - 1.6 * size * len(notes)
+        for number, note in enumerate(notes):
+            self._words((x, top - 1.6 * size * number), note)
+        self._line((x, bottom), (x + 100.0, bottom))
+        for end in (x, x + 100.0):
+            self._line((end, bottom - size / 2), (end, bottom + size / 2))
+        right = max(self.high[0] + 14 * size, x + 0.55 * size * max(map(len, notes)))
+        left, up = x - 2 * size, self.high[1] + 8 * size
+        width, height = right - x + 4 * size, up - bottom + 3 * size
+        return "\n".join(
+            [
+                '<?xml version="1.0" encoding="UTF-8"?>',
+                f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
+                f'viewBox="{left:.6g} {-up:.6g} {width:.6g} {height:.6g}">',
+                f"<title>{escape(self.sheet.notes[0])}</title>",
+                f"<style>{SVG_STYLE}</style>",
+                *self.items,
+                "</svg>",
+                "",
+            ]
+        )
+
+    def _draw_cam(self):
+        """The curves, with the material of a disk inside its working curve, of a ring outside; axes, roller, sense."""
+        size, ring = self.size, self.sheet.profile.side == "ring"
+        if ring:
+            self._circle("cam", (0, 0), 1.05 * np.max(np.hypot(*self.curves["surface"])))
+        for name, (kind, *_) in STYLES.items():
+            if name in self.curves:
+                kind = "hole" if name == "surface" and ring else kind
+                self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
+
+        for axis in (0, 1):
+            ends = self.low[axis] - 2 * size, self.high[axis] + 2 * size
+            self._line(*(np.roll((end, 0.0), axis) for end in ends), "axis")
+        self._words((0.5 * size, -1.5 * size), "O")
+        start = self.curves["pitch"][:, 0]
+        self._circle("thin", start, self.roller)
+        reach = np.hypot(*start)
+        along, outer = start / reach, reach + self.roller
+        self._line(outer * along, (outer + 5 * size) * along)
+        self._words(outer * along + [0.2 * size, -1.3 * size], "0° zero mark")
+        arc = self.sheet.sense_arc(np.linspace(20.0, 100.0, 41), 0.45 * float(self.radius.min()))
+        self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
+        self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
+        self._words(arc[:, 20] + [size, 0.0], f"roller goes {self.sheet.sense}")
+
+    def _draw_dimensions(self):
+        """Width and height of the working curve, largest and smallest radius, diameter of the roller."""
+        size, sheet, pitch = self.size, self.sheet, self.curves["pitch"]
+        base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
+        for axis, level, beyond in ((0, base, base - size), (1, side, side + size)):
+            edges = self.curves["surface"][axis].min(), self.curves["surface"][axis].max()
+            for edge in edges:
+                self._line(np.roll((edge, 0.0), axis), np.roll((edge, beyond), axis))
+            start, stop = (np.roll((edge, level), axis) for edge in edges)
+            self._line(start, stop)
+            self._tip(stop, stop - start)
+            self._tip(start, start - stop)
+            place = start + (0.8 if axis else 0.5) * (stop - start)  # clear of the zero mark
+            place[1 - axis] += (0.6 if axis else 0.5) * size
+            self._words(place, sheet.length_text((edges[1] - edges[0]) / MM_PER_M))
+        for place, name, share, lower in (
+            (np.argmax(self.radius), "largest", 0.3, 0.6),
+            (np.argmin(self.radius), "smallest", 0.45, 2.2),
+        ):
+            end = pitch[:, place]
+            self._line((0.0, 0.0), end)
+            self._tip(end, end)
+            degrees = np.degrees(sheet.profile.crank_angle[place])
+            text = f"{name} R {sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
+            self._words(share * end + [0.0, lower * size], text)
+        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
+        self._words(pitch[:, 0] + np.array([0.75, 0.8]) * self.roller, text)
+
+    def _line(self, start, stop, kind="thin"):
+        (x1, y1), (x2, y2) = start, stop
+        self.items.append(f'<line class="{kind}" x1="{x1:.6g}" y1="{-y1:.6g}" x2="{x2:.6g}" y2="{-y2:.6g}"/>')
+
+    def _circle(self, kind, centre, radius):
+        x, y = centre
+        self.items.append(f'<circle class="{kind}" cx="{x:.6g}" cy="{-y:.6g}" r="{radius:.6g}"/>')
+
+    def _tip(self, point, direction):
+        left, tip, right = arrow_head(point, direction, self.size, 5)
+        self.items.append(f'<path class="tip" d="{_path(np.stack([tip, left, right], axis=1))}"/>')
+
+    def _words(self, place, text):
+        x, y = place
+        self.items.append(f'<text x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}">{escape(text)}</text>')
+
+
+def _path(points, closed=True):
+    """Path through points (2, N) in mm, to a nanometre."""
+    steps = " L ".join(f"{x:.6f} {-y:.6f}" for x, y in points.T)
+    return f"M {steps}{' Z' if closed else ''}"
+
+
+def _to_svg(sheet, path):
+    Path(path).write_text(SvgDrawing(sheet).text(), encoding="utf-8")
+
+
+def _to_csv(sheet, path):
+    """Table of roller centres, working curve and cutter; ``Sampled.from_csv`` reads its first two columns."""
+    unit = sheet.units
+    columns = {"angle [deg]": np.degrees(sheet.profile.crank_angle), f"radius [{unit}]": sheet.in_unit(sheet.radius)}
+    for name, points in sheet.paths.items():
+        for axis, part in zip("xy", sheet.in_unit(points), strict=True):
+            columns[f"{STYLES[name][1]}_{axis} [{unit}]"] = part
+    columns["pressure_angle [deg]"] = np.degrees(sheet.profile.pressure_angle)
+    columns[f"curvature_radius [{unit}]"] = sheet.in_unit(sheet.profile.curvature_radius)
+    rows = zip(*(part.tolist() for part in columns.values()), strict=True)
+    lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _to_dxf(sheet, path):
+    """Closed polylines of the curves, each on its own layer, and a layer of notes with the roller, the mark and O."""
+    try:
+        import ezdxf
+    except ImportError:
+        raise MissingLibraryError(
+            'a .dxf needs ezdxf, which is not installed: pip install "kinetostatics[workshop]"; .csv and .svg work '
+            "without"
+        ) from None
+    drawing = ezdxf.new("R2010", units=DXF_UNITS[sheet.units])
+    space = drawing.modelspace()
+    curves = {name: sheet.in_unit(points) for name, points in sheet.paths.items()}
+    for name, points in curves.items():
+        _, _, layer, colour = STYLES[name]
+        drawing.layers.add(layer, color=colour)
+        space.add_lwpolyline(points.T.tolist(), close=True, dxfattribs={"layer": layer})
+    drawing.layers.add("NOTES", color=5)
+    notes = {"layer": "NOTES"}
+    x, y = curves["pitch"][:, 0].tolist()
+    reach = float(np.hypot(x, y))
+    size = reach / 25
+    space.add_circle((x, y), sheet.in_unit(sheet.profile.roller_radius), dxfattribs=notes)
+    space.add_line((0.0, 0.0), (1.2 * x, 1.2 * y), dxfattribs=notes)
+    space.add_point((0.0, 0.0), dxfattribs=notes)
+    arc = sheet.sense_arc(np.linspace(10.0, 60.0, 26), 0.4 * reach).T
+    space.add_lwpolyline(arc.tolist(), dxfattribs=notes)
+    space.add_lwpolyline(arrow_head(arc[-1], arc[-1] - arc[-2], size, 3), dxfattribs=notes)
+    space.add_text("0", height=size, dxfattribs=notes).set_placement((1.22 * x, 1.22 * y))
+    low = float(min(points.min() for points in curves.values()))
+    for number, note in enumerate(sheet.notes):
+        space.add_text(note, height=0.6 * size, dxfattribs=notes).set_placement((low, low - (3 + number) * size))
+    drawing.saveas(path)
+
+
+WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}
 
 
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
@@ -233,66 +296,3 @@ def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwi
     sheet = Sheet(working, found.get("cutter_radius"), units, clockwise)
     with write_atomically(path) as temporary:
         WRITERS[ending](sheet, temporary)
-
-
-def _to_csv(sheet, path):
-    """Table of roller centres, working curve and cutter; ``Sampled.from_csv`` reads its first two columns."""
-    unit = sheet.units
-    columns = {"angle [deg]": np.degrees(sheet.profile.crank_angle), f"radius [{unit}]": sheet.in_unit(sheet.radius)}
-    names = {"pitch": "roller", "surface": "surface", "cutter": "cutter"}
-    for name, points in sheet.paths.items():
-        parts = zip("xy", sheet.in_unit(points), strict=True)
-        columns |= {f"{names[name]}_{axis} [{unit}]": part for axis, part in parts}
-    columns["pressure_angle [deg]"] = np.degrees(sheet.profile.pressure_angle)
-    columns[f"curvature_radius [{unit}]"] = sheet.in_unit(sheet.profile.curvature_radius)
-    rows = zip(*(part.tolist() for part in columns.values()), strict=True)
-    lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
-LAYERS = {"surface": ("SURFACE", 7), "pitch": ("PITCH", 1), "cutter": ("CUTTER", 3)}
-"""Layer and colour of each curve."""
-
-
-def _to_dxf(sheet, path):
-    """Closed polylines of the curves, each on its own layer, and a layer of notes with the roller, the mark and O."""
-    try:
-        import ezdxf
-    except ImportError:
-        raise MissingLibraryError(
-            'a .dxf needs ezdxf, which is not installed: pip install "kinetostatics[workshop]"; .csv and .svg work '
-            "without"
-        ) from None
-    drawing = ezdxf.new("R2010", units=DXF_UNITS[sheet.units])
-    space = drawing.modelspace()
-    curves = {name: sheet.in_unit(points) for name, points in sheet.paths.items()}
-    for name, points in curves.items():
-        layer, colour = LAYERS[name]
-        drawing.layers.add(layer, color=colour)
-        space.add_lwpolyline(points.T.tolist(), close=True, dxfattribs={"layer": layer})
-    drawing.layers.add("NOTES", color=5)
-    notes = {"layer": "NOTES"}
-    x, y = sheet.in_unit(np.array(sheet.profile.pitch[:, 0])).tolist()
-    reach, roller = float(np.hypot(x, y)), sheet.in_unit(sheet.profile.roller_radius)
-    space.add_circle((x, y), roller, dxfattribs=notes)
-    space.add_line((0.0, 0.0), (1.2 * x, 1.2 * y), dxfattribs=notes)
-    space.add_point((0.0, 0.0), dxfattribs=notes)
-    size = reach / 25
-    turn = np.radians(np.linspace(10.0, 60.0, 26) * (-1.0 if sheet.clockwise else 1.0))
-    arc = 0.4 * reach * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    ahead = (arc[-1] - arc[-2]) / np.hypot(*(arc[-1] - arc[-2])) * size
-    beside = np.array([-ahead[1], ahead[0]]) / 3
-    space.add_lwpolyline(arc.tolist(), dxfattribs=notes)
-    space.add_lwpolyline([arc[-1] - ahead + beside, arc[-1], arc[-1] - ahead - beside], dxfattribs=notes)
-    space.add_text("0", height=size, dxfattribs=notes).set_placement((1.22 * x, 1.22 * y))
-    low = float(min(points.min() for points in curves.values()))
-    for number, note in enumerate(sheet.notes):
-        space.add_text(note, height=0.6 * size, dxfattribs=notes).set_placement((low, low - (3 + number) * size))
-    drawing.saveas(path)
-
-
-def _to_svg(sheet, path):
-    Path(path).write_text(SvgDrawing(sheet).text(), encoding="utf-8")
-
-
-WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}

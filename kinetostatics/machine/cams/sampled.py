@@ -1,20 +1,15 @@
 """Cam from a table of angles and radii: an interpolating or smoothing spline, and the expected error of forces."""
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 
 from ...errors import NotGivenError
 from ...numbers import checks
 from ...numbers.arithmetic import is_foreign_array
-from ...numbers.lazy import cached_property
 from ..laws.turn_table import TurnTable
 from .cam import Cam
 
 
-@dataclass(frozen=True, eq=False, init=False)
-class Sampled(Cam):
+class Sampled(TurnTable, Cam):
     """Cam from a table of angles and radii, by a periodic quintic spline.
 
     The spline has four continuous derivatives, so accelerations and forces are smooth. It passes through every point;
@@ -57,20 +52,12 @@ class Sampled(Cam):
     '23%, 0.04%'
     """
 
-    angle: Any
-    samples: Any
-    smoothing: Any
-
+    OWNER, VALUE, VALUES, SECOND, LOW = "sampled cam", "radius", "radii", "r''", 0.0
     TABULATED = True
     RULES = checks.Rules("sampled cam")  # no number of it is a parameter by itself
 
     def __init__(self, angle, radius, noise=None):
-        table = TurnTable.of("sampled cam", angle, radius, "radius", noise, positive=True)
-        object.__setattr__(self, "angle", table.angle)
-        object.__setattr__(self, "samples", table.values)
-        object.__setattr__(self, "smoothing", table.smoothing)
-        object.__setattr__(self, "_table", table)
-        table.warn_if_uncertain("sampled cam", "r''", "radii", self.force_error)
+        super().__init__(angle, radius, noise)
 
     def __repr__(self):
         way = "through" if self.smoothing is None else f"smoothed by {self.smoothing:.3g} m from"
@@ -119,20 +106,16 @@ class Sampled(Cam):
     @property
     def lengths(self):
         """Length that defines the pitch curve, its largest radius, m."""
-        return (self.samples.max(),)
+        return (self.values.max(),)
 
     @property
     def smallest_radius(self):
         """Smallest radius in the table, m."""
-        return self.samples.min()
-
-    @cached_property
-    def _table(self):
-        return TurnTable(self.angle, self.samples, self.smoothing)
+        return self.values.min()
 
     def polar(self, angle, ray):
         try:
-            return tuple(spline(angle) for spline in self._table.splines[:3])
+            return tuple(spline(angle) for spline in self.splines[:3])
         except TypeError as error:
             if not is_foreign_array(angle):
                 raise
@@ -141,23 +124,8 @@ class Sampled(Cam):
                 'jax.jit: ks.compile(scene, ..., engine="jax") reads it beforehand; or give a cam with a law'
             ) from error
 
-    @property
-    def noise(self):
-        """Standard deviation of the radii about a smooth curve, m; for radii rounded to a step, 0.29 of the step."""
-        return self._table.noise
-
-    @property
-    def second_derivative_error(self):
-        """Expected largest error of r'' over the turn, m/rad2, from noise and coarseness of the table."""
-        return self._table.second_derivative_error
-
-    @cached_property
-    def force_error(self):
-        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
-
-        It is the error of the acceleration of the roller centre over its largest value at constant speed, times seven:
-        springs or counterweights balance inertia forces, but not their error, and leave a seventh of them.
-        """
-        r, slope, second = (spline(self.angle) for spline in self._table.splines[:3])
+    def _largest_acceleration(self):
+        """Largest acceleration of the roller centre at constant speed, less its error, m/rad2; at least its radius."""
+        r, slope, second = (spline(self.angle) for spline in self.splines[:3])
         largest = np.max(np.hypot(second - r, 2 * slope)) - self.second_derivative_error
-        return self._table.force_error(max(largest, np.max(r)))
+        return max(largest, np.max(r))

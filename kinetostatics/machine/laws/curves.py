@@ -135,13 +135,12 @@ class Powers:
         """Motion at places u from 0 to 1; the second half is expanded at its end, so its zeros there are exact."""
         curve, late = self._polynomial, u > 0.5
         mirrored = curve(1.0) - curve(np.polynomial.Polynomial([1.0, -1.0]))
-        found = []
-        for order, sign in zip(range(4), (-1.0, 1.0, -1.0, 1.0), strict=True):
-            first = curve.deriv(order) if order else curve
-            second = mirrored.deriv(order) if order else mirrored
-            value = np.where(late, sign * second(np.where(late, 1.0 - u, 0.0)), first(np.where(late, 0.0, u)))
-            found.append(np.where(late, value + 1.0, value) if order == 0 else value)
-        return Motion(*found)
+        ahead, behind = np.where(late, 0.0, u), np.where(late, 1.0 - u, 0.0)
+        position, *others = (
+            np.where(late, -((-1) ** order) * mirrored.deriv(order)(behind), curve.deriv(order)(ahead))
+            for order in range(4)
+        )
+        return Motion(np.where(late, position + 1.0, position), *others)
 
 
 @dataclass(frozen=True)

@@ -97,9 +97,11 @@ def breakpoints_of(law):
         return ()
     largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, TEST_STEPS))[2:]]
     before, after = (_parts(law, np.mod(angle + side * KNOT_OFFSET, TURN))[2:] for side in (-1.0, 1.0))
-    jumps = [np.abs(there - here) > MIN_JUMP * size for here, there, size in zip(before, after, largest, strict=True)]
+    acceleration, jerk = np.abs(np.subtract(after, before)) > MIN_JUMP * np.array(largest)[:, None]
     return tuple(
-        Breakpoint(float(place), bool(jumps[0][k])) for k, place in enumerate(angle) if jumps[0][k] or jumps[1][k]
+        Breakpoint(float(place), bool(jumps))
+        for place, jumps, bends in zip(angle, acceleration, jerk, strict=True)
+        if jumps or bends
     )
 
 

@@ -370,28 +370,21 @@ def joined(*segments, smooth="acceleration"):
 # Tables
 
 
-@dataclass(frozen=True, eq=False)
-class TableLaw(Law):
+class TableLaw(TurnTable, Law):
     """Spline through a table over the turn; made by `table`."""
 
-    rows: TurnTable
+    OWNER, VALUE, VALUES, SECOND = "table of a law", "position", "positions", "x''"
 
     @property
     def knots(self):
-        return tuple(np.unique(np.mod(self.rows.splines[0].t, TURN)).tolist())
-
-    @property
-    def force_error(self):
-        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table."""
-        largest = float(np.max(np.abs(self.rows.splines[2](self.rows.angle)))) - self.rows.second_derivative_error
-        return self.rows.force_error(largest)
+        return tuple(np.unique(np.mod(self.splines[0].t, TURN)).tolist())
 
     def __repr__(self):
-        return f"<Law through {self.rows.angle.size} points, forces within {self.force_error:.2g} of the largest>"
+        return f"<Law through {self.angle.size} points, forces within {self.force_error:.2g} of the largest>"
 
     def __call__(self, phi):
         phi = angle_array(phi)
-        return Motion(*(spline(phi) for spline in self.rows.splines))
+        return Motion(*(spline(phi) for spline in self.splines))
 
 
 def table(angle, position, noise=None):
@@ -433,10 +426,7 @@ def table(angle, position, noise=None):
     >>> round(float(law(1.0).velocity), 9)
     -0.252441295
     """
-    rows = TurnTable.of("table of a law", angle, position, "position", noise)
-    law = TableLaw(rows)
-    rows.warn_if_uncertain("table of a law", "x''", "positions", law.force_error)
-    return law
+    return TableLaw(angle, position, noise)
 
 
 def __dir__():

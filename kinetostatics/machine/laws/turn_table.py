@@ -26,71 +26,72 @@ MAX_NOISE_RATIO = 3.0
 """Largest ratio of the stated noise to the scatter of the table, or the reverse, without a warning."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class TurnTable:
-    """Values at angles within a turn; made by `of`. `smoothing` is the stated noise, None to interpolate."""
+    """Values at angles within a turn, base of cams and laws from tables. `smoothing` is the noise, None to interpolate.
+
+    `OWNER`, `VALUE`, `VALUES` and `SECOND` are the words of messages for the table, its values and the second
+    derivative; `LOW` is a limit that the values must exceed.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
+    """
 
     angle: np.ndarray
     values: np.ndarray
     smoothing: Any = None
 
-    @classmethod
-    def of(cls, owner, angle, values, name, smoothing=None, positive=False):
-        """Table of checked values; `name` stands for the values in messages.
+    OWNER, VALUE, VALUES, SECOND, LOW = "table", "value", "values", "its second derivative", -math.inf
 
-        Raises
-        ------
-        ParameterError
-            Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
-        """
+    def __init__(self, angle, values, noise=None):
+        owner, name = self.OWNER, self.VALUE
         rules = {"angle": checks.Number("rad", table=True), name: checks.Number("m", table=True)}
         found = checks.check_values(owner, rules, {"angle": angle, name: values})
         angle, values = (np.array(part, dtype=float) for part in found.values())
-        low = values.min(initial=np.inf) if positive else np.inf
+        least = values.min(initial=np.inf)
         checks.require(
             owner,
             None if angle.ndim == 1 and angle.shape == values.shape else f"angle and {name} must be 1-D, of one length",
-            None if low > 0 else f"{name} must be greater than 0, got {low:g}",
+            None if least > self.LOW else f"{name} must be greater than {self.LOW:g}, got {least:g}",
             None if angle.size >= 8 else f"at least 8 points are needed, got {angle.size}",
         )
-        step = np.diff(angle)
-        if np.any(step <= 0):
-            row = int(np.argmax(step <= 0)) + 1
-            raise ParameterError(
-                f"{owner}: angles must rise, but row {row + 1} ({angle[row]:.6g} rad) follows {angle[row - 1]:.6g}"
-            )
-        if angle[-1] - angle[0] >= 2 * np.pi * (1 - 1e-12):
-            raise ParameterError(
-                f"{owner}: angles must stay within one turn, end excluded; they span "
-                f"{angle[-1] - angle[0]:.9g} rad (2 pi = 6.28318531); leave the repeated last point out"
-            )
-        gap = max(step.max(), angle[0] + 2 * np.pi - angle[-1])
-        if gap > np.pi / 4:
-            raise ParameterError(
-                f"{owner}: the table must cover the turn, but leaves a gap of {np.degrees(gap):.4g} deg between "
-                "neighbouring angles (45 at most)"
-            )
+        checks.require(owner, _angle_problem(angle))
+        if noise is not None:
+            noise = checks.single_numbers(owner, noise=(noise, "m", {"low": 0.0, "strict": True}))["noise"]
         for part in (angle, values):
             part.setflags(write=False)
-        if smoothing is not None:
-            smoothing = checks.single_numbers(owner, noise=(smoothing, "m", {"low": 0.0, "strict": True}))["noise"]
-        made = cls(angle, values, smoothing)
-        if smoothing is None:
-            return made
-        if made._fit(values) is None:
+        vars(self).update(angle=angle, values=values, smoothing=noise)
+        if noise is not None:
+            self._test_noise()
+        if self.force_error >= 0.01:
+            remedy = ", or state their noise to have them smoothed" if noise is None else ""
+            self._warn(
+                f"{angle.size} points are too coarse or too noisy: {self.SECOND} is uncertain by up to "
+                f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
+                f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, "
+                f"write more digits{remedy}"
+            )
+
+    def _test_noise(self):
+        """Refuse a noise that no smooth curve keeps within; warn of one that differs from the scatter."""
+        stated, scatter = self.smoothing, self.noise
+        if self._fit(self.values) is None:
             raise ParameterError(
-                f"{owner}: no smooth curve comes within a noise of {smoothing:.3g} m of the {name} values, which "
-                f"scatter by {made.noise:.3g} m; state the noise that they have, or none to pass through every point"
+                f"{self.OWNER}: no smooth curve comes within a noise of {stated:.3g} m of the {self.VALUE} values, "
+                f"which scatter by {scatter:.3g} m; state the noise that they have, or none to pass through every point"
             )
-        if not made.noise / MAX_NOISE_RATIO <= smoothing <= made.noise * MAX_NOISE_RATIO:
-            more = smoothing > made.noise
-            warnings.warn(
-                f"{owner}: the noise stated, {smoothing:.3g} m, is {'more' if more else 'less'} than the "
-                f"{made.noise:.3g} m by which the {name} values scatter; "
-                + ("what is no noise is smoothed away too" if more else "noise is left in the curve"),
-                stacklevel=4,
+        if not scatter / MAX_NOISE_RATIO <= stated <= scatter * MAX_NOISE_RATIO:
+            more = stated > scatter
+            self._warn(
+                f"the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the {scatter:.3g} m by which "
+                f"the {self.VALUE} values scatter; "
+                + ("what is no noise is smoothed away too" if more else "noise is left in the curve")
             )
-        return made
+
+    def _warn(self, text):
+        warnings.warn(f"{self.OWNER}: {text}", stacklevel=5)
 
     @cached_property
     def splines(self):
@@ -151,25 +152,39 @@ class TurnTable:
         caused = NOISE_IN_SECOND_DERIVATIVE * self.noise / np.diff(nodes).min() ** 2
         return min(difference, caused + difference / 12)
 
-    def force_error(self, largest):
-        """Expected largest error of a force, relative to its largest value; `largest` acceleration in m/rad2.
+    @cached_property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
 
         It is the relative error of the acceleration at constant speed, times seven: springs or counterweights balance
         inertia forces, but not their error, and leave a seventh of them.
         """
+        largest = self._largest_acceleration()
         return BALANCING_RATIO * self.second_derivative_error / float(largest) if largest > 0 else math.inf
 
-    def warn_if_uncertain(self, owner, symbol, name, force_error):
-        """Warn if forces are uncertain by 0.01 or more of the largest."""
-        if force_error >= 0.01:
-            remedy = ", or state their noise to have them smoothed" if self.smoothing is None else ""
-            warnings.warn(
-                f"{owner}: {self.angle.size} points are too coarse or too noisy: {symbol} is uncertain by up to "
-                f"{self.second_derivative_error:.2g} m (the {name} scatter by {self.noise:.2g} m about a smooth "
-                f"curve), and forces by up to {force_error:.1%} where inertia is balanced; measure more exactly, "
-                f"write more digits{remedy}",
-                stacklevel=4,
-            )
+    def _largest_acceleration(self):
+        """Largest acceleration at constant speed, less its error, m/rad2."""
+        return np.max(np.abs(self.splines[2](self.angle))) - self.second_derivative_error
+
+
+def _angle_problem(angle):
+    """Problem of the angles of a table, as a sentence, or None."""
+    step, span = np.diff(angle), angle[-1] - angle[0]
+    if np.any(step <= 0):
+        row = int(np.argmax(step <= 0)) + 1
+        return f"angles must rise, but row {row + 1} ({angle[row]:.6g} rad) follows {angle[row - 1]:.6g}"
+    if span >= 2 * np.pi * (1 - 1e-12):
+        return (
+            f"angles must stay within one turn, end excluded; they span {span:.9g} rad (2 pi = 6.28318531); leave the "
+            "repeated last point out"
+        )
+    gap = max(step.max(), angle[0] + 2 * np.pi - angle[-1])
+    if gap > np.pi / 4:
+        return (
+            f"the table must cover the turn, but leaves a gap of {np.degrees(gap):.4g} deg between neighbouring angles "
+            "(45 at most)"
+        )
+    return None
 
 
 def _periodic(angle, values):

@@ -82,16 +82,16 @@ class Table:
     RULES = checks.Rules("table")
 
     def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
-        given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
+        given = {"x": x, "y": y} | ({} if back is None else {"back": back})
         unit = table_pieces.unit_of(y) or table_pieces.unit_of(back)
-        value = checks.Number(unit or "N", table=True)
+        units = dict.fromkeys(given, unit or "N") | {"x": "m" if over == "travel" else "rad"}
+        period, wrong_period = WholeTurns().check(period, "period")
         found = checks.check_values(
             "table",
-            {"x": checks.Number(COLUMNS[over][1] if over in COLUMNS else "rad", table=True)}
-            | dict.fromkeys(tuple(given)[1:], value),
+            {name: checks.Number(unit, table=True) for name, unit in units.items()},
             given,
             checks.choice("over", over, tuple(COLUMNS)),
-            WholeTurns().check(period, "period")[1],
+            wrong_period,
             None if slider is None else checks.Name().check(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
             None if slider is None or over == "travel" else 'slider is for a table over="travel"',
@@ -109,25 +109,17 @@ class Table:
         checks.require("table", table_pieces.order_problem(arrays["x"], over))
         if arrays["x"][0] > arrays["x"][-1]:
             arrays = {name: values[::-1] for name, values in arrays.items()}
-        period = WholeTurns().check(period)[0]
         if over == "angle":
             checks.require("table", table_pieces.angle_problem(arrays["x"], arrays["y"], period))
             if table_pieces.repeats_first_row(arrays["x"], period):
                 arrays = {name: values[:-1] for name, values in arrays.items()}
         else:
-            short = None if period == TURN else "over travel the period is one turn"
             few = "at least 2 rows are needed, got 1; a value that does not change is no table"
+            short = None if period == TURN else "over travel the period is one turn"
             checks.require("table", few if arrays["x"].size < 2 else None, short)
         for values in arrays.values():
             values.setflags(write=False)
-        for name, part in {
-            "rows": Rows(**arrays),
-            "over": over,
-            "slider": slider,
-            "period": period,
-            "unit": unit,
-        }.items():
-            object.__setattr__(self, name, part)
+        vars(self).update(rows=Rows(**arrays), over=over, slider=slider, period=period, unit=unit)
 
     @classmethod
     def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None):
@@ -269,17 +261,13 @@ class Table:
             returning = returning if returning is None else np.asarray(returning)
         except (TypeError, ValueError):  # while JAX traces
             xp = next(xp for xp in map(namespace, (place, returning)) if xp is not np)
-        x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
-            piece = table_pieces.piece_index(
-                xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period
-            )
-            start, value, slope = table_pieces.piece_lines(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
-            return start + number(turns) * period, value, slope
+            piece = table_pieces.piece_index(xp, self.closed()[0], place - turns * self.period)
+            start, value, slope = table_pieces.piece_lines(xp, *self.closed(number), piece)
+            return start + number(turns) * number(self.period), value, slope
         piece = table_pieces.piece_index(xp, self.x, place)
-        strokes = [y] if self.back is None else [y, number(self.back)]
-        start, value, slope = table_pieces.piece_lines(xp, x, strokes, piece, returning)
+        start, value, slope = table_pieces.piece_lines(xp, *self.closed(number), piece, returning)
         room = TRAVEL_TOLERANCE * (self.x[-1] - self.x[0])
         out = (place < self.x[0] - room) | (place > self.x[-1] + room)
         if xp is not np:
@@ -295,6 +283,13 @@ class Table:
         if self.by_sense:
             require_sense("table over travel: it has other values for the stroke back", motion)
         return start, value, slope
+
+    def closed(self, number=lambda given: given):
+        """Rows and the values of each stroke; over the angle the first row stands again a period behind."""
+        x, strokes = number(self.x), [number(y) for y in self.strokes]
+        if self.over == "travel":
+            return x, strokes
+        return np.append(x, x[0] + number(self.period)), [np.append(y, y[0]) for y in strokes]
 
     def rate(self, motion):
         """First kinematic coefficient of the slider along its guide, m/rad."""
@@ -329,25 +324,25 @@ class Table:
 
         Also which of them are jumps, (K,), and the largest kink left out, relative to its largest value.
         """
-        x, strokes, rows = self.x, self.strokes, kink_rows(self, straight)
-        inner = x[rows]
-        if self.over == "angle":
-            x = np.concatenate([x[-1:] - self.period, x, x[:1] + self.period])
-            strokes = [np.concatenate([y[-1:], y, y[:1]]) for y in strokes]
+        rows, by_angle = kink_rows(self, straight), self.over == "angle"
+        inner = self.x[rows]
+        x, strokes = self.closed()
+        if by_angle:
+            x, strokes = np.append(self.x[-1] - self.period, x), [np.append(self.y[-1], y) for y in strokes]
         share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
         off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
-        ignored = np.delete(off if self.over == "angle" else np.pad(off, 1), rows)
+        ignored = np.delete(off if by_angle else np.pad(off, 1), rows)
         rest = float(ignored.max(initial=0.0) / (abs(self.largest) or 1.0))
-        if self.over == "angle":
+        if by_angle:
             return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
-        ends, passed = stops_and_crossings(motion, self._slider(motion), inner)
-        found = passed if self.back is None else np.column_stack([ends, passed])
-        return found, np.arange(found.shape[1]) < found.shape[1] - passed.shape[1], rest
+        ends, found = stops_and_crossings(motion, self._slider(motion), inner)
+        jumps = ends.shape[1] if self.by_sense else 0
+        found = np.column_stack([ends[:, :jumps], found])
+        return found, np.arange(found.shape[1]) < jumps, rest
 
     @property
     def _content(self):
-        own = self.rows
-        arrays = own.x.tobytes(), own.y.tobytes(), None if own.back is None else own.back.tobytes()
+        arrays = (part if part is None else part.tobytes() for part in (self.x, self.y, self.back))
         return *arrays, self.over, self.slider, self.period, self.unit
 
     def __eq__(self, other):

@@ -18,6 +18,7 @@ from numpy.polynomial import chebyshev
 
 from ...numbers import checks
 from ...numbers.arithmetic import UNIT_ROUNDOFF
+from ...numbers.brackets import find_roots
 
 TURN = 2 * math.pi
 MAX_TURNS = 100
@@ -240,10 +241,6 @@ STOP_SAMPLES = 720
 """Crank angles a turn between which a slider stops at most once."""
 SAMPLE_OFFSET = 1e-3
 """First of these crank angles, rad: none meets a dead centre."""
-MIN_STEP = 1e-13
-"""Step of a crank angle, rad, at which iterations end."""
-MAX_STEPS = 60
-"""Number of halvings that a bracket in double precision allows."""
 
 
 def stops_and_crossings(motion, slider, levels):
@@ -268,26 +265,24 @@ def stops_and_crossings(motion, slider, levels):
     with np.errstate(invalid="ignore", divide="ignore"):
         grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
         rate = np.broadcast_arrays(*np.atleast_2d(travel(grid).first, grid))[0]
-        closes = ~np.isnan(rate)
-        turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & closes[:, :-1] & closes[:, 1:]
+        turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & ~np.isnan(np.diff(rate))
         design, place = np.nonzero(turning)
         low, high = pad_rows(design, len(rate), grid[0, place], grid[0, place + 1])
-        stops = _roots(lambda angle: travel(angle)[1:], low, high, np.zeros_like(low))
+        stops = _roots(lambda angle: travel(angle).first, low, high)
         knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), stops]), axis=1)
 
         # each crossing by the levels between the coordinates at both knots
         there = np.broadcast_to(travel(knots).position, knots.shape)
         above = np.searchsorted(levels, there)
         before, after = above[:, :-1], above[:, 1:]
-        closes = ~np.isnan(there)
-        many = np.abs(after - before) * (closes[:, :-1] & closes[:, 1:])
+        many = np.abs(after - before) * ~np.isnan(np.diff(there))
         design, place = np.nonzero(many)
         number = many[design, place]
         first = np.repeat(np.minimum(before, after)[design, place] + number - np.cumsum(number), number)
         level = levels[first + np.arange(number.sum())]
         design, place = np.repeat(design, number), np.repeat(place, number)
-        brackets = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
-        passed = _roots(lambda angle: travel(angle)[:2], *brackets)
+        low, high, level = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
+        passed = _roots(lambda angle: travel(angle).position - level, low, high)
     return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
 
 
@@ -299,27 +294,18 @@ def pad_rows(design, count, *values):
     return rows
 
 
-def _roots(function, low, high, level):
-    """Angles between `low` and `high` at which a function equals `level`; `function` returns values and slopes.
+def _roots(function, low, high):
+    """Angles between `low` and `high`, (designs, K), at which a function of such angles is 0; NaN where they are."""
 
-    By Newton's method; a step that leaves the bracket is replaced by halving.
-    """
+    def values(angle, places):
+        everywhere = low.copy()
+        everywhere.flat[places] = angle
+        return function(everywhere).flat[places]
+
     if not low.size:
         return low
-    rising = function(high)[0] > function(low)[0]  # an end may be at the level
-    angle, moving = 0.5 * (low + high), np.ones(low.shape, dtype=bool)
-    for _ in range(MAX_STEPS):
-        value, slope = function(angle)
-        beyond = (value > level) == rising
-        low, high = np.where(beyond, low, angle), np.where(beyond, angle, high)
-        step = angle - (value - level) / slope
-        following = np.where((low <= step) & (step <= high), step, 0.5 * (low + high))
-        far = np.abs(following - angle) > MIN_STEP
-        angle = np.where(moving, following, angle)  # a root must not depend on the steps that others need
-        moving &= far
-        if not moving.any():
-            break
-    return angle
+    root = find_roots(values, low, high, 1e-13)
+    return np.where(np.isnan(root), low, root)  # an end that is a zero but for rounding
 
 
 # Rounding errors
@@ -356,7 +342,7 @@ def rounding_bound(table, motion):
 @lru_cache(maxsize=64)
 def _piece_errors(table):
     """Rows of a table over the angle with the first one repeated, and slope and error bound of each piece."""
-    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
+    x, (y,) = table.closed()
     rise = np.abs(np.diff(y))
     slope = rise / np.diff(x)
     own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
