@@ -43,19 +43,11 @@ PARTS_PER_THREAD = 8
 
 
 def compute_batch(scene, job, count, outputs):
-    """Compute outputs of a batch of designs.
+    """Outputs of a batch of designs: numbers, reasons, rough, nearest, kinked.
 
-    Returns
-    -------
-    numbers : array (outputs, designs)
-    reasons : array (designs,) of str
-        Why a design has no numbers; empty for the others.
-    rough : array (outputs, designs) of bool
-        Numbers that the crank angles do not resolve.
-    nearest : array (designs,)
-        Crank angle, rad, nearest to a limit position; NaN if none is near.
-    kinked : array (outputs,) of bool
-        Outputs whose turn is split at kinks.
+    The numbers are (outputs, designs), the reasons (designs,) of text, empty for a design with numbers. `rough` marks
+    numbers that the crank angles do not resolve. `nearest` is the crank angle, rad, (designs,) nearest to a limit
+    position, or NaN; `kinked` marks the outputs, (outputs,), whose turn is split at kinks.
     """
     solution = unchecked_turn(scene, job.angles)
     checks.require("solve", *refusals(solution), *energy_contact.refusals(solution))
