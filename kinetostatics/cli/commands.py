@@ -76,7 +76,7 @@ def run(options):
     from ..casefile.case import load_case
     from ..cycle.extremes import SHOWN, extremes_by_name
     from ..cycle.losses import lose
-    from ..solution.uncertainty_table import largest_with_uncertainty
+    from ..solution.tables import largest_with_uncertainty
     from . import sweep_commands
 
     case = load_case(options.case)

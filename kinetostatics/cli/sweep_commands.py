@@ -8,7 +8,7 @@ from ..errors import ParameterError
 from ..numbers import checks, files, spreads
 from ..numbers.formatting import parse_heading, round_bound_up, round_uncertainty_up
 from ..numbers.units import factor, to_si
-from ..solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
+from ..solution.tables import format_with_uncertainty, largest_with_uncertainty
 from . import output
 from .output import print_folded, print_table, require_writable, variant_words, write_table
 

@@ -174,17 +174,7 @@ def _root_sum_square(part: Any, axis: Any = 0):
 
 
 def sensitivities(program, by, state, leaves, backend):
-    """Derivatives by quantity and path, shaped as the quantities; NaN where the quantity is.
-
-    Parameters
-    ----------
-    program : engines.program.Program
-    by : dict of path to int
-        Leaf of each number.
-    state : Dynamics
-    leaves : Leaves
-    backend : engines.jax_backend.Backend
-    """
+    """Derivatives by quantity and path, shaped as the quantities, NaN where these are; `by` has leaves by path."""
     rows = backend.run(program.by_parameters(tuple(by.values())), state, leaves)
     count = len(program.outputs)
     gaps, found = np.isnan(rows[:count]), rows[count:].reshape(count, len(by), *state.shape)

@@ -52,7 +52,10 @@ DIFFERENCE_STEP = 6e-6
 
 
 def condition(solution, points=None, reactions=None):
-    """Bound of the magnification at each crank angle, NaN where the mechanism does not close.
+    """Bound of the magnification at each crank angle, (M,), NaN where the mechanism does not close.
+
+    It is infinite where rounding of lengths or crank angle may keep the mechanism from closing. Arrays of another
+    library than NumPy raise a `NotGivenError`; a group that cannot be recorded causes a `ConditionWarning`.
 
     Parameters
     ----------
@@ -62,21 +65,6 @@ def condition(solution, points=None, reactions=None):
     reactions : bool, optional
         Whether reactions count; default: where no change points are passed, for there they grow without bound. They
         are compared with the largest value that they have grown to.
-
-    Returns
-    -------
-    array (M,)
-        Infinite where rounding of lengths or crank angle may keep the mechanism from closing.
-
-    Raises
-    ------
-    NotGivenError
-        The lengths, or a traced crank angle, are arrays of another library than NumPy.
-
-    Warns
-    -----
-    ConditionWarning
-        A group of the user's own cannot be recorded, so the derivatives are central differences.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
     reactions = not solution.mechanism.passes if reactions is None else reactions
@@ -220,8 +208,8 @@ def _terms(scene, size_of):
                 gaps = [size_of(subtract_vectors, joint.position, link.joint.position).size for joint in joints]
                 length = reduce(np.maximum, gaps, 0.0)
                 length = np.where(length > 0.0, length, np.inf)
-            firsts = [size_of(_first_of_centre, link, body), *(size_of(joint.first) for joint in joints)]
-            seconds = [size_of(_second_of_centre, link, body), *(size_of(joint.second) for joint in joints)]
+            firsts = [size_of(_of_centre, first_at, link, body), *(size_of(joint.first) for joint in joints)]
+            seconds = [size_of(_of_centre, second_at, link, body), *(size_of(joint.second) for joint in joints)]
             speed, acceleration = (reduce(np.maximum, (one.certain for one in ones)) for ones in (firsts, seconds))
             rate = np.maximum(size_of(link.ratio).certain, speed / length)
             rate_change = np.maximum(rate * rate, acceleration / length)
@@ -231,12 +219,9 @@ def _terms(scene, size_of):
     return found
 
 
-def _first_of_centre(link, body):
-    return first_at(link, arm(link.direction, body.along, body.across))
-
-
-def _second_of_centre(link, body):
-    return second_at(link, arm(link.direction, body.along, body.across))
+def _of_centre(derivative, link, body):
+    """First or second derivative of a mass centre by the crank angle."""
+    return derivative(link, arm(link.direction, body.along, body.across))
 
 
 def _of_forces(scene, size_of, links, largest_pushes, reactions):
@@ -434,40 +419,22 @@ def _sufficient_margin(solution, farthest=None):
     return solution.proportion * math.sqrt(MARGIN_FACTOR * max(1.0, farthest) / HALF_DIGITS_CONDITION)
 
 
-def ill_conditioned(solution, margins):
-    """Crank angles that lose half of their digits or more, found without the condition of all others.
-
-    Parameters
-    ----------
-    solution : Dynamics
-    margins : sequence of arrays
-        Its `closure`.
-
-    Returns
-    -------
-    points : array of int (M,)
-        Their places in the flattened shape of the solution.
-    condition : array (M,)
-        Above `HALF_DIGITS_CONDITION`, infinite where no rounding is small enough.
-    """
-    least = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
-    closed = reduce(np.minimum, margins, np.ones(())) >= -SQUARE_TOLERANCE
-    points = np.flatnonzero(np.broadcast_to(closed & (least < _sufficient_margin(solution)), solution.shape))
-    found = condition(solution, points) if points.size else np.zeros(0)
-    return points[found > HALF_DIGITS_CONDITION], found[found > HALF_DIGITS_CONDITION]
-
-
 def warn_of_lost_digits(solution, margins):
-    """Warn where half of the digits are lost; where the mechanism does not close there are none.
+    """Warn of crank angles that lose half of their digits or more; `margins` are the closure of the groups.
 
-    Numbers of other precision than double lose other digits, so they are not looked at.
+    The condition is computed only where the margins are small. Numbers of other precision than double lose other
+    digits, so they are not looked at.
     """
     if not margins or any(not isinstance(margin, np.ndarray) or margin.dtype != float for margin in margins):
         return
     if is_surely_well_conditioned(solution, margins):
         return
-    points, found = ill_conditioned(solution, margins)
-    if not points.size:
+    least = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins))
+    closed = reduce(np.minimum, margins) >= -SQUARE_TOLERANCE
+    points = np.flatnonzero(np.broadcast_to(closed & (least < _sufficient_margin(solution)), solution.shape))
+    found = condition(solution, points) if points.size else np.zeros(0)
+    count = np.count_nonzero(found > HALF_DIGITS_CONDITION)
+    if not count:
         return
     worst = int(np.argmax(found))
     angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
@@ -478,7 +445,7 @@ def warn_of_lost_digits(solution, margins):
     warnings.warn(
         f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
         f"magnified {found[worst]:.3g} times, so rates and "
-        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
+        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {count} of "
         f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
         "angle by angle; how many digits are correct for the very numbers given, often far more, is proven by "
         f"solution.error_bound(quantity)){''.join(f'; {text}' for text in kinks)}",

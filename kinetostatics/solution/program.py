@@ -135,8 +135,10 @@ class Program:
     def evaluated(self, angle, values=MappingProxyType({})):
         """The values of a call, without hints at its crank angles."""
         state, leaves = self._at(angle, values)
-        if values and self._friction is not None:
-            self._look_at_friction(state, leaves, values)
+        if values and self._friction is not None:  # other numbers may need more passes over friction than the scene's
+            checks.require("program", jamming.problem_at_rest(self.scene.varied(values)))
+            margin, residual = self._friction.run(state, leaves, self._compiled)
+            jamming.warn_if_not_converged(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
         if self._is_own:
             rows = self._program.run(state, leaves, self._compiled)
         else:
@@ -248,12 +250,6 @@ class Program:
             self._program, {path: self._numbers[path][0] for path in names}, state, leaves, self._backend
         )
 
-    def _look_at_friction(self, state, leaves, values):
-        """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
-        checks.require("program", jamming.problem_at_rest(self.scene.varied(values)))
-        margin, residual = self._friction.run(state, leaves, self._compiled)
-        jamming.warn_if_not_converged(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
-
     @property
     def unrecorded(self):
         """Names of the user's code whose dependence on parameters is not recorded, a tuple."""
@@ -304,21 +300,16 @@ class Program:
             numbers[number] = found
         if wrong:
             checks.require("program", *wrong)
-        if not self._doors.isdisjoint(values):
-            self.scene.varied(values)
-        if not self._lengths.isdisjoint(values):
-            self._require_same_kind(values)
+        lengths = self._lengths.intersection(values)
+        if lengths or not self._doors.isdisjoint(values):
+            varied = self.scene.varied(values)
+            if lengths and varied.mechanism.passages != self._passages:
+                raise ParameterError(
+                    f"program: {self.scene.mechanism.name} with other values of {', '.join(sorted(lengths))} is of "
+                    "another kind (which change points it passes), whose arithmetic is another: change lengths "
+                    "together so that it stays, or compile a program of it"
+                )
         return numbers
-
-    def _require_same_kind(self, values):
-        """Refuse lengths that change which change points are passed: they need other arithmetic."""
-        name, before = self.scene.mechanism.name, self._passages
-        if self.scene.varied(values).mechanism.passages != before:
-            given = ", ".join(sorted(self._lengths.intersection(values)))
-            raise ParameterError(
-                f"program: {name} with other values of {given} is of another kind (which change points it passes), "
-                "whose arithmetic is another: change lengths together so that it stays, or compile a program of it"
-            )
 
     def _require_known(self, names):
         if all(isinstance(path, str) and path in self._numbers for path in names):

@@ -479,7 +479,7 @@ class Solution(Certainty, Motion):
 
     def frame(self):
         """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
-        from .frame import solution_frame
+        from .tables import solution_frame
 
         return solution_frame(self)
 

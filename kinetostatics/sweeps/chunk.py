@@ -43,19 +43,11 @@ PARTS_PER_THREAD = 8
 
 
 def compute_batch(scene, job, count, outputs):
-    """Compute outputs of a batch of designs.
+    """Outputs of a batch of designs: numbers, reasons, rough, nearest, kinked.
 
-    Returns
-    -------
-    numbers : array (outputs, designs)
-    reasons : array (designs,) of str
-        Why a design has no numbers; empty for the others.
-    rough : array (outputs, designs) of bool
-        Numbers that the crank angles do not resolve.
-    nearest : array (designs,)
-        Crank angle, rad, nearest to a limit position; NaN if none is near.
-    kinked : array (outputs,) of bool
-        Outputs whose turn is split at kinks.
+    The numbers are (outputs, designs), the reasons (designs,) of text, empty for a design with numbers. `rough` marks
+    numbers that the crank angles do not resolve. `nearest` is the crank angle, rad, (designs,) nearest to a limit
+    position, or NaN; `kinked` marks the outputs, (outputs,), whose turn is split at kinks.
     """
     solution = unchecked_turn(scene, job.angles)
     checks.require("solve", *refusals(solution), *energy_contact.refusals(solution))
@@ -71,15 +63,10 @@ def compute_batch(scene, job, count, outputs):
     smooth = [item for item, split in zip(outputs, kinked, strict=True) if not split]
     numbers, gaps = np.empty((len(smooth), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    filler = _compiled_filler if job.engine == "compiled" else _numpy_filler
-    fill, step = filler(solution, smooth, made, (numbers, rough, gaps, nearest), job.threads)
-    starts = range(0, made, step)
-    if job.threads == 1 or len(starts) == 1:
-        for start in starts:
-            fill(start)
+    if job.engine == "compiled":
+        _reduce_by_loop(solution, smooth, job.threads, numbers, rough, gaps, nearest)
     else:
-        with ThreadPoolExecutor(job.threads) as pool:
-            list(pool.map(fill, starts))
+        _reduce_by_numpy(solution, smooth, numbers, rough, gaps, nearest)
     reasons = np.full(made, "", dtype=object)
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
@@ -93,9 +80,9 @@ def compute_batch(scene, job, count, outputs):
     return *map(np.array, for_all), kinked
 
 
-def _compiled_filler(solution, outputs, count, found, threads):
-    """Function ``fill(start)`` that computes and reduces the designs from `start` by machine code, and their number."""
-    state, names = solution.dynamics, quantity_names(outputs)
+def _reduce_by_loop(solution, outputs, threads, *found):
+    """Write the results of all designs, computed and reduced block by block by machine code."""
+    state, names, count = solution.dynamics, quantity_names(outputs), found[0].shape[1]
     program, leaves = program_of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
     tables = numba_backend.row_table(program.rows(state, leaves), solution.shape)
@@ -112,35 +99,28 @@ def _compiled_filler(solution, outputs, count, found, threads):
     def fill(start):
         reduce_block(loop, given, numba_backend.aligned_memory(block, *size), found, start, min(start + step, count))
 
-    return fill, step
+    starts = range(0, count, step)
+    if threads == 1 or len(starts) == 1:
+        for start in starts:
+            fill(start)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(fill, starts))
 
 
-def _numpy_filler(solution, outputs, count, found, threads):
-    """The same by NumPy; the values of all designs are computed here."""
-    numbers, rough, gaps, nearest = found
+def _reduce_by_numpy(solution, outputs, numbers, rough, gaps, nearest):
+    """The same by NumPy, all designs at once."""
+    shape, turns = (gaps.size, solution.shape[-1]), round(solution.period / TURN)
     with np.errstate(all="ignore"):
-        values = {
-            name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
-            for name in (*quantity_names(outputs), "closure")
-            for parts in [component_sizes(solution, name)]
-        }
-    turns = round(solution.period / TURN)
-    step = max(1, BLOCK_VALUES // solution.shape[-1])
-
-    def fill(start):
-        block = slice(start, start + step)
-        with np.errstate(all="ignore"):
-            for row, item in enumerate(outputs):
-                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
-            closure = values["closure"][:, block]
-            margin = closure.min(axis=-1)
-            gaping = ~(margin >= -SQUARE_TOLERANCE).all(axis=0)
-            gaps[block][gaping] = (~(closure[:, gaping] >= -SQUARE_TOLERANCE)).any(axis=0).sum(axis=-1)
-            near = ~gaping & (margin < NEAR).any(axis=0)
-            if near.any():
-                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
-
-    return fill, step
+        values = {name: np.reshape(component_sizes(solution, name)[0], shape) for name in quantity_names(outputs)}
+        for row, item in enumerate(outputs):
+            numbers[row], rough[row] = item.estimated(values[item.quantity], turns)
+        closure = np.reshape(solution.closure, (-1, *shape))
+        margin = closure.min(axis=-1)
+        gaping = ~(margin >= -SQUARE_TOLERANCE).all(axis=0)
+        gaps[gaping] = (~(closure[:, gaping] >= -SQUARE_TOLERANCE)).any(axis=0).sum(axis=-1)
+        near = ~gaping & (margin < NEAR).any(axis=0)
+        nearest[near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
 
 
 def _split_turns(scene, job, outputs):

@@ -121,13 +121,10 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     checks.require(
         "tolerances",
         None
-        if not isinstance(spreads, Mapping | None) or spreads
+        if spreads or not isinstance(spreads, Mapping | None)
         else 'no spreads are given, nor has the case file any for this variant, in "tolerances"'
         if is_case(case)
         else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
-        None
-        if spreads is None or isinstance(spreads, Mapping)
-        else f"spreads must be a dict of parameter to text or quantities, got {checks.shown(spreads)}",
         None if power else f"count must be a power of two, got {count!r}",
         None if folder is None else folder_problem(folder),
     )
@@ -136,32 +133,26 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     sweeps = itertools.count()
 
     def run(designed):
+        """Table of designs with their outputs, all of which must be finite."""
         place = None if folder is None else Path(folder) / f"sweep-{next(sweeps)}"
         table = sweep(case, designed, wanted, folder=place, **options)
-        _require_finite(table, names_in(table))
+        infinite = np.isinf(table.iloc[:, len(found) : -1]).any(axis=1)
+        reasons = table[FAILED].where(~infinite, "an output is infinite")
+        wrong = reasons[reasons != ""]
+        if len(wrong):
+            raise ParameterError(
+                f"tolerances: {len(wrong)} of {len(table)} designs within the spread cannot be computed, for example: "
+                f"{wrong.iloc[0]}; narrow the spreads, or use sweep, which keeps them"
+            )
         return table
-
-    def names_in(table):
-        return tuple(table.columns[len(found) : -1])
 
     def values(numbers):
         table = run(pd.DataFrame(numbers.T, columns=designs.headings(found)))
-        return np.array(table[list(names_in(table))]).T
+        return table.iloc[:, len(found) : -1].to_numpy(copy=True).T
 
     table = run(designs.sobol(spreads, count, seed))
-    names = names_in(table)
+    names = tuple(table.columns[len(found) : -1])
     return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))
-
-
-def _require_finite(table, names):
-    infinite = np.isinf(table[list(names)]).any(axis=1)
-    reasons = table[FAILED].where(~infinite, "an output is infinite")
-    wrong = reasons[reasons != ""]
-    if len(wrong):
-        raise ParameterError(
-            f"tolerances: {len(wrong)} of {len(table)} designs within the spread cannot be computed, for example: "
-            f"{wrong.iloc[0]}; narrow the spreads, or use sweep, which keeps them"
-        )
 
 
 def _sensitivity(values, found, names, count, seed):

@@ -139,16 +139,7 @@ def _signals_blocked():
 
 
 def run_chunks(job, rows_of, numbers, workers):
-    """Yield number and result of each chunk, in order of completion.
-
-    Parameters
-    ----------
-    job : Job
-    rows_of : function
-        Designs of a chunk by its number.
-    numbers : sequence of int
-    workers : Workers
-    """
+    """Yield number and result of each chunk, in order of completion; ``rows_of(number)`` gives its designs."""
     waiting = deque(numbers)
     suspects: list[int] = []
     running: dict[Future, int] = {}

@@ -216,7 +216,7 @@ def test_compiled_programs_keep_gaps_and_limits(numba):
     pin = solve(scene, ANGLES).position("B")[1]
     for length in (0.35, pin.max()):
         groups = (first, replace(second, coupler_length=length))
-        s = solve(scene._replace(mechanism=replace(scene.mechanism, groups=groups)), ANGLES, on_gap="nan")
+        s = solve(replace(scene, mechanism=replace(scene.mechanism, groups=groups)), ANGLES, on_gap="nan")
         assert np.array_equal(np.isnan(s.balancing_torque), np.abs(pin) > length)
         assert_program_equals(s, rounded=1e-12)  # near its limit rounding counts for more
     assert s.condition[pin.argmax()] == np.inf
@@ -267,7 +267,7 @@ def cost(scene, *names):
 
 def test_what_is_absent_or_not_asked_for_costs_nothing():
     plain, weightless = SCENES["plain"], SCENES["plain, weightless"]
-    light = plain._replace(mechanism=plain.mechanism.with_link("coupler", ks.Link()))
+    light = replace(plain, mechanism=plain.mechanism.with_link("coupler", ks.Link()))
     assert cost(light) < cost(weightless) < cost(plain) < cost(SCENES["plain, everything"])
     assert cost(plain, "slider_position") <= 10
     torque, reactions = cost(plain, "balancing_torque"), cost(plain, "O", "A", "B", "guide")

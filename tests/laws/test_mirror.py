@@ -61,46 +61,34 @@ def agreed(law, scene):
 
 SHORT = ("crank slider", "circle cam", "four-bar", "lever", "yoke", "roller follower", "swinging follower")
 """Kinds that are solved fast; all others are slow tests."""
+AT_REST = [
+    {"loads": ("gravity", "spring", "table over travel"), "speed": 0.0, "acceleration": way, "friction": friction}
+    for way in (40.0, -40.0)
+    for friction in (False, True)
+]
+"""Machines that begin to move."""
+FAST = [
+    *((kind, 0, {}) for kind in SHORT),
+    *((kind, 1, {"friction": True}) for kind in ("crank slider", "lever")),
+    *(("crank slider", 3, {"loads": LOADS[first::4]}) for first in range(4)),
+    ("four-bar", 3, {"loads": ("torsion spring",)}),
+    *(("crank slider", 5, options) for options in AT_REST),
+    *(("crank slider", 5, {"loads": ("table with back",), "speed": 0.0, "acceleration": a}) for a in (40.0, -40.0)),
+]
+SLOW = [
+    *((kind, 0, {}) for kind in KINDS if kind not in SHORT),
+    ("circle cam", 1, {"friction": True}),
+    *(("two sliders", 5, options) for options in AT_REST),
+]
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=[] if kind in SHORT else [pytest.mark.slow]) for kind in KINDS]
+    ("kind", "seed", "options"), [*FAST, *(pytest.param(*row, marks=pytest.mark.slow) for row in SLOW)]
 )
-def test_every_quantity_of_a_solution(kind):
-    scene = drawn(kind, 0)
-    assert_mirrored(laws.solved(scene), kind)
-
-
-@pytest.mark.parametrize("kind", ["crank slider", pytest.param("circle cam", marks=pytest.mark.slow), "lever"])
-def test_every_quantity_of_a_solution_with_friction(kind):
-    scene = drawn(kind, 1, friction=True)
-    assert_mirrored(agreed(laws.solved, scene), kind)
-
-
-@pytest.mark.parametrize("first", range(4))
-def test_every_load(first):
-    assert_mirrored(laws.solved(drawn("crank slider", 3, loads=LOADS[first::4])))
-
-
-def test_torsion_springs():
-    scene = drawn("four-bar", 3, loads=("torsion spring",))
+def test_every_quantity_of_a_solution(kind, seed, options):
+    scene = drawn(kind, seed, **options)
     assert scene.loads
-    assert_mirrored(laws.solved(scene))
-
-
-@pytest.mark.parametrize("kind", ["crank slider", pytest.param("two sliders", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("acceleration", [40.0, -40.0])
-@pytest.mark.parametrize("friction", [False, True])
-def test_a_machine_at_rest_that_begins_to_move(kind, acceleration, friction):
-    loads = ("gravity", "spring", "table over travel")
-    scene = drawn(kind, 5, loads=loads, friction=friction, speed=0.0, acceleration=acceleration)
-    assert_mirrored(laws.solved(scene), kind)
-
-
-@pytest.mark.parametrize("acceleration", [40.0, -40.0])
-def test_a_machine_at_rest_with_a_table_of_two_strokes(acceleration):
-    scene = drawn("crank slider", 5, loads=("table with back",), speed=0.0, acceleration=acceleration)
-    assert_mirrored(laws.solved(scene))
+    assert_mirrored(agreed(laws.solved, scene), kind)
 
 
 CHANGE_POINTS = {
@@ -126,11 +114,19 @@ def test_machines_that_pass_change_points(name):
 # Over the turn
 
 
-@pytest.mark.parametrize(
-    "kind", ["lever", *(pytest.param(k, marks=pytest.mark.slow) for k in ("drag link", "roller follower"))]
-)
-def test_extremes(kind):
-    assert_mirrored(laws.extremes(drawn(kind, 0)), kind)
+OVER_TURN = [
+    (laws.extremes, "lever", 0),
+    (laws.means, "four-bar", 0),
+    (laws.swept, "four-bar", 1),
+    (laws.compiled, "crank slider", 2),
+    (laws.compiled, "drag link", 2),
+    *(pytest.param(laws.extremes, kind, 0, marks=pytest.mark.slow) for kind in ("drag link", "roller follower")),
+]
+
+
+@pytest.mark.parametrize(("law", "kind", "seed"), OVER_TURN)
+def test_results_over_the_turn(law, kind, seed):
+    assert_mirrored(law(drawn(kind, seed)), kind)
 
 
 @pytest.mark.slow
@@ -153,20 +149,6 @@ def test_level_stretch_has_its_extremum_in_the_middle():
     found = ks.extremes(solution, "contact_force")
     np.testing.assert_allclose(found.angle, [2.0 + DWELL / 2, 4.0 + DWELL + rest.angle / 2], atol=ANGLE)
     np.testing.assert_allclose(found.value, [3e3 * 0.12, 3e3 * 0.1], rtol=1e-13)
-
-
-@pytest.mark.parametrize("kind", ["four-bar"])
-def test_means(kind):
-    assert_mirrored(laws.means(drawn(kind, 0)), kind)
-
-
-def test_reductions_of_sweeps():
-    assert_mirrored(laws.swept(drawn("four-bar", 1)))
-
-
-@pytest.mark.parametrize("kind", ["crank slider", "drag link"])
-def test_programs(kind):
-    assert_mirrored(laws.compiled(drawn(kind, 2)))
 
 
 DWELLING = ("roller follower", "flat follower", "swinging follower")
@@ -229,60 +211,43 @@ def test_flywheels():
 
 
 COASTS = {
-    "from a speed": ("spring", "gravity", 8.0, None),
-    "from a negative speed": ("spring", "gravity", -8.0, None),
-    "rocking": ("gravity", "spring", 0.4, None),
-    "under a motor": ("process", "gravity", 2.0, "linear"),
-    "against a motor": ("process", "gravity", 8.0, "linear"),
+    "from a speed": (("spring", "gravity"), 8.0, {"until": 0.4}),
+    "from a negative speed": (("spring", "gravity"), -8.0, {"until": 0.4}),
+    "rocking": (("gravity", "spring"), 0.4, {"until": 0.4}),
+    "under a motor": (("process", "gravity"), 2.0, {"until": 0.4, "motor": MOTORS["linear"]}),
+    "against a motor": (("process", "gravity"), 8.0, {"until": 0.4, "motor": MOTORS["linear"]}),
+}
+SLOW_COASTS = {
+    **{f"two strokes, {speed}": (("table with back",), speed, {"until": 0.4}) for speed in (8.0, -8.0, 0.4)},
+    **{f"to standstill, {speed}": (("gravity",), speed, {"until": "standstill"}) for speed in (6.0, -6.0)},
 }
 
 
-@pytest.mark.parametrize("name", COASTS)
+@pytest.mark.parametrize("name", [*COASTS, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW_COASTS)])
 def test_coasting(name):
-    *loads, speed, motor = COASTS[name]
-    scene = drawn("crank slider", 4, loads=loads)
-    motor = MOTORS.get(motor)
-    one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4, motor=motor)
-    image = None if motor is None else mirrored(motor)
-    other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4, motor=image)
+    loads, speed, options = (COASTS | SLOW_COASTS)[name]
+    rubs = options["until"] == "standstill"
+    scene, flywheel = drawn("crank slider", 4, loads=loads, friction=rubs), 0.05 if rubs else 1.0
+    image = {"motor": mirrored(options["motor"])} if "motor" in options else {}
+    one = ks.drive.coast(scene, flywheel, 0.7, speed, **options)
+    other = ks.drive.coast(mirrored(scene), flywheel, -0.7, -speed, **options | image)
     assert_mirrored(laws.moving(one, other))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("speed", [8.0, -8.0, 0.4])
-def test_coasting_with_a_table_of_two_strokes(speed):
-    scene = drawn("crank slider", 4, loads=("table with back",))
-    one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4)
-    other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4)
-    assert_mirrored(laws.moving(one, other))
+STARTS = [
+    ("kloss", ("gravity", "spring"), {}, CLOSE),
+    ("linear", ("gravity", "spring"), {}, CLOSE),
+    pytest.param("kloss", ("table with back", "torsion damper"), {"until": 0.2}, 1e-12, marks=pytest.mark.slow),
+]
 
 
-@pytest.mark.parametrize("motor", ["kloss", "linear"])
-def test_starting(motor):
-    scene, motor = drawn("crank slider", 4, loads=("gravity", "spring")), MOTORS[motor]
-    one, other = (
-        ks.drive.start(machine, drive, 1.0, from_angle=angle)
-        for machine, drive, angle in ((scene, motor, 0.7), (mirrored(scene), mirrored(motor), -0.7))
-    )
-    assert_mirrored(laws.moving(one, other))
-
-
-@pytest.mark.slow
-def test_start_with_two_strokes_and_speed_load():
-    scene = drawn("crank slider", 4, loads=("table with back", "torsion damper"))
-    motor = MOTORS["kloss"]
-    one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, until=0.2)
-    other = ks.drive.start(mirrored(scene), mirrored(motor), 1.0, from_angle=-0.7, until=0.2)
-    assert_mirrored(laws.moving(one, other), close=1e-12)  # near its mean speed the motor's torque is steep
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("speed", [6.0, -6.0])
-def test_coasting_to_standstill_under_friction(speed):
-    scene = drawn("crank slider", 4, loads=("gravity",), friction=True)
-    one = ks.drive.coast(scene, 0.05, 0.7, speed, until="standstill")
-    other = ks.drive.coast(mirrored(scene), 0.05, -0.7, -speed, until="standstill")
-    assert_mirrored(laws.moving(one, other))
+@pytest.mark.parametrize(("motor", "loads", "options", "close"), STARTS)
+def test_starting(motor, loads, options, close):
+    """Near its mean speed the motor's torque is steep."""
+    scene, motor = drawn("crank slider", 4, loads=loads), MOTORS[motor]
+    one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, **options)
+    other = ks.drive.start(mirrored(scene), mirrored(motor), 1.0, from_angle=-0.7, **options)
+    assert_mirrored(laws.moving(one, other), close=close)
 
 
 # Designs

@@ -10,7 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError, ParameterError, QuantityError
 from kinetostatics.solution.certainty import find_second_order
-from kinetostatics.solution.uncertainty_table import format_with_uncertainty, largest_with_uncertainty
+from kinetostatics.solution.tables import format_with_uncertainty, largest_with_uncertainty
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)

@@ -32,14 +32,14 @@ class Drawn:
 
     def __init__(self, kind, seed, scale=1.0):
         self.rng, self.scale = np.random.default_rng([KINDS.index(kind), seed]), scale
-        self.bodies, self.poses, self.joints, self.friction, self.applied = {}, {}, {}, {}, []
+        self.bodies, self.poses, self.joints, self.friction, self.applied, self.loads = {}, {}, {}, {}, [], ()
         self.r = self.real(0.08, 0.15)
-        getattr(self, "_" + kind.replace("-", "_").replace(" ", "_"))()
+        crank, *groups = getattr(self, "_" + kind.replace("-", "_").replace(" ", "_"))()
         self.speed = float(self.rng.choice([-1, 1]) * self.real(3.0, 40.0))
         self.acceleration = self.real(-60.0, 60.0)
         self.gravity = self.real(-10, 10), self.real(-10, 10)
         self.scene = ks.Scene(
-            self.mechanism,
+            ks.Mechanism(kind, crank, tuple(groups)),
             self.speed,
             self.acceleration,
             (ks.Gravity(math.hypot(*self.gravity), math.atan2(*self.gravity[::-1])), *self.loads),
@@ -85,11 +85,11 @@ class Drawn:
         self.friction[name] = (ks.GuideFriction if against is None else ks.SlotFriction)(mu, half)
         self.joints[name] = Slide(on, against, at, direction, mp.mpf(mu), half)
 
-    def _crank(self):
-        self.ray, self.A = mp.expj, lambda phi: self.r * mp.expj(phi)
+    def _crank(self, length):
+        self.A = lambda phi: self.r * mp.expj(phi)
         link = self.link("crank", lambda phi: mp.mpc(0), mp.expj)
         self.pin("O", "crank", None, lambda phi: mp.mpc(0))
-        return ks.Crank(self.r, link)
+        return ks.Crank(length, link)
 
     def _sliding(self, inner, carrier, on="A", pin="B", label=""):
         """Slider group on a point."""
@@ -122,12 +122,11 @@ class Drawn:
         self.pin(pin, block, coupler, slider)
         self.slide("guide" + label, block, None, slider, lambda phi: u)
         self.applied.append((block, lambda phi: force * u, slider))
-        self.loads = (*getattr(self, "loads", ()), ks.ProcessForce(force, on=block))
+        self.loads = (*self.loads, ks.ProcessForce(force, on=block))
         return group
 
     def _slider(self):
-        crank = self._crank()
-        self.mechanism = ks.Mechanism("slider", crank, (self._sliding(self.A, "crank"),))
+        return self._crank(self.r), self._sliding(self.A, "crank")
 
     def _cam(self):
         r, centre = self.r, (self.real(-0.2, 0.2) * self.r, self.real(-0.2, 0.2) * self.r)
@@ -137,15 +136,13 @@ class Drawn:
             along, across = mp.re(c * mp.conj(mp.expj(phi))), mp.im(c * mp.conj(mp.expj(phi)))
             return mp.expj(phi) * (along + mp.sqrt(r**2 - across**2))
 
-        crank = self.link("crank", lambda phi: mp.mpc(0), mp.expj)
-        self.pin("O", "crank", None, lambda phi: mp.mpc(0))
+        crank = self._crank(None)
         block = self.link("block", roller, mp.expj)
         self.slide("slot", "block", "crank", roller, mp.expj)
         mu, pin_radius, radius = self.scale * self.real(0, 0.1), self.real(0.01, 0.02), self.real(0.02, 0.05)
         self.friction["cam"] = ks.RollerFriction(mu, pin_radius, radius)
         self.joints["cam"] = Roller("block", roller, mp.mpf(mu) * pin_radius, mp.mpf(radius))
-        cam = ks.CamRoller(ks.cams.Circle(r, centre), block)
-        self.mechanism = ks.Mechanism("cam", ks.Crank(None, crank), (cam, self._sliding(roller, "block")))
+        return crank, ks.CamRoller(ks.cams.Circle(r, centre), block), self._sliding(roller, "block")
 
     def _bars(self):
         a = self.r
@@ -165,28 +162,25 @@ class Drawn:
         self.pin("A", "coupler", "crank", self.A)
         self.pin("B", "rocker", "coupler", B)
         self.pin("O2", "rocker", None, lambda phi: O2)
-        self.B, self.q, self.p, self.O2, self.h = B, q, p, O2, h
-        self.loads = getattr(self, "loads", ())
+        self.B, self.q = B, q
         return group
 
     def _four_bar(self):
-        self.mechanism = ks.Mechanism("four-bar", self._crank(), (self._bars(),))
+        return self._crank(self.r), self._bars()
 
     def _six_bar(self):
-        groups = self._crank(), self._bars(), self._sliding(self.B, "rocker", "B", "C", "2")
-        self.mechanism = ks.Mechanism("six-bar", groups[0], groups[1:])
+        return self._crank(self.r), self._bars(), self._sliding(self.B, "rocker", "B", "C", "2")
 
     def _coupler_point(self):
         along, across = self.real(0.5, 1.5) * self.r, self.real(-0.5, 0.5) * self.r
-        crank, bars = self._crank(), self._bars()
+        crank, bars = self._crank(self.r), self._bars()
         point = lambda phi: self.A(phi) + mp.mpc(along, across) * self.q(phi)  # noqa: E731
-        further = self._sliding(point, "coupler", "C", "D", "2")
         pin = ks.Pin(on="coupler", at=(along, across), name="C")
-        self.mechanism = ks.Mechanism("coupler point", crank, (bars, pin, further))
+        return crank, bars, pin, self._sliding(point, "coupler", "C", "D", "2")
 
     def _dyad(self):
         """Dyad between the rocker's end and a further pin of the crank."""
-        crank, bars = self._crank(), self._bars()
+        crank, bars = self._crank(self.r), self._bars()
         along = self.real(-0.6, -0.3) * self.r
         point = lambda phi: along * mp.expj(phi)  # noqa: E731
         one, two = self.real(4, 5) * self.r, self.real(4, 5) * self.r
@@ -203,11 +197,10 @@ class Drawn:
         self.pin("dyad1_B", "dyad1", "rocker", self.B)
         self.pin("dyad2_C", "dyad2", "crank", point)
         self.pin("D", "dyad2", "dyad1", D)
-        pin = ks.Pin(on="crank", at=(along, 0.0), name="C")
-        self.mechanism = ks.Mechanism("dyad", crank, (bars, pin, dyad))
+        return crank, bars, ks.Pin(on="crank", at=(along, 0.0), name="C"), dyad
 
     def _lever(self):
-        crank = self._crank()
+        crank = self._crank(self.r)
         pivot = self.real(-0.5, 0.5) * self.r, self.real(-2.5, -1.5) * self.r
         offset, O2 = self.real(-0.3, 0.3) * self.r, mp.mpc(*pivot)
 
@@ -224,11 +217,10 @@ class Drawn:
         self.pin("A", "block", "crank", self.A)
         self.pin("O2", "lever", None, lambda phi: O2)
         self.slide("slot", "block", "lever", self.A, direction)
-        self.loads = ()
-        self.mechanism = ks.Mechanism("lever", crank, (lever,))
+        return crank, lever
 
     def _cylinder(self):
-        crank = self._crank()
+        crank = self._crank(self.r)
         pivot = self.real(-0.5, 0.5) * self.r, self.real(-4, -2) * self.r
         O2 = mp.mpc(*pivot)
         towards = lambda phi: (self.A(phi) - O2) / abs(self.A(phi) - O2)  # noqa: E731
@@ -241,11 +233,10 @@ class Drawn:
         self.pin("O2", "cylinder", None, lambda phi: O2)
         self.slide("cylinder", "rod", "cylinder", lambda phi: O2, towards)
         self.joints["cylinder"].moving = self.A
-        self.loads = ()
-        self.mechanism = ks.Mechanism("cylinder", crank, (group,))
+        return crank, group
 
     def _yoke(self):
-        crank = self._crank()
+        crank = self._crank(self.r)
         angle, offset, beta = self.real(-3, 3), self.real(-0.3, 0.3) * self.r, self.real(1.1, 2.0)
         guide = ks.Guide.at(angle, offset)
         u = mp.mpc(*map(float, guide.direction))
@@ -269,7 +260,7 @@ class Drawn:
         self.friction["guide"] = ks.GuideFriction(self.friction["guide"].mu, half)
         self.applied.append(("slider", lambda phi: force * u, slider))
         self.loads = (ks.ProcessForce(force),)
-        self.mechanism = ks.Mechanism("yoke", crank, (group,))
+        return crank, group
 
 
 def differences(kind, seed, scale=1.0, changed=None):

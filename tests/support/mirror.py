@@ -334,17 +334,6 @@ def apart(found, expected, period=TURN):
     return float(np.max(distance, initial=0.0))
 
 
-def both(function, *arguments):
-    """What a function gives for scenes or other things and for their mirror images; errors by their class alone."""
-    found = []
-    for side in (arguments, [mirrored(item) for item in arguments]):
-        try:
-            found.append(function(*side))
-        except ks.KinetostaticsError as error:
-            found.append(type(error))
-    return found
-
-
 def solved(scene, angles=ANGLES):
     return differences(scene.solve(angles), mirrored(scene).solve(-angles), unsigned(scene))
 

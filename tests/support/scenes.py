@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,88 +13,73 @@ from kinetostatics.machine.links import LinkMotion, Wrench
 from .machines import FourBar
 
 
-def six_bar():
+def six_bar(mass=3.0):
     """A four-bar whose rocker pin drives a slider: crank, coupler, rocker, second coupler, slider."""
     return ks.Mechanism(
         "six-bar",
         ks.Crank(0.1, ks.Link(1.0, 0.05, 0.01)),
         (
             ks.RockerGroup(0.4, 0.3, (0.35, 0.1), coupler=ks.Link(2.0, 0.2, 0.03), rocker=ks.Link(2.0, 0.1, 0.02)),
-            ks.SliderGroup(0.5, on="B", pin="C", label="2", coupler=ks.Link(1.0, 0.2, 0.02), slider=ks.Link(3.0)),
+            ks.SliderGroup(0.5, on="B", pin="C", label="2", coupler=ks.Link(1.0, 0.2, 0.02), slider=ks.Link(mass)),
         ),
     )
 
 
 SPEED = 320 * 2 * math.pi / 60
-
-
 ANGLES = np.linspace(0, 2 * math.pi, 360, endpoint=False)
 
 
-class Scene(NamedTuple):
-    """A mechanism under load; what is absent is None."""
-
-    mechanism: ks.Mechanism
-    gravity: ks.Gravity | None = None
-    spring: ks.Spring | None = None
-    push: float | None = None
-    acceleration: float | None = None
-    on: str = "slider"
+def scene(mechanism, *loads, acceleration=0.0):
+    """A mechanism at the sawframe's speed under loads."""
+    return ks.Scene(mechanism, SPEED, acceleration, loads)
 
 
 LIGHT = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
-
-
 HEAVY = {
     "crank": ks.Link(80.0, (0.1, 0.03), 2.0),
     "coupler": ks.Link(150.0, (0.9, -0.1), 20.5),
     "slider": ks.Link(600.0, (0.2, 0.05), 5.0),
 }
-
-
 BLOCK = ks.Link(30.0, (0.02, 0.01), 0.5)
-
-
 COSINE = ks.cams.CosineLaw(0.3, 2.0)
-
-
 BALANCING = ks.Spring.balancing(600.0, SPEED, 2.0)
-
-
 SCENES = {
-    "plain, weightless": Scene(ks.crank_slider(0.3, 2.0, **LIGHT)),
-    "plain": Scene(ks.crank_slider(0.3, 2.0, **LIGHT), ks.Gravity()),
-    "plain, everything": Scene(
+    "plain, weightless": scene(ks.crank_slider(0.3, 2.0, **LIGHT)),
+    "plain": scene(ks.crank_slider(0.3, 2.0, **LIGHT), ks.Gravity()),
+    "plain, everything": scene(
         ks.crank_slider(0.3, 2.0, guide_angle=0.3, guide_offset=0.1, assembly=-1, **HEAVY),
         ks.Gravity(),
         ks.Spring(1e4, -1.0),
-        2500.0,
-        40.0,
+        ks.ProcessForce(2500.0),
+        acceleration=40.0,
     ),
-    "circle cam": Scene(
+    "circle cam": scene(
         ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.0219, 0.0)), 2.0219, **LIGHT), ks.Gravity(), BALANCING
     ),
-    "cosine cam": Scene(ks.cam_crank_slider(COSINE, COSINE.coupler_length, **LIGHT), ks.Gravity(), BALANCING),
-    "circle cam, everything": Scene(
+    "cosine cam": scene(ks.cam_crank_slider(COSINE, COSINE.coupler_length, **LIGHT), ks.Gravity(), BALANCING),
+    "circle cam, everything": scene(
         ks.cam_crank_slider(
             ks.cams.Circle(0.3, (0.02, 0.01)), 2.0, guide_angle=0.3, guide_offset=0.1, block=BLOCK, **HEAVY
         ),
         ks.Gravity(),
         BALANCING,
-        2500.0,
-        40.0,
+        ks.ProcessForce(2500.0),
+        acceleration=40.0,
     ),
-    "four-bar": Scene(FourBar(assembly=-1).solve().mechanism, ks.Gravity(9.81, -1.2), acceleration=40.0),
-    "six-bar": Scene(six_bar(), ks.Gravity(), ks.Spring(100.0, 0.5, on="slider2"), 30.0, 40.0, on="slider2"),
+    "four-bar": scene(FourBar(assembly=-1).solve().mechanism, ks.Gravity(9.81, -1.2), acceleration=40.0),
+    "six-bar": scene(
+        six_bar(),
+        ks.Gravity(),
+        ks.Spring(100.0, 0.5, on="slider2"),
+        ks.ProcessForce(30.0, "slider2"),
+        acceleration=40.0,
+    ),
 }
 
 
 def solve(scene, angles, **options):
-    loads = [load for load in (scene.gravity, scene.spring) if load is not None]
-    if scene.push is not None:
-        loads.append(ks.ProcessForce(scene.push, scene.on))
-    options = {"crank_speed": SPEED, "crank_acceleration": scene.acceleration or 0.0} | options
-    return ks.solve(scene.mechanism, angles, loads=loads, **options)
+    given = {name: getattr(scene, name) for name in ("crank_speed", "crank_acceleration", "loads")}
+    return ks.solve(scene.mechanism, angles, **given | options)
 
 
 def everything(solution):
@@ -170,20 +155,16 @@ class Pan(Group):
 
 
 def with_group(group):
-    return Scene(ks.Mechanism("crank with a pan", ks.Crank(0.3, ks.Link(2.0, 0.1)), (group,)), ks.Gravity())
+    return scene(ks.Mechanism("crank with a pan", ks.Crank(0.3, ks.Link(2.0, 0.1)), (group,)), ks.Gravity())
 
 
 TABLE = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-
-
 OWN = {
-    "cam that can be recorded": (Scene(ks.cam_crank_slider(Wave(0.3, 0.05), 2.0, **HEAVY), ks.Gravity()), 0),
-    "cam of plain numbers": (Scene(ks.cam_crank_slider(Steps(0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
-    "sampled cam": (Scene(ks.cam_crank_slider(ks.cams.Sampled(TABLE, 0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
+    "cam that can be recorded": (scene(ks.cam_crank_slider(Wave(0.3, 0.05), 2.0, **HEAVY), ks.Gravity()), 0),
+    "cam of plain numbers": (scene(ks.cam_crank_slider(Steps(0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
+    "sampled cam": (scene(ks.cam_crank_slider(ks.cams.Sampled(TABLE, 0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
     "group": (with_group(Pan(ks.Link(3.0, (0.05, -0.1), 0.2))), 0),
 }
-
-
 FORCES = {
     "constant": (2500.0, 0),
     "array over the crank angles": (1e3 * np.sin(ANGLES), 1),
@@ -194,14 +175,8 @@ FORCES = {
     "function that looks for an angle": (lambda motion: 1e3 * (motion.crank_angle == ANGLES[3]), 1),
     "function that counts angles": (lambda motion: motion.travel() * np.arange(motion.crank_angle.size), 1),
 }
-
-
 SIZES = np.array([[0.2], [0.3], [0.37]])
-
-
 SAMPLES = ANGLES[::12]
-
-
 BATCHES = {
     "lengths, masses and force": lambda: ks.solve(
         ks.crank_slider(SIZES, 2.0, coupler=ks.Link(150.0 * SIZES, SIZES, 20.5), slider=ks.Link(600.0)),

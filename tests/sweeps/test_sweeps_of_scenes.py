@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
+from support import scenes
 from support.case_files import shipped
 from support.every import every
 
@@ -23,15 +24,7 @@ def four_bar(mass=2.0, crank=0.1):
 
 def six_bar(mass=3.0):
     """A four-bar whose rocker pin drives a slider."""
-    mechanism = ks.Mechanism(
-        "six-bar",
-        ks.Crank(0.1, ks.Link(1.0, 0.05, 0.01)),
-        (
-            ks.RockerGroup(0.4, 0.3, (0.35, 0.1), coupler=ks.Link(2.0, 0.2, 0.03), rocker=ks.Link(2.0, 0.1, 0.02)),
-            ks.SliderGroup(0.5, on="B", pin="C", label="2", coupler=ks.Link(1.0, 0.2, 0.02), slider=ks.Link(mass)),
-        ),
-    )
-    return ks.Scene(mechanism, 20.0, 0.0, ks.Gravity())
+    return ks.Scene(scenes.six_bar(mass), 20.0, 0.0, ks.Gravity())
 
 
 def shaper(mass=8.0, stiffness=300.0, reach=0.55):

@@ -1,6 +1,7 @@
-"""Table of the largest values of a machine with their uncertainty from tolerances of its numbers and from rounding."""
+"""Tables of a solution: all results by crank angle, and largest values with their uncertainty."""
 
 import warnings
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,11 +9,64 @@ import numpy as np
 from ..cycle.extremes import extrema
 from ..cycle.kinks import LOAD_FREE_KINDS
 from ..cycle.rounding import AT_JUMP, BoundedExtremes
+from ..cycle.turn import NEAR
 from ..errors import ConditionWarning, ParameterError
+from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import of_scene
+from ..numbers import paths
 from ..numbers.formatting import number, round_uncertainty_up
 from .certainty import Doubt, doubt_text
-from .scene import Scene
+from .parameters import Parameters
+
+COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
+"""Order of kinds of quantities in the table, after the positions of joints; energies are left out."""
+
+
+def solution_frame(solution):
+    """One row for each crank angle (and design), units in the column names, as a pandas DataFrame.
+
+    Warns
+    -----
+    ConditionWarning
+        Rates and forces have no correct digit at some of the crank angles.
+    """
+    import pandas as pd
+
+    _warn_of_rows_without_digits(solution)
+    rows = [(joint, "m", solution.position(joint)) for joint in solution.placement.joints]
+    quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in COLUMN_ORDER)
+    for name, quantity in sorted(quantities, key=lambda pair: COLUMN_ORDER.index(pair[1].kind)):
+        if quantity.kind != "rate" or solution.placement.links[quantity.owner].ratio is not None:
+            name = f"reaction_{name}" if quantity.kind == "reaction" else name
+            values = quantity.read(solution)
+            rows.append((name, quantity.unit, values if quantity.vector else [values]))
+    columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
+    for name, unit, parts in rows:
+        endings = ("_x", "_y") if len(parts) == 2 else ("",)
+        columns |= {f"{name}{ending} [{unit}]": part for ending, part in zip(endings, parts, strict=True)}
+    shape = np.broadcast_shapes(*(np.shape(values) for values in columns.values()))
+    table = pd.DataFrame({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
+    if len(shape) > 1:
+        designs = np.prod(shape[:-1], dtype=int)
+        table.insert(0, "design", np.repeat(np.arange(designs), shape[-1]))
+    return table
+
+
+def _warn_of_rows_without_digits(solution):
+    with np.errstate(invalid="ignore"):
+        if not any(np.any(margin < NEAR) for margin in solution.closure):
+            return
+        lost = solution.condition >= NO_DIGITS_CONDITION
+    if lost.any():
+        angle = np.unique(np.broadcast_to(solution.crank_angle, solution.shape)[lost])
+        places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3])) + (" ..." if angle.size > 3 else "")
+        warnings.warn(
+            f"{solution.mechanism.name}: rates and forces have no correct digit in {int(lost.sum())} of {lost.size} "
+            f"rows, at crank angles {places} deg (solution.condition)",
+            ConditionWarning,
+            stacklevel=4,
+        )
+
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 TABLE_KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
@@ -30,29 +84,10 @@ def largest_with_uncertainty(solution, inputs):
     moves along a steep curve: there the largest values with each input smaller and larger by its uncertainty are
     compared. Quantities that do not vary over the period are left out.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of one design; its own crank angles do not matter.
-    inputs : mapping of path to float
-        Standard uncertainties, as for `Solution.uncertainty`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        By quantity its unit, its value of largest magnitude and the crank angle, the standard uncertainty from all
-        inputs, the proven bound on rounding (NaN where there is none), the input with the largest share of the
-        variance, and this share.
-
-    Raises
-    ------
-    NotGivenError, ParameterError
-        As for `Solution.uncertainty`.
-
-    Warns
-    -----
-    ConditionWarning
-        As for `Solution.uncertainty`, once for all quantities.
+    A row has the unit, the value of largest magnitude and its crank angle, the standard uncertainty from all inputs,
+    the proven bound on rounding (NaN where there is none), and the input with the largest share of the variance.
+    Inputs, errors and the warning, which is one for all quantities, are those of `Solution.uncertainty`; the solution
+    is of one design, and its own crank angles do not matter.
     """
     import pandas as pd
 
@@ -60,13 +95,14 @@ def largest_with_uncertainty(solution, inputs):
         name: item for name, item in of_scene(solution).items() if item.kind in TABLE_KINDS and name != SECOND_TORQUE
     }
     known = BoundedExtremes(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
-    scene, rows, doubts = Scene.of(solution), [], []
+    rows, doubts = [], []
 
     @cache
     def moved(path):
         """Solutions with an input smaller and larger by its uncertainty."""
-        given, by = scene.parameters[path], inputs[path]
-        return [scene.varied({path: given + side * by}).unsolved(solution.crank_angle) for side in (-1.0, 1.0)]
+        place = solution.places[path]
+        given, by = place.value(solution), inputs[path]
+        return [paths.with_values(solution, {place.steps: given + side * by}, _changed) for side in (-1.0, 1.0)]
 
     for name in known.found:
         row, doubt = _row(known, name, quantities[name], inputs, moved)
@@ -75,6 +111,11 @@ def largest_with_uncertainty(solution, inputs):
     if doubts:
         warnings.warn(f"{solution.mechanism.name}: {doubt_text(doubts)}", ConditionWarning, stacklevel=2)
     return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
+
+
+def _changed(item, **fields):
+    """Copy of a solution with other parts, or of one of its parts with other numbers, which are checked."""
+    return (replace if isinstance(item, Parameters) else paths.replace_checked)(item, **fields)
 
 
 def _row(known, name, quantity, inputs, moved):
