@@ -358,15 +358,6 @@ BY_DESIGN = PLAIN | {
     "total": compensated_sum,
     "rest": length_error,
 }
-SCALARS = BY_DESIGN | {
-    "root": lambda square, unit: np.float64(_plain_root(square, unit)),
-    "divisor": lambda root, unit: np.float64(unit if root < unit else root),
-    "total": lambda *terms: np.float64(_plain_total(*terms)),
-    "lost": lambda *terms: np.float64(sum_corrections(*map(float, terms))),
-    "lost_by_squares": lambda *vector: np.float64(sum_corrections(*map(float, square_difference_terms(*vector)))),
-    "rest": lambda length, x, y: np.float64(_plain_total(*square_difference_terms(length, x, y))) / (2.0 * length),
-}
-"""The same on NumPy scalars, which report underflow; sums never underflow."""
 ARRAYS = {
     "add": np.add,
     "subtract": np.subtract,

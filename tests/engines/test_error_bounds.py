@@ -541,15 +541,6 @@ def test_an_output_that_is_a_plain_number_is_exact():
     assert ErrorBounds(Graph()).of([0.0]) == (0.0,)
 
 
-@every("case, variant", [("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("shaper", "cutting")])
-def test_nothing_underflows_in_ordinary_machines(case, variant):
-    """Where anything were, all would be computed again with what may be lost."""
-    s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 30))
-    program, leaves = program_of(s.dynamics, (*s.reactions, "balancing_torque"))
-    bounded = program.bounded()
-    assert np.array_equal(bounded.run(s.dynamics, leaves), bounded._without_dust.run(s.dynamics, leaves))
-
-
 # functions
 
 OTHER = {"sin": "cos", "cos": "sin"}
