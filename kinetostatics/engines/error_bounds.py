@@ -31,8 +31,6 @@ CAP = 2.0**100
 """Largest number of a scene, in SI units, for which bounds are given; rows of tables may be larger."""
 MAX_DIVISOR = 2.0**1000
 """A divisor up to this size has a reciprocal with all digits."""
-SMALL_TURN = 2.0**-27
-"""Sine or cosine below which the other is 1 or -1 exactly; a test checks NumPy and compiled loops."""
 TURN_SHARE = 4.5
 """A sine or cosine near 1 is off by at most this share of the other one squared, in any precision."""
 LOST_SQUARE = 2.0**-900

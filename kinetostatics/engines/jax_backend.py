@@ -13,10 +13,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
-from ..numbers.arithmetic import SQUARE_TOLERANCE, compensated_sum
 from ..numbers.lazy import cached_property
 from . import numba_backend
-from .codegen import BY_DESIGN, compile_line, line_source, loop_source
+from .codegen import BY_DESIGN, PLAIN, array_functions, compile_line, line_source, loop_source
 from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
 from .graph import parted
 from .numba_backend import load_compiled
@@ -72,20 +71,12 @@ class DeviceProgram:
 
     def __init__(self, split, device):
         jax = _jax()
-        xp = jax.numpy
         self._device, self._compiled = device, {}
         self._options = AS_WRITTEN if device.platform == PROVEN else None
-        outputs = split.at_angles.outputs
-        scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
-        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": compensated_sum}
-        scope["fma"] = lambda one, other, more: one * other + more
-        scope["root"] = lambda square, unit: xp.where(
-            square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
-        )
-        line = compile_line(line_source(outputs), scope)
+        line = compile_line(line_source(split.at_angles.outputs), PLAIN | array_functions(jax.numpy))
 
         def computed(angle, sine, cosine, parameters, rows, shape):
-            return tuple(xp.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
+            return tuple(jax.numpy.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
 
         self._traced = jax.jit(computed, static_argnums=5)
 

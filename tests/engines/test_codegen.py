@@ -7,9 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.codegen import (
-    _OPERATIONS,
-    ARRAYS,
     BY_DESIGN,
+    INTO_ARRAYS,
     PLAIN,
     buffered_source,
     line_source,
@@ -110,12 +109,12 @@ def test_plain_numbers_and_arrays_agree(name):
         assert plain == pytest.approx(found, rel=1e-15, abs=0, nan_ok=True)
 
 
-@every("operation", [kind for kind in _OPERATIONS if kind[0] in BY_DESIGN])
+@every("operation", [kind for kind in INTO_ARRAYS if kind[0] in BY_DESIGN])
 def test_memory_given_receives_the_same(operation):
     kind, count = operation
     values, out = np.array(VALUES), np.empty(len(VALUES))
     with np.errstate(invalid="ignore"):
-        ARRAYS[_OPERATIONS[operation]](values, *[1.0] * (count - 1), out)
+        INTO_ARRAYS[operation](values, *[1.0] * (count - 1), out)
         expected = BY_DESIGN[kind](values, *[1.0] * (count - 1))
     np.testing.assert_array_equal(out, expected)
 

@@ -12,7 +12,6 @@ from kinetostatics import ConditionWarning
 from kinetostatics.engines import numba_backend
 from kinetostatics.engines.error_bounds import (
     OWN,
-    SMALL_TURN,
     Error,
     ErrorBounds,
     of_magnitude,
@@ -544,6 +543,8 @@ def test_an_output_that_is_a_plain_number_is_exact():
 # functions
 
 OTHER = {"sin": "cos", "cos": "sin"}
+SMALL_TURN = 2.0**-27
+"""Sine or cosine below which the other is 1 or -1 exactly."""
 BOUNDS = {
     "running": lambda graph, output, inputs=None: ErrorBounds(graph, inputs).of([output])[0],
     "tight": lambda graph, output, inputs=None: tight_bounds(graph, inputs, [output])[0],
