@@ -1,10 +1,11 @@
 """Source code from recorded arithmetic: a compiled loop for numba, array operations for NumPy, plain Python numbers.
 
-`line_source`, `buffered_source` and `loop_source` write it; `PLAIN`, `BY_DESIGN`, `SCALARS` and `ARRAYS` hold the
+`line_source`, `buffered_source` and `loop_source` write it; `PLAIN`, `BY_DESIGN` and `ARRAYS` hold the
 functions that its operations call.
 """
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -218,9 +219,9 @@ def buffered_source(outputs) -> tuple[str, int]:
         place_of[node] = target
         if node.operation == "fma":
             *factors, more = names
-            source.append(f"    multiply({', '.join([*factors, target])}); add({target}, {more}, {target})")
+            source.append(f"    multiply2({', '.join([*factors, target])}); add2({target}, {more}, {target})")
         else:
-            source.append(f"    {_OPERATIONS[node.operation, len(names)]}({', '.join([*names, target])})")
+            source.append(f"    {_array_function(node.operation, len(names))}({', '.join([*names, target])})")
     source += [f"    r{place}[...] = {place_of.get(part) or _name(part)}" for place, part in copies]
     heads = ["def line(angle, sine, cosine, parameters, tables, buffers, results):"]
     heads += [f"    {', '.join(f'b{k}' for k in range(count))}, = buffers"] if count else []
@@ -228,24 +229,12 @@ def buffered_source(outputs) -> tuple[str, int]:
     return "\n".join(heads + source) + "\n", count
 
 
-_OPERATIONS = {
-    ("+", 2): "add",
-    ("-", 2): "subtract",
-    ("*", 2): "multiply",
-    ("/", 2): "divide",
-    ("-", 1): "negative",
-    ("sin", 1): "sin_of",
-    ("cos", 1): "cos_of",
-    ("sqrt", 1): "sqrt_of",
-    ("atan", 1): "arctan",
-    ("abs", 1): "absolute",
-    ("sign", 1): "sign_of",
-    ("held", 1): "positive",
-    ("root", 2): "root_of",
-    ("divisor", 2): "maximum",
-    **{("total", count): "total_of" for count in range(2, 7)},
-}
-"""Array function of each operation and number of arguments; its last argument receives the result."""
+def _array_function(operation, count):
+    """Name of the array function of an operation of so many arguments."""
+    return f"{_WORDS.get(operation, operation)}{count}"
+
+
+_WORDS = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide"}
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")
 
 
@@ -316,6 +305,11 @@ def _root_of(square, unit, out):
     np.copyto(out, np.nan, where=np.less_equal(square, -SQUARE_TOLERANCE * unit))
 
 
+def _total_of(*terms_and_out):
+    *terms, out = terms_and_out
+    np.copyto(out, compensated_sum(*terms))
+
+
 def _plain_total(*terms):
     try:
         return math.fsum(terms)
@@ -347,40 +341,39 @@ PLAIN = {
     "nan": math.nan,
     "inf": math.inf,
 }
-BY_DESIGN = PLAIN | {
-    "sin": np.sin,
-    "cos": np.cos,
-    "atan": np.arctan,
-    "sqrt": np.sqrt,
-    "copysign": np.copysign,
-    "root": lambda square, unit: np.where(square > -SQUARE_TOLERANCE * unit, np.sqrt(np.maximum(square, 0.0)), np.nan),
-    "divisor": np.maximum,
-    "total": compensated_sum,
-    "rest": length_error,
+
+
+def array_functions(xp) -> dict[str, Callable]:
+    """Functions of arrays of a library, NumPy or JAX, by operation."""
+    return {
+        **{name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "copysign")},
+        "atan": xp.arctan,
+        "root": lambda square, unit: xp.where(
+            square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
+        ),
+        "divisor": xp.maximum,
+        "total": compensated_sum,
+        "rest": length_error,
+    }
+
+
+BY_DESIGN = PLAIN | array_functions(np)
+INTO_ARRAYS: dict[tuple[str, int], Callable] = {
+    ("+", 2): np.add,
+    ("-", 2): np.subtract,
+    ("*", 2): np.multiply,
+    ("/", 2): np.divide,
+    ("-", 1): np.negative,
+    ("sin", 1): np.sin,
+    ("cos", 1): np.cos,
+    ("sqrt", 1): np.sqrt,
+    ("atan", 1): np.arctan,
+    ("abs", 1): np.absolute,
+    ("sign", 1): lambda value, out: np.copysign(1.0, value, out),
+    ("held", 1): np.positive,
+    ("root", 2): _root_of,
+    ("divisor", 2): lambda one, other, out: np.maximum(one, other, out=out),
+    **dict.fromkeys([("total", count) for count in range(2, 7)], _total_of),
 }
-SCALARS = BY_DESIGN | {
-    "root": lambda square, unit: np.float64(_plain_root(square, unit)),
-    "divisor": lambda root, unit: np.float64(unit if root < unit else root),
-    "total": lambda *terms: np.float64(_plain_total(*terms)),
-    "lost": lambda *terms: np.float64(sum_corrections(*map(float, terms))),
-    "lost_by_squares": lambda *vector: np.float64(sum_corrections(*map(float, square_difference_terms(*vector)))),
-    "rest": lambda length, x, y: np.float64(_plain_total(*square_difference_terms(length, x, y))) / (2.0 * length),
-}
-"""The same on NumPy scalars, which report underflow; sums never underflow."""
-ARRAYS = {
-    "add": np.add,
-    "subtract": np.subtract,
-    "multiply": np.multiply,
-    "divide": np.divide,
-    "negative": np.negative,
-    "positive": np.positive,
-    "sin_of": np.sin,
-    "cos_of": np.cos,
-    "sqrt_of": np.sqrt,
-    "arctan": np.arctan,
-    "absolute": np.absolute,
-    "sign_of": lambda value, out: np.copysign(1.0, value, out),
-    "root_of": _root_of,
-    "total_of": lambda *terms_and_out: np.copyto(terms_and_out[-1], compensated_sum(*terms_and_out[:-1])),
-    "maximum": lambda one, other, out: np.maximum(one, other, out=out),
-}
+"""Array function of each operation and number of arguments; its last argument receives the result."""
+ARRAYS = {_array_function(*operation): function for operation, function in INTO_ARRAYS.items()}

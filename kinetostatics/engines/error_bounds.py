@@ -13,7 +13,7 @@ sum |a| STRETCH q, so C / STRETCH covers all q; twice that covers the rounding o
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial, reduce
 from typing import Any, NamedTuple
 
@@ -31,8 +31,6 @@ CAP = 2.0**100
 """Largest number of a scene, in SI units, for which bounds are given; rows of tables may be larger."""
 MAX_DIVISOR = 2.0**1000
 """A divisor up to this size has a reciprocal with all digits."""
-SMALL_TURN = 2.0**-27
-"""Sine or cosine below which the other is 1 or -1 exactly; a test checks NumPy and compiled loops."""
 TURN_SHARE = 4.5
 """A sine or cosine near 1 is off by at most this share of the other one squared, in any precision."""
 LOST_SQUARE = 2.0**-900
@@ -61,8 +59,8 @@ class Arithmetic(NamedTuple):
         Factor on bounds for terms of second order, over all operations in a row.
     dust : float or None
         Underflow of one operation, in `unit`; None if nothing underflows.
-    ulp : mapping of str to float
-        Largest relative error of each function, in `unit`; tests check all engines.
+    ulp : float
+        Largest relative error of sin, cos and atan, in `unit`; tests check all engines.
     limit : float
         Half of the largest power of two.
     as_recorded : bool
@@ -75,18 +73,14 @@ class Arithmetic(NamedTuple):
     unit: float
     safe: float
     dust: float | None
-    ulp: Mapping[str, float]
+    ulp: float
     limit: float = math.inf
     as_recorded: bool = False
 
 
-def _ulp(functions):
-    return {"sin": functions, "cos": functions, "atan": functions, "sqrt": 1.0, "root": 1.0}
-
-
-OWN = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, _ulp(2.0), as_recorded=True)
-DOUBLE = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, _ulp(4.0), 2.0**1022)
-SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, _ulp(8.0), 2.0**126)
+OWN = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, 2.0, as_recorded=True)
+DOUBLE = Arithmetic(np.float64, UNIT_ROUNDOFF, SAFE, 2.0**-960, 4.0, 2.0**1022)
+SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, 8.0, 2.0**126)
 PRECISIONS = {"double": DOUBLE, "single": SINGLE}
 """Arithmetic of programs that JAX runs, or that run in another precision, by the name users give."""
 
@@ -127,7 +121,6 @@ class ErrorBounds:
         self._given = given if given or arithmetic.as_recorded else ErrorBounds(graph, inputs)
         self.off = arithmetic.safe * arithmetic.unit
         self._errors: dict[Node, Error] = {}
-        self._totals: dict[tuple[Node, float], Any] = {}
         self.factors: dict[Node, tuple[Any, ...]] = {}
         self._users: dict[Any, set[str]] = {}
         self._caps: dict[Node, float | None] = {}
@@ -154,10 +147,9 @@ class ErrorBounds:
         for node in nodes:
             if node in self._errors:  # an input has asked for it
                 continue
-            error = self._error_of(node)
+            error = self._errors[node] = self._error_of(node)
             if self._cuts is not None and self._cuts(node, error):
-                self.cut[node], error = self._total(node, *error), EXACT
-            self._errors[node] = error
+                self.cut[node], self._errors[node] = self.total(node), EXACT
             if not self.arithmetic.as_recorded:
                 self._require_small(node)
 
@@ -210,14 +202,8 @@ class ErrorBounds:
 
     def total(self, part, more=0.0):
         """The whole bound of a part of an operation, in units, and `more` roundings of it; None where it is exact."""
-        if not isinstance(part, Node):
-            return self._total(part, *self.error(part))
-        if (part, more) not in self._totals:
-            relative, rest = self._errors[part]
-            self._totals[part, more] = self._total(part, relative + more, rest)
-        return self._totals[part, more]
-
-    def _total(self, part, relative, rest):
+        relative, rest = self.error(part)
+        relative += more
         if not relative:
             return rest
         if part in self.factors and self._users.get(part, SUMS) <= SUMS:  # by factors: it takes no magnitude of its own
@@ -411,7 +397,7 @@ def _of_root(bounds, node, square, unit=None):
         rest = plus(small, more)
         if node.operation == "root" and not bounds.is_positive(square):  # NaN where the square is negative
             rest = plus(0.0 * square.sqrt(), rest)
-    return Error(0.5 * relative + bounds.arithmetic.ulp[node.operation], rest)
+    return Error(0.5 * relative + 1.0, rest)
 
 
 def _of_function(bounds, node, argument):
@@ -420,7 +406,7 @@ def _of_function(bounds, node, argument):
     rest = plus(total, None if bounds.arithmetic.as_recorded else bounds.arithmetic.dust)
     if total is not None and bounds.weight > 1.0:
         rest = bounds.fused((0.5 * bounds.weight * bounds.off) * total, total, rest)
-    return Error(bounds.arithmetic.ulp[node.operation], rest)
+    return Error(bounds.arithmetic.ulp, rest)
 
 
 def _of_magnitude(bounds, node, value):
@@ -484,7 +470,7 @@ def _beside_one(bounds, node):
     other = bounds.graph.node("cos" if turn.operation == "sin" else "sin", *turn.arguments)
     unsure = None if sign is None else bounds.total(sign)
     square = (-TURN_SHARE / bounds.arithmetic.unit) * (other * other)
-    most = -plus(OWN.ulp["sin"], unsure)  # of every precision: it is rounded once
+    most = -plus(OWN.ulp, unsure)  # of every precision: it is rounded once
     return -bounds.graph.node("divisor", square - plus(LOST_SQUARE, unsure), most)
 
 

@@ -13,13 +13,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
-from ..numbers.arithmetic import SQUARE_TOLERANCE, compensated_sum
+from ..numbers.lazy import cached_property
 from . import numba_backend
-from .codegen import BY_DESIGN, compile_line, line_source, loop_source
+from .codegen import BY_DESIGN, PLAIN, array_functions, compile_line, line_source, loop_source
 from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
 from .graph import parted
 from .numba_backend import load_compiled
-from .program import BUFFER_VALUES, Program, numpy_sines
+from .program import Program, numpy_sines
 
 PROVEN = "cpu"
 """Platform whose functions have the errors that bounds assume, as a test shows."""
@@ -71,20 +71,12 @@ class DeviceProgram:
 
     def __init__(self, split, device):
         jax = _jax()
-        xp = jax.numpy
         self._device, self._compiled = device, {}
         self._options = AS_WRITTEN if device.platform == PROVEN else None
-        outputs = split.at_angles.outputs
-        scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
-        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": compensated_sum}
-        scope["fma"] = lambda one, other, more: one * other + more
-        scope["root"] = lambda square, unit: xp.where(
-            square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
-        )
-        line = compile_line(line_source(outputs), scope)
+        line = compile_line(line_source(split.at_angles.outputs), PLAIN | array_functions(jax.numpy))
 
         def computed(angle, sine, cosine, parameters, rows, shape):
-            return tuple(xp.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
+            return tuple(jax.numpy.broadcast_to(part, shape) for part in line(angle, sine, cosine, parameters, rows))
 
         self._traced = jax.jit(computed, static_argnums=5)
 
@@ -136,7 +128,7 @@ class MixedPrecision:
         self._whole = program
         given, outputs = parted(program.outputs)
         self._fixed = compile_line(line_source(given), BY_DESIGN)
-        self.at_angles, self._loop = Program(program.recording, outputs), None
+        self.at_angles = Program(program.recording, outputs)
 
     def given(self, state, leaves, dtype):
         """Inputs, in a dtype, for a `Dynamics` with its leaves."""
@@ -160,35 +152,17 @@ class MixedPrecision:
 
     def by_numpy(self, given):
         """Outputs (outputs, *shape) by array operations."""
-        (_, batch), count = self.at_angles.buffered
-        results = np.empty((len(self.at_angles.outputs), *given.shape), given.angle.dtype)
-        step = BUFFER_VALUES if len(given.shape) == 1 else given.shape[-1]
-        with np.errstate(all="ignore"):
-            for start in range(0, given.shape[-1], step):
-                part = slice(start, start + step)
-                turn = [array[..., part] for array in given[:3]]
-                rows = [row[..., part] if np.size(row) > 1 else row for row in given.rows]
-                own = results[..., part]
-                free = np.empty((count, *own.shape[1:]), own.dtype)
-                batch(*turn, given.parameters, rows, free, own)
-        return results
+        return self.at_angles.by_numpy(given.angle, given.parameters, given.rows, given.shape, given[1:3])
 
     def by_loop(self, given):
         """Outputs (outputs, *shape) by a loop compiled for single precision."""
-        shape, dtype = given.shape, given.angle.dtype
-        parameters = numba_backend.parameter_table(given.parameters, shape[:-1]).astype(dtype)
-        own = given.angle.size > shape[-1]
-        turn = [
-            np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
-            for array in given[:3]
-        ]
-        rows = numba_backend.row_table(given.rows, shape).astype(dtype)
-        results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
-        if self._loop is None:
-            self._loop = load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
-        angle, sine, cosine = turn
-        numba_backend.run_loop(self._loop, angle, sine, cosine, parameters, rows, results)
-        return results.swapaxes(0, 1).reshape(-1, *shape)
+        turn = [numba_backend.angle_rows(part, given.shape) for part in given[1:3]]
+        inputs = given.angle, given.parameters, given.rows, given.shape
+        return self.at_angles.by_loop(*inputs, self._single_loop, lambda angle: turn)
+
+    @cached_property
+    def _single_loop(self):
+        return load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
 
 
 _splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()

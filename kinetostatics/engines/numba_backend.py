@@ -96,6 +96,12 @@ def compiled_sines(angle):
     return sine, cosine
 
 
+def angle_rows(angle, shape):
+    """Crank angles (1 or designs, N) from an array (..., N), for results of a shape."""
+    own = angle.size > shape[-1]
+    return np.ascontiguousarray((np.broadcast_to(angle, shape) if own else angle).reshape(-1, shape[-1]))
+
+
 def parameter_table(numbers, shape):
     """Parameters (designs, P) from numbers, each a float or an array (..., 1), for a batch shape."""
     if not shape:

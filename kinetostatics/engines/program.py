@@ -17,9 +17,9 @@ from ..numbers.checks.rules import MAX_LENGTH_IN_LINKS
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import FLOATS, Leaves
 from . import numba_backend
-from .codegen import ARRAYS, BY_DESIGN, PLAIN, SCALARS, buffered_source, compile_line, line_source, loop_source
+from .codegen import ARRAYS, BY_DESIGN, PLAIN, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients
-from .error_bounds import OWN, ErrorBounds, tight_bounds
+from .error_bounds import ErrorBounds, tight_bounds
 from .graph import needed, operations
 from .numba_backend import keep_for_same_angles, load_compiled, numba_available
 from .record import Recorder, record
@@ -40,9 +40,6 @@ class Program:
     outputs : tuple of Node or float
     recording : Recording
     """
-
-    scopes: Any = (PLAIN, BY_DESIGN)
-    extremes: Any = "ignore"
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -81,7 +78,9 @@ class Program:
             Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
         """
         if tight not in self._bounded:
-            self._bounded[tight] = _Bounded(self.recording, self.outputs, tight)
+            of_recording = self.recording.graph, self.recording.inputs
+            bounds = tight_bounds(*of_recording, self.outputs) if tight else ErrorBounds(*of_recording).of(self.outputs)
+            self._bounded[tight] = Program(self.recording, (*self.outputs, *bounds))
         return self._bounded[tight]
 
     @cached_property
@@ -98,7 +97,7 @@ class Program:
     def buffered(self):
         """Array functions for one design and for a batch, and their count of buffers."""
         source, count = buffered_source(self.outputs)
-        return [compile_line(source, ARRAYS | by_design) for by_design in self.scopes], count
+        return [compile_line(source, ARRAYS | by_design) for by_design in (PLAIN, BY_DESIGN)], count
 
     @cached_property
     def loop(self):
@@ -127,21 +126,32 @@ class Program:
         count = math.prod(shape)
         if len(shape) < 2 and count <= MAX_PLAIN_ANGLES and not self.recording.tables:
             if compiled and self._has_paid(count):
-                return self._of_one_design(self._short_loop, angle, leaves.numbers, shape, _sines)
+                return self.by_loop(angle, leaves.numbers, (), shape, self._short_loop, _sines)
             return self._by_numbers(angle, leaves.numbers, shape)
         run = self.by_loop if compiled else self.by_numpy
         if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
             angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
         return run(angle, leaves.numbers, self.rows(state, leaves), shape)
 
-    def by_numpy(self, angle, numbers, rows, shape):
-        """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
+    def by_numpy(self, angle, numbers, rows, shape, turn=None):
+        """Outputs (outputs, *shape) in the dtype of the crank angles.
+
+        Parameters
+        ----------
+        angle : array (..., N)
+        numbers : sequence of number or array (..., 1)
+        rows : sequence of number or array (..., N)
+            Rows of tables.
+        shape : tuple of int
+        turn : pair of array (..., N), optional
+            Sine and cosine of the crank angles.
+        """
         if not shape:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self.buffered
-        results = np.empty((len(self.outputs), *shape))
-        with np.errstate(all="ignore", under=self.extremes, over=self.extremes):
-            sine, cosine = numpy_sines(angle)
+        results = np.empty((len(self.outputs), *shape), angle.dtype)
+        with np.errstate(all="ignore"):
+            sine, cosine = turn or numpy_sines(angle)
             if len(shape) == 1:
                 size = max(1, count * min(shape[0], BUFFER_VALUES))
                 if not hasattr(_memory, "held") or _memory.held.size < size:
@@ -151,12 +161,12 @@ class Program:
                         part = slice(start, start + BUFFER_VALUES)
                         given = [row[part] if np.size(row) > 1 else row for row in rows]
                         own = results[:, part]
-                        free = _memory.held[: count * own.shape[1]].reshape(count, own.shape[1])
+                        free = _memory.held.view(own.dtype)[: count * own.shape[1]].reshape(count, own.shape[1])
                         single(angle[part], sine[part], cosine[part], numbers, given, free, own)
                     return results
                 except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
                     numbers = list(map(np.float64, numbers))
-            batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
+            batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape), results.dtype), results)
         return results
 
     def _has_paid(self, count):
@@ -174,84 +184,33 @@ class Program:
     def at_one(self, angle, numbers, compiled):
         """Outputs at one crank angle, a list of floats; for programs without tables."""
         if compiled and self._has_paid(1):
-            return self._of_one_design(self._short_loop, np.array([[angle]]), numbers, (1,), _sines)[:, 0].tolist()
+            return self.by_loop(np.array([angle]), numbers, (), (1,), self._short_loop, _sines)[:, 0].tolist()
+        return self._at(_plain_numbers(numbers), angle, float(np.sin(angle)), float(np.cos(angle)))
+
+    def _by_numbers(self, angle, numbers, shape):
+        angle, numbers = angle.ravel(), _plain_numbers(numbers)
+        given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
+        return np.array([self._at(numbers, *one) for one in given]).T.reshape(-1, *shape)
+
+    def _at(self, numbers, angle, sine, cosine):
         try:
-            return self._plain(angle, float(np.sin(angle)), float(np.cos(angle)), _plain_numbers(numbers), ())
+            return self._plain(angle, sine, cosine, numbers, ())
         except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
             return self.by_numpy(np.array([angle]), numbers, (), (1,))[:, 0].tolist()
 
-    def _of_one_design(self, loop, angle, numbers, shape, turn):
-        angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
-        parameters = numba_backend.parameter_table(_plain_numbers(numbers), ())
-        sine, cosine = turn(angle)
-        numba_backend.run_loop(loop, angle, sine, cosine, parameters, numba_backend.NO_ROWS, results)
-        return results.reshape(-1, *shape)
+    def by_loop(self, angle, numbers, rows, shape, loop=None, sines=numba_backend.compiled_sines):
+        """Outputs (outputs, *shape), as `by_numpy`, by a compiled loop in the dtype of the crank angles.
 
-    def _by_numbers(self, angle, numbers, shape):
-        angle = angle.ravel()
-        numbers = _plain_numbers(numbers)
-        given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
-        try:
-            found = [self._plain(*one, numbers, ()) for one in given]
-        except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
-            found = self.by_numpy(angle, numbers, (), angle.shape).T
-        return np.array(found).T.reshape(-1, *shape)
-
-    def by_loop(self, angle, numbers, rows, shape):
-        """Outputs (outputs, *shape) by the compiled loop."""
-        if len(shape) == 1 and not rows:
-            return self._of_one_design(self.loop, angle, numbers, shape, numba_backend.compiled_sines)
-        parameters = numba_backend.parameter_table(numbers, shape[:-1])
-        designs = len(parameters)
-        own = math.prod(angle.shape[:-1]) > 1
-        angles = np.broadcast_to(angle, shape).reshape(designs, -1) if own else angle.reshape(1, -1)
-        angles = np.ascontiguousarray(angles)
-        results = np.empty((designs, len(self.outputs), angles.shape[1]))
-        tables = numba_backend.row_table(rows, shape or (1,))
-        sine, cosine = numba_backend.compiled_sines(angles)
-        numba_backend.run_loop(self.loop, angles, sine, cosine, parameters, tables, results)
+        ``sines(angle)`` returns sine and cosine of crank angles (1 or designs, N).
+        """
+        shape_of_rows = shape or (1,)
+        angle = numba_backend.angle_rows(angle, shape_of_rows)
+        parameters = numba_backend.parameter_table(_plain_numbers(numbers) if len(shape) < 2 else numbers, shape[:-1])
+        tables = numba_backend.row_table(rows, shape_of_rows)
+        parameters, tables = (array.astype(angle.dtype, copy=False) for array in (parameters, tables))
+        results = np.empty((len(parameters), len(self.outputs), angle.shape[1]), angle.dtype)
+        numba_backend.run_loop(loop or self.loop, angle, *sines(angle), parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
-
-
-class _Bounded(Program):
-    """Values with bounds. NumPy reports under- and overflow in arrays: mostly there is none that has to be bounded.
-
-    Attributes
-    ----------
-    values : tuple of Node or float
-    tight : bool
-    """
-
-    def __init__(self, recording, values, tight):
-        self.values, self.tight = values, tight
-        super().__init__(recording, (*values, *_bounds(recording, values, tight)))
-
-    @cached_property
-    def _without_dust(self):
-        return _Watched(self.recording, (*self.values, *_bounds(self.recording, self.values, self.tight, dust=None)))
-
-    def by_numpy(self, angle, numbers, rows, shape):
-        try:
-            return self._without_dust.by_numpy(angle, numbers, rows, shape)
-        except FloatingPointError:
-            return super().by_numpy(angle, numbers, rows, shape)
-
-
-def _bounds(recording, values, tight, **known):
-    graph, inputs, arithmetic = recording.graph, recording.inputs, OWN._replace(**known)
-    if tight:
-        return tight_bounds(graph, inputs, values, arithmetic)
-    return ErrorBounds(graph, inputs, arithmetic).of(values)
-
-
-class _Watched(Program):
-    """Program that NumPy alone runs, plain numbers too; it raises FloatingPointError where one under- or overflows."""
-
-    scopes, extremes = (SCALARS, BY_DESIGN), "raise"
-
-    def by_numpy(self, angle, numbers, rows, shape):
-        numbers = [np.float64(number) if isinstance(number, float) else number for number in numbers]
-        return super().by_numpy(angle, numbers, rows, shape)
 
 
 def _plain_numbers(numbers):

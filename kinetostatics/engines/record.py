@@ -89,8 +89,6 @@ class Table(NamedTuple):
         Name of each row, its order of derivative by the crank angle, its unit.
     of : str or int
         The cam, or the number of the load, that uses it.
-    bounded : function or None
-        Computes all rows, the last of which, `ERRORS`, only bounds use; `compute` then leaves these out.
     """
 
     rows: range
@@ -98,15 +96,10 @@ class Table(NamedTuple):
     moved_by: str = ""
     names: tuple = ()
     of: str | int = ""
-    bounded: Callable[[Any, Any], Any] | None = None
 
     def filled(self, motion, leaves, wanted):
         """The rows; 0 for those that are not wanted."""
-        if wanted.isdisjoint(self.rows):
-            return [0.0] * len(self.rows)
-        if self.bounded is None or not wanted.isdisjoint(self.rows[-len(ERRORS) :]):
-            return (self.bounded or self.compute)(motion, leaves)
-        return [*self.compute(motion, leaves), *[0.0] * len(ERRORS)]
+        return [0.0] * len(self.rows) if wanted.isdisjoint(self.rows) else self.compute(motion, leaves)
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,11 +223,11 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
-    def _tabled(self, names, compute, moved_by="", of="", bounded=None):
+    def _tabled(self, names, compute, moved_by="", of=""):
         """Nodes of the rows of a new table."""
         rows = range(self._rows, self._rows + len(names))
         self._rows = rows.stop
-        self.tables.append(Table(rows, compute, moved_by, names, of, bounded))
+        self.tables.append(Table(rows, compute, moved_by, names, of))
         found = list(map(self.graph.row, rows))
 
         def unproven(bounds):
@@ -298,16 +291,9 @@ class Recorder:
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        rows = self._tabled(
-            (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"), *ERRORS),
-            lambda motion, leaves: item(motion).pieces(motion),
-            of=place,
-            bounded=lambda motion, leaves: [
-                *item(motion).pieces(motion),
-                *table_pieces.kink_bounds(item(motion), motion),
-            ],
-        )
-        start, value, slope, *kinks = rows
+        names = ("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m")
+        start, value, slope = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
+        kinks = self._tabled(ERRORS, lambda motion, leaves: table_pieces.kink_bounds(item(motion), motion))
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))

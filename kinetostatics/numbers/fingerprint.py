@@ -28,29 +28,14 @@ GENERATED_METHODS = {
 }
 """Methods that construct or compare dataclass items; no calculation calls them afterwards."""
 
-CODE_ATTRIBUTES = (
-    "co_code",
-    "co_consts",
-    "co_names",
-    "co_varnames",
-    "co_freevars",
-    "co_cellvars",
-    "co_argcount",
-    "co_posonlyargcount",
-    "co_kwonlyargcount",
-    "co_flags",
-)
+CODE_ATTRIBUTES = tuple(
+    f"co_{name}"
+    for name in ("code", "consts", "names", "varnames", "freevars", "cellvars", "argcount", "posonlyargcount")
+) + ("co_kwonlyargcount", "co_flags")
 """Attributes of compiled code that decide what it does; not its file and lines."""
-
-IGNORED_ATTRIBUTES = (
-    "__dict__",
-    "__weakref__",
-    "__doc__",
-    "__module__",
-    "__annotations__",
-    "__firstlineno__",
-    "__slots__",
-)
+IGNORED_ATTRIBUTES = {
+    f"__{name}__" for name in ("dict", "weakref", "doc", "module", "annotations", "firstlineno", "slots")
+}
 """Entries of a class that do not decide what it does."""
 
 

@@ -188,28 +188,29 @@ def broadcast_shape(shape, *parts):
 
 def flatten(item, leaves: Leaves):
     """Structure of an item; appends its leaves to `leaves`."""
-    kind = type(item)
-    if kind is float:
-        if item == 0.0:
-            return 0.0
-        leaves.numbers.append(item)
-        return NUMBER
-    return (_FLATTENERS.get(kind) or _new_flattener(kind))(item, leaves)
+    return _FLATTENERS[type(item)](item, leaves)
+
+
+def _flatten_number(item, leaves):
+    if item == 0.0:
+        return 0.0
+    leaves.numbers.append(float(item))
+    return NUMBER
+
+
+def _flatten_kept_zero(item, leaves):
+    leaves.numbers.append(float(item))
+    return NUMBER
 
 
 def _flatten_array(item, leaves):
-    shape = item.shape
     if item.dtype != float:
         return _flatten_by_identity(item, leaves)
-    if not shape:
-        return flatten(float(item), leaves)
-    if shape[-1] == 1:
+    if not item.shape:
+        return _flatten_number(item, leaves)
+    if item.shape[-1] == 1:
         leaves.numbers.append(item)
         return NUMBER
-    return _table(item, leaves)
-
-
-def _table(item, leaves):
     leaves.tables.append(item)
     return TABLE
 
@@ -218,7 +219,7 @@ def _flatten_constants(item, leaves):
     """Array of one axis that is no function of the crank angle: its values belong to the structure."""
     if item.ndim == 1 and item.size > 1:
         return Opaque(item, (item.shape, item.tobytes()))
-    return flatten(item, leaves)
+    return _flatten_array(item, leaves)
 
 
 def _flatten_tabulated(item, leaves):
@@ -229,28 +230,16 @@ def _flatten_tabulated(item, leaves):
 def _flatten_tuple(item, leaves):
     found: list[Any] = [tuple]
     for part in item:
-        kind = type(part)
-        if kind is not float:
-            found.append((_FLATTENERS.get(kind) or _new_flattener(kind))(part, leaves))
-        elif part != 0.0:
+        if type(part) is float and part != 0.0:  # most are
             leaves.numbers.append(part)
             found.append(NUMBER)
         else:
-            found.append(0.0)
+            found.append(_FLATTENERS[type(part)](part, leaves))
     return tuple(found)
 
 
 def _unchanged(item, leaves):
     return item
-
-
-def _flatten_number(item, leaves):
-    return flatten(float(item), leaves)
-
-
-def _flatten_kept_zero(item, leaves):
-    leaves.numbers.append(float(item))
-    return NUMBER
 
 
 def _flatten_by_content(item, leaves):
@@ -264,91 +253,75 @@ def _flatten_by_identity(item, leaves):
     return Opaque(item, (id(item),))
 
 
-_FLATTENERS: dict[type, Callable] = {
-    int: _flatten_number,
-    bool: _unchanged,
-    str: _unchanged,
-    type(None): _unchanged,
-    Axis: _unchanged,
-    tuple: _flatten_tuple,
-    list: _flatten_tuple,
-    np.ndarray: _flatten_array,
-    KeptZero: _flatten_kept_zero,
-    FunctionType: _flatten_by_content,
-}
+class _Flatteners(dict):
+    """Function that flattens items of a type, by type; made at the first item of a type."""
+
+    def __missing__(self, kind):
+        if getattr(kind, "TABULATED", False):
+            found = _flatten_tabulated
+        elif is_dataclass(kind):
+            found = _dataclass_flattener(kind)
+        elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
+            found = _named_tuple_flattener(kind)
+        else:
+            found = _flatten_number if issubclass(kind, np.floating | np.integer) else _flatten_by_identity
+        self[kind] = found
+        return found
+
+
+_FLATTENERS = _Flatteners(
+    {
+        **dict.fromkeys((bool, str, type(None), Axis), _unchanged),
+        **dict.fromkeys((float, int), _flatten_number),
+        **dict.fromkeys((tuple, list), _flatten_tuple),
+        np.ndarray: _flatten_array,
+        KeptZero: _flatten_kept_zero,
+        FunctionType: _flatten_by_content,
+    }
+)
 _CONSTANT_TYPES = frozenset((bool, int, float, str, type(None)))
 
 
-def _new_flattener(kind):
-    """Function that flattens items of a type, made once: dataclasses and named tuples field by field."""
-    if getattr(kind, "TABULATED", False):
-        taker = _flatten_tabulated
-    elif is_dataclass(kind):
-        taker = _dataclass_flattener(kind)
-    elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
-        taker = _of_named_tuple(kind)
-    else:
-        taker = _flatten_number if issubclass(kind, np.floating | np.integer) else _flatten_by_identity
-    _FLATTENERS[kind] = taker
-    return taker
-
-
 def _dataclass_flattener(kind):
-    """Function that flattens items of a dataclass.
-
-    Its source is written for the fields, without loops and look-ups: it runs for each part of each scene solved.
-    """
+    """Function that flattens items of a dataclass; it runs for each part of each scene solved, mostly on floats."""
     over_angles = getattr(kind, "OVER_ANGLES", ())
-    lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
-    for place, (name, structural) in enumerate(field_kinds(kind)):
-        array, value = "taken_apart" if name in over_angles else "constants", f"v{place}"
-        lines.append(f"    {value} = item.{name}")
-        if structural:
-            lines.append(f"    if {value}.__class__ not in as_they_are: {value} = structural({value}, leaves)")
-        else:
-            lines += [
-                f"    if {value}.__class__ is float:",
-                *_float_lines(value, 8),
-                f"    elif {value}.__class__ is pair and len({value}) == 2:",
-                f"        first, second = {value}",
-                "        if first.__class__ is second.__class__ is float:",
-                *_float_lines("first", 12),
-                *_float_lines("second", 12),
-                f"            {value} = pair, first, second",
-                f"        else: {value} = taken_apart({value}, leaves)",
-                f"    elif {value} is not None:",
-                f"        kind = type({value})",
-                f"        if kind is array: {value} = {array}({value}, leaves)",
-                f"        else: {value} = (takers.get(kind) or taker_of(kind))({value}, leaves)",
-            ]
-    lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": flatten, "constants": _flatten_constants, "pair": tuple}
-    scope |= {"structural": _flatten_by_content, "as_they_are": _CONSTANT_TYPES, "array": np.ndarray}
-    scope |= {"takers": _FLATTENERS, "taker_of": _new_flattener}
-    exec("\n".join(lines), scope)
-    return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_class_key(kind, scope["taker"])
+    plan = [
+        (name, structural, _flatten_array if name in over_angles else _flatten_constants)
+        for name, structural in field_kinds(kind)
+    ]
+
+    def flattened(item, leaves):
+        found = [kind]
+        for name, structural, of_array in plan:
+            value = getattr(item, name)
+            part = type(value)
+            if part is float and not structural:
+                if value != 0.0:
+                    leaves.numbers.append(value)
+                    value = NUMBER
+                else:
+                    value = 0.0
+            elif not structural or part not in _CONSTANT_TYPES:
+                flattener = _flatten_by_content if structural else of_array if part is np.ndarray else _FLATTENERS[part]
+                value = flattener(value, leaves)
+            found.append(value)
+        return tuple(found)
+
+    return flattened if kind.__module__.partition(".")[0] == LIBRARY else _with_class_key(kind, flattened)
 
 
-def _float_lines(value, indent):
-    """Source lines that flatten a float."""
-    lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
-    return [" " * indent + line for line in lines]
-
-
-def _with_class_key(kind, taker):
+def _with_class_key(kind, flattened):
     """The same for a user's class: its methods and constants belong to the structure."""
 
-    def whole(item, leaves):
+    def with_key(item, leaves):
         key = class_key(kind, (kind,))
-        if key is None:
-            leaves.lasting = False
-            key = (id(kind),)
-        return (Opaque(kind, key), *taker(item, leaves)[1:])
+        own = _flatten_by_identity(kind, leaves) if key is None else Opaque(kind, key)
+        return (own, *flattened(item, leaves)[1:])
 
-    return whole
+    return with_key
 
 
-def _of_named_tuple(kind):
+def _named_tuple_flattener(kind):
     return lambda item, leaves: (kind, *[flatten(part, leaves) for part in item])
 
 

@@ -31,36 +31,42 @@ _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
 
 
+BASES = ("meter", "kilogram", "second", "radian")
+"""Base units by pint's names."""
 _PREFIXES: dict[str, Fraction | int] = {"": 1, "k": 10**3, "M": 10**6, "m": Fraction(1, 10**3)}
-_PREFIXED: dict[str, tuple[Fraction | int, dict[str, int]]] = {
-    "m": (1, {"meter": 1}),
-    "g": (Fraction(1, 1000), {"kilogram": 1}),
-    "s": (1, {"second": 1}),
-    "N": (1, {"kilogram": 1, "meter": 1, "second": -2}),
-    "Pa": (1, {"kilogram": 1, "meter": -1, "second": -2}),
-    "J": (1, {"kilogram": 1, "meter": 2, "second": -2}),
-    "W": (1, {"kilogram": 1, "meter": 2, "second": -3}),
-    "rad": (1, {"radian": 1}),
+_POWERS = {
+    "m": (1, 0, 0, 0),
+    "kg": (0, 1, 0, 0),
+    "s": (0, 0, 1, 0),
+    "rad": (0, 0, 0, 1),
+    "N": (1, 1, -2, 0),
+    "Pa": (-1, 1, -2, 0),
+    "J": (2, 1, -2, 0),
+    "W": (2, 1, -3, 0),
+    "rad/s": (0, 0, -1, 1),
+    "1": (0, 0, 0, 0),
 }
-_DEGREE = Fraction(math.pi) / 180, {"radian": 1}
-USUAL_UNITS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
+"""Powers of the base units."""
+_MULTIPLES: dict[str, tuple[Fraction | int, str]] = {
+    **{prefix + "g": (scale / Fraction(1000), "kg") for prefix, scale in _PREFIXES.items()},
     **{
-        prefix + name: (scale * size, base)
+        prefix + unit: (scale, unit)
         for prefix, scale in _PREFIXES.items()
-        for name, (size, base) in _PREFIXED.items()
+        for unit in ("m", "s", "N", "Pa", "J", "W", "rad")
     },
-    "cm": (Fraction(1, 100), {"meter": 1}),
-    "t": (1000, {"kilogram": 1}),
-    "min": (60, {"second": 1}),
-    "h": (3600, {"second": 1}),
-    "GPa": (10**9, {"kilogram": 1, "meter": -1, "second": -2}),
-    "bar": (10**5, {"kilogram": 1, "meter": -1, "second": -2}),
-    "deg": _DEGREE,
-    "degree": _DEGREE,
-    "rpm": (Fraction(math.pi) / 30, {"radian": 1, "second": -1}),
-    "percent": (Fraction(1, 100), {}),
+    "cm": (Fraction(1, 100), "m"),
+    "t": (1000, "kg"),
+    "min": (60, "s"),
+    "h": (3600, "s"),
+    "GPa": (10**9, "Pa"),
+    "bar": (10**5, "Pa"),
+    "deg": (Fraction(math.pi) / 180, "rad"),
+    "degree": (Fraction(math.pi) / 180, "rad"),
+    "rpm": (Fraction(math.pi) / 30, "rad/s"),
+    "percent": (Fraction(1, 100), "1"),
 }
-"""Exact factor to SI base units by name, and powers of these by pint's names."""
+USUAL_UNITS = {name: (scale, _POWERS[unit]) for name, (scale, unit) in _MULTIPLES.items()}
+"""Exact factor to SI base units by name, and powers of these."""
 
 
 @cache
@@ -159,11 +165,11 @@ def _base(given, unit):
 
 def _by_table(parts):
     """Factor to base units, their powers, and the value 0.0 of a zero in base units."""
-    scale, base = Fraction(1), dict.fromkeys(("meter", "kilogram", "second", "radian"), 0)
+    scale, base = Fraction(1), dict.fromkeys(BASES, 0)
     for name, power in parts:
-        size, inner = USUAL_UNITS[name]
+        size, powers = USUAL_UNITS[name]
         scale *= Fraction(size) ** power
-        for part, exponent in inner.items():
+        for part, exponent in zip(BASES, powers, strict=True):
             base[part] += power * exponent
     return float(scale), {part: exponent for part, exponent in base.items() if exponent}, 0.0
 
@@ -261,41 +267,6 @@ def _readings(text):
 
 
 DIMENSIONLESS = (0.0, 0.0, 0.0)
-BASE_DIMENSIONS = {
-    "m": (1, 0, 0),
-    "kg": (0, 1, 0),
-    "s": (0, 0, 1),
-    "N": (1, 1, -2),
-    "J": (2, 1, -2),
-    "Pa": (-1, 1, -2),
-    "W": (2, 1, -3),
-}
-"""Powers of m, kg and s of base units."""
-UNIT_NAMES = {
-    (0, 0, 0): "1",
-    (1, 0, 0): "m",
-    (2, 0, 0): "m2",
-    (3, 0, 0): "m3",
-    (4, 0, 0): "m4",
-    (-1, 0, 0): "1/m",
-    (-2, 0, 0): "1/m2",
-    (0, 1, 0): "kg",
-    (1, 1, 0): "kg m",
-    (2, 1, 0): "kg m2",
-    (0, 0, -1): "rad/s",
-    (0, 0, -2): "rad2/s2",
-    (1, 0, -1): "m/s",
-    (1, 0, -2): "m/s2",
-    (1, 1, -2): "N",
-    (0, 1, -2): "N/m",
-    (2, 1, -2): "N m",
-    (3, 1, -2): "N m2",
-    (2, 1, -3): "W",
-    (1, 1, -1): "N s",
-    (0, 1, -1): "N s/m",
-}
-
-
 _POWER = re.compile(r"([A-Za-z]+)(?:\*\*|\^)?(\d*)")
 
 
@@ -304,8 +275,17 @@ def dimension(unit):
     found = np.zeros(3)
     for over, part in enumerate(unit.split("/")):
         for base, power in _POWER.findall(part):
-            found += (-1 if over else 1) * int(power or 1) * np.array(BASE_DIMENSIONS.get(base, DIMENSIONLESS))
+            found += (-1 if over else 1) * int(power or 1) * np.array(_POWERS.get(base, DIMENSIONLESS)[:3])
     return tuple(found.tolist())
+
+
+UNIT_NAMES = {
+    dimension(name): name
+    for name in (
+        *("1", "m", "m2", "m3", "m4", "1/m", "1/m2", "kg", "kg m", "kg m2", "rad/s", "rad2/s2", "m/s", "m/s2"),
+        *("N", "N/m", "N m", "N m2", "W", "N s", "N s/m"),
+    )
+}
 
 
 def unit_name(dimension):

@@ -197,6 +197,10 @@ def single_numbers():
     return np.concatenate([sizes.astype(np.float32), near, np.nextafter(near, np.float32(0))])
 
 
+def most_ulp(name, arithmetic):
+    return 1.0 if name == "sqrt" else arithmetic.ulp
+
+
 def off(found, exact, unit):
     return np.max(np.abs(found.astype(float) - exact) / np.abs(exact)) / unit
 
@@ -205,7 +209,7 @@ def off(found, exact, unit):
 def test_numpy_functions_in_single_keep_to_their_ulp(function, name):
     numbers = single_numbers()
     compute = getattr(np, function)
-    assert off(compute(numbers), compute(numbers.astype(float)), U) <= SINGLE.ulp[name]
+    assert off(compute(numbers), compute(numbers.astype(float)), U) <= most_ulp(name, SINGLE)
 
 
 @pytest.mark.slow
@@ -214,7 +218,7 @@ def test_loop_functions_in_single_keep_to_their_ulp(numba, function, name):
     own = getattr(math, name)
     compute = numba.vectorize([numba.float32(numba.float32)], nopython=True)(lambda number: own(number))
     numbers = single_numbers()
-    assert off(compute(numbers), getattr(np, function)(numbers.astype(float)), U) <= SINGLE.ulp[name]
+    assert off(compute(numbers), getattr(np, function)(numbers.astype(float)), U) <= most_ulp(name, SINGLE)
 
 
 @pytest.mark.slow
@@ -226,9 +230,9 @@ def test_jax_functions_on_the_cpu_keep_to_their_ulp(jax, function, name):
         single = np.asarray(jax.jit(getattr(jax.numpy, function))(numbers))
         with jax.enable_x64(True):
             double = np.asarray(jax.jit(getattr(jax.numpy, function))(numbers.astype(float)))
-    assert off(single, exact.astype(float), U) <= SINGLE.ulp[name]
+    assert off(single, exact.astype(float), U) <= most_ulp(name, SINGLE)
     if np.finfo(np.longdouble).eps < 1e-18:
-        assert np.max(np.abs(double - exact) / np.abs(exact)) <= DOUBLE.ulp[name] * 2.0**-53
+        assert np.max(np.abs(double - exact) / np.abs(exact)) <= most_ulp(name, DOUBLE) * 2.0**-53
 
 
 @every("arithmetic, unit", [(SINGLE, U), (DOUBLE, UNIT_ROUNDOFF)])

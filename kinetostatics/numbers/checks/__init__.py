@@ -4,6 +4,7 @@
 dataclass declares a table of rules, field -> rule. All faults of an item are reported in one `ParameterError`. The item
 keeps floats and read-only copies of arrays; traced JAX numbers and `arb` enclosures pass unchanged.
 """
+# ruff: noqa: F401  the names of this folder that others use
 
 from .messages import (
     BYTES_PER_ANGLE,
@@ -46,49 +47,3 @@ from .rules import (
     single_numbers,
 )
 from .values import DimensionError, has_known_values, is_quantity, not_a_number, snapshot, to_plain, to_plain_named
-
-__all__ = [
-    "BYTES_PER_ANGLE",
-    "MAX_TABLE_MEMORY",
-    "UNDECIDED",
-    "Checked",
-    "DimensionError",
-    "HasMembers",
-    "InstanceOf",
-    "Name",
-    "Number",
-    "Optional",
-    "OrFunction",
-    "Pair",
-    "PlausibleRange",
-    "Problem",
-    "Rules",
-    "Series",
-    "Sign",
-    "broadcast_problem",
-    "case",
-    "check_values",
-    "choice",
-    "count",
-    "has_known_values",
-    "hint",
-    "implausibility",
-    "is_quantity",
-    "mapping",
-    "mechanism",
-    "names",
-    "nearest",
-    "not_a_number",
-    "plausible_range_of",
-    "quantity",
-    "require",
-    "seed",
-    "shown",
-    "single_number",
-    "single_numbers",
-    "snapshot",
-    "solution",
-    "to_plain",
-    "to_plain_named",
-    "truth",
-]
