@@ -5,7 +5,6 @@ rearranged.
 """
 
 from collections.abc import Callable
-from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
@@ -51,25 +50,16 @@ def _is_offset(term):
     return 0.0 < abs(term) < MAX_OFFSET
 
 
-def _sum(left, right=ZERO):
-    terms = tuple(term for term in (*_terms(left), *_terms(right)) if term[1] != ZERO)
-    return _of_terms(terms)
+def _sum(*parts):
+    terms = [term for part in parts for term in _terms(part) if term[1] != ZERO]
+    if len(terms) > 1:
+        return ("sum", *terms)
+    ((sign, part),) = terms or [(1, ZERO)]
+    return part if sign > 0 else ("negative", part)
 
 
 def _difference(left, right=None):
-    if right is None:
-        return _negative(left)
-    sign, part = (1, right[1]) if right[0] == "negative" else (-1, right)
-    return _of_terms(tuple(term for term in (*_terms(left), (sign, part)) if term[1] != ZERO))
-
-
-def _of_terms(terms):
-    if len(terms) > 1:
-        return ("sum", *terms)
-    if not terms:
-        return ZERO
-    ((sign, part),) = terms
-    return part if sign > 0 else _negative(part)
+    return _negative(left) if right is None else _sum(left, _negative(right))
 
 
 def _terms(part):
@@ -145,7 +135,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
     "-": _difference,
     "*": _product,
     "/": _quotient,
-    "total": lambda *parts: reduce(_sum, parts),
+    "total": _sum,
     "rest": lambda *parts: ZERO,
     "held": lambda part: part,
     "divisor": lambda part, unit: part,

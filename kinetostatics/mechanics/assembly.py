@@ -79,9 +79,7 @@ def _assembly_error(mechanism, group, placement, where, gaps, *remedy):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
     why = group.requirement(placement) or f"the closure of {type(group).__name__} is negative there"
     return AssemblyError(
-        f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank angles {text}",
-        gaps,
-        *remedy,
+        f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank angles {text}", gaps, *remedy
     )
 
 
@@ -140,20 +138,19 @@ class ClosureMargin:
         return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
 
-def _margins(mechanism):
-    return [ClosureMargin(mechanism, group) for group in mechanism.groups]
-
-
 def limit_angles(mechanism, below):
     """Crank angles, rad, at which the closure margin of a group has a minimum less than `below`."""
-    found = [margin.minima(below) for margin in _margins(mechanism)]
+    found = [ClosureMargin(mechanism, group).minima(below) for group in mechanism.groups]
     return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 
 
 def gap_intervals(mechanism):
     """Crank-angle intervals where some group does not close, rad, in order and without overlap."""
-    found = [gap for margin in _margins(mechanism) if margin.open_angles() is not None for gap in margin.gaps()]
+    found: list[tuple[float, float]] = []
     whole = TURN * mechanism.turns
+    for group in mechanism.groups:
+        margin = ClosureMargin(mechanism, group)
+        found += margin.gaps() if margin.open_angles() is not None else ()
     united: list[tuple[float, float]] = []
     for start, stop in sorted(found):
         if united and start <= united[-1][1]:
@@ -168,8 +165,9 @@ def gap_intervals(mechanism):
 
 def require_turn(mechanism):
     """Raise `AssemblyError` if the mechanism does not close all round the turn, between samples too."""
-    for margin in _margins(mechanism):
+    for group in mechanism.groups:
+        margin = ClosureMargin(mechanism, group)
         angle = margin.open_angles()
         if angle is not None:
             where, remedy = "all round the turn", " so that the crank turns all round"
-            raise _assembly_error(mechanism, margin.group, mechanism.place(angle), where, margin.gaps(), remedy)
+            raise _assembly_error(mechanism, group, mechanism.place(angle), where, margin.gaps(), remedy)

@@ -278,12 +278,12 @@ class Dynamics(Motion):
     @cached_property
     def inertia(self):
         """Wrench of inertia by link."""
-        return self._mass_loads(None)
+        return {name: self._mass_load(name, None) for name in self.mechanism.links}
 
     @cached_property
     def mass_loads(self):
         """Wrench of inertia and weight by link."""
-        return self._mass_loads(self.gravity)
+        return {name: self._mass_load(name, self.gravity) for name in self.mechanism.links}
 
     @cached_property
     def link_loads(self):
@@ -294,9 +294,6 @@ class Dynamics(Motion):
         for name, wrench in self.wrenches:
             found[name] = found[name].plus(wrench)
         return found
-
-    def _mass_loads(self, gravity):
-        return {name: self._mass_load(name, gravity) for name in self.mechanism.links}
 
     def _mass_load(self, link, gravity):
         body = self.mechanism.links[link].body
@@ -325,20 +322,18 @@ class Dynamics(Motion):
     @cached_property
     def powers(self):
         """Power of each load and inertia over the crank speed, N m."""
-        links = self.placement.links
-        wrenches = [*self.mass_loads.items(), *self.wrenches]
-        works = [virtual_work(links[name], wrench) for name, wrench in wrenches]
-        return works + self._push_works
+        return self._works([*self.mass_loads.items(), *self.wrenches])
 
     @property
     def load_work(self):
         """Work of all loads except weight per unit of crank angle, N m; None without loads."""
-        works = [virtual_work(self.placement.links[name], wrench) for name, wrench in self.wrenches]
-        return reduce(plus, works + self._push_works, None)
+        return reduce(plus, self._works(self.wrenches), None)
 
-    @property
-    def _push_works(self):
-        return [product(push, self._travel(name).first) for name, push in self.pushes.items()]
+    def _works(self, wrenches):
+        """Work per unit of crank angle of each wrench on a link, and of each push along a guide, N m."""
+        links = self.placement.links
+        works = [virtual_work(links[name], wrench) for name, wrench in wrenches]
+        return works + [product(push, self._travel(name).first) for name, push in self.pushes.items()]
 
     @cached_property
     def closed(self):

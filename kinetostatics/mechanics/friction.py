@@ -109,10 +109,8 @@ def size_of(kind, parts):
     if kind == "itself":
         return parts[0]
     given = [part for part in parts if part is not None]
-    if not given:
-        return None
-    if len(given) == 1:
-        return abs(given[0])
+    if len(given) < 2:
+        return abs(given[0]) if given else None
     if kind == "length":
         return sqrt(given[0] * given[0] + given[1] * given[1] + MIN_SQUARE)
     return larger(abs(given[0]), abs(given[1]))
@@ -122,16 +120,13 @@ def direction_of(law, parts):
     """Factor of a law times the direction of its reaction, by components."""
     if law.kind == "itself":
         return (law.factor,)
-    if law.kind == "size" or len(parts) == 1:
-        return (None if parts[0] is None else law.factor * sign(parts[0]),)
-    first, second = parts
-    if first is None and second is None:
-        return (None, None)
-    if law.kind == "length":
+    given = [part for part in parts if part is not None]
+    if law.kind == "length" and given:
         over = 1.0 / size_of("length", parts)  # derivatives keep the direction
         return tuple(product(law.factor, None if part is None else stop_gradient(over * part)) for part in parts)
-    if first is None or second is None:
+    if len(given) < 2:
         return tuple(None if part is None else law.factor * sign(part) for part in parts)
+    first, second = given
     ahead = 0.5 * sign(abs(first) - abs(second))
     return law.factor * (0.5 + ahead) * sign(first), law.factor * (0.5 - ahead) * sign(second)
 

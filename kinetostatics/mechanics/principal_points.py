@@ -101,14 +101,12 @@ class PrincipalPoints:
 
     def shaking_force(self, motion):
         """Force of the inertia of all moving masses on the frame, minus mass times a_S, (2, ..., N), N."""
-        return motion.as_vector(scale_vector(-1.0, reduce(add_vectors, self._inertia(motion), None)))
-
-    def _inertia(self, motion):
-        for link, lever in self._arms(motion.placement).values():
-            yield acceleration_of(first_at(link, lever), second_at(link, lever), *motion.accelerating)
-        for name, part in self.carried.items():
-            joint = motion.placement.joints[name]
-            yield scale_vector(part, acceleration_of(joint.first, joint.second, *motion.accelerating))
+        arms, moved = self._arms(motion.placement).values(), motion.placement.joints
+        parts = [acceleration_of(first_at(*each), second_at(*each), *motion.accelerating) for each in arms]
+        for name, mass in self.carried.items():
+            joint = moved[name]
+            parts.append(scale_vector(mass, acceleration_of(joint.first, joint.second, *motion.accelerating)))
+        return motion.as_vector(scale_vector(-1.0, reduce(add_vectors, parts, None)))
 
     def _arms(self, placement):
         """By link: the link turning about a fixed joint, and its static moment in the frame's axes, kg m."""

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
+from ..machine.group import TRAVELS
 from ..machine.links import Turning
 from ..numbers import checks
 from ..numbers.arithmetic import sqrt
@@ -68,18 +69,13 @@ def of_mechanism(mechanism) -> dict[str, Quantity]:
     for name in ("balancing_torque", *(name for name in outputs if name != "balancing_torque")):
         if not outputs[name].vector:
             add(name, outputs[name].unit, methodcaller("scalar", name))
-    add("balancing_torque_by_power", "N m", attrgetter("balancing_torque_by_power"), kind="whole")
-    add("shaking_force", "N", attrgetter("shaking_force"), True, "whole")
-    add("shaking_moment", "N m", attrgetter("shaking_moment"), kind="whole")
+    for name, unit in WHOLE.items():
+        add(name, unit, attrgetter(name), name == "shaking_force", "whole")
     for name, unit in ENERGIES.items():
         add(name, unit, attrgetter(name), kind="energy")
     for slider in mechanism.guides:
-        for name, unit, read in (
-            ("position", "m", "travel"),
-            ("velocity", "m/s", "travel_velocity"),
-            ("acceleration", "m/s2", "travel_acceleration"),
-        ):
-            add(f"{slider}_{name}", unit, methodcaller(read, slider), kind="slider")
+        for ending, unit, read in zip(TRAVELS, ("m", "m/s", "m/s2"), TRAVEL_READINGS, strict=True):
+            add(slider + ending, unit, methodcaller(read, slider), kind="slider")
     for group in mechanism.groups:
         for name, output in group.motions.items():
             add(name, output.unit, methodcaller("measure", name), kind="motion")
@@ -224,6 +220,10 @@ def magnitude(vector):
     return sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
+WHOLE = {"balancing_torque_by_power": "N m", "shaking_force": "N", "shaking_moment": "N m"}
+"""Units of the forces of the whole mechanism."""
+TRAVEL_READINGS = "travel", "travel_velocity", "travel_acceleration"
+"""Methods that read the coordinate of a slider and its derivatives by time."""
 ENERGIES = {
     "reduced_inertia": "kg m2",
     "reduced_inertia_slope": "kg m2",

@@ -46,8 +46,6 @@ METHODS = (
 )
 """All methods for a solution, in the order of charts."""
 QUANTITY = "balancing_torque"
-FRONT_ACCURACY = 1e-6
-"""Error below which no method may be both faster and more accurate than the library's own."""
 
 
 def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None):

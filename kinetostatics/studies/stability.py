@@ -171,10 +171,6 @@ def _folding(mechanism, *angles, count=10):
     return scene
 
 
-def _folding_four_bar(crank, coupler, rocker, ground, *angles, count=10):
-    return _folding(_chain_unit(crank, coupler, rocker, (ground, 0.0)), *angles, count=count)
-
-
 def _mass_ratio(ratio):
     mass = math.sqrt(ratio)
     coupler, slider, crank = Link(mass, 1.0, 0.1 * mass), Link(1.0 / mass), Link(mass, 0.1)
@@ -187,26 +183,25 @@ def _nearly_balanced(share):
     return _solution(_cam_saw(cam, cam.coupler_length, share), _TURN, [BALANCING_SPRING])
 
 
-def _of_size(size):
-    return _solution(_saw(size, guide_offset=0.1), _TURN, ())
-
-
-def _after_turns(angle):
-    return _solution(_saw(guide_offset=0.1), angle + _TURN)
-
-
-def _powers_of_ten(first, last, step=1):
-    return tuple(10.0**k for k in range(first, last + 1, step))
-
-
 _DISTANCE = "crank angle from there [rad]"
 _IN_LINE = "crank angle from all links in line [rad]"
 _ON_PIVOT = "crank angle from A on O2 [rad]"
 _SHORT = "excess of the coupler's length [1]"
 _PITCH_CIRCLE = "distance of O from the pitch circle [radii]"
 _MASSES = "mass of coupler and crank over slider's [1]"
-_EQUAL_LINKS = _folding(_saw(coupler_length=0.3), 0.5 * math.pi, count=20)
-_CHANGE_POINT = _folding_four_bar(0.2, 0.5, 0.2, 0.5, 0.0, count=20)
+_FOLDED = {
+    "change point": _folding(_chain_unit(0.2, 0.5, 0.2, (0.5, 0.0)), 0.0, count=20),
+    "rhombus": _folding(_chain_unit(0.3, 0.3, 0.3, (0.3, 0.0)), 0.0, math.pi),
+    "kite": _folding(_chain_unit(0.2, 0.2, 0.5, (0.5, 0.0)), math.pi),
+    "kite, A passing O2": _folding(_chain_unit(0.2, 0.5, 0.5, (0.2, 0.0)), 0.0),
+    "parallelogram": _folding(_chain_unit(0.2, 0.5, 0.2, (0.5, 0.0)), math.pi),
+    "equal links": _folding(_saw(coupler_length=0.3), 0.5 * math.pi, count=20),
+}
+_SCALED = {
+    "size": lambda size: _solution(_saw(size, guide_offset=0.1), _TURN, ()),
+    "turns": lambda angle: _solution(_saw(guide_offset=0.1), angle + _TURN),
+}
+_SIZES, _RATIOS, _ANGLES = (tuple(10.0**k for k in range(*ends)) for ends in ((-9, 10), (-24, 1, 4), (8,)))
 PLACES = (
     Place("dead centres, inclined guide", _DISTANCE, DISTANCES, _dead_centre, "slider_position"),
     Place("limit position", _DISTANCE, DISTANCES, _limit_position, "O"),
@@ -214,17 +209,17 @@ PLACES = (
     Place("singular angle of the cosine cam", _DISTANCE, DISTANCES, _singular_angle, "cam_force"),
     Place("pressure angle toward 90 deg", _PITCH_CIRCLE, DISTANCES[2:], _pressure_angle, "cam_force"),
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
-    Place("four-bar change point", _IN_LINE, DISTANCES, _CHANGE_POINT, "O"),
+    Place("four-bar change point", _IN_LINE, DISTANCES, _FOLDED["change point"], "O"),
     Place("four-bar that only just turns", "excess of the rocker's length [1]", DISTANCES[2:], _just_turning, "O"),
     Place("slotted lever that only just turns", "what the slot's offset lacks [1]", DISTANCES[2:], _just_sliding, "O"),
-    Place("rhombus", _IN_LINE, DISTANCES, _folding_four_bar(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
-    Place("kite", _IN_LINE, DISTANCES, _folding_four_bar(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
-    Place("kite, A passing O2", _ON_PIVOT, DISTANCES, _folding_four_bar(0.2, 0.5, 0.5, 0.2, 0.0), "balancing_torque"),
-    Place("parallelogram, folded", _IN_LINE, DISTANCES, _folding_four_bar(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
-    Place("coupler as long as the crank", _IN_LINE, DISTANCES, _EQUAL_LINKS, "O"),
-    Place("size", "size, times the sawframe's [1]", _powers_of_ten(-9, 9), _of_size, "O"),
-    Place("unequal masses", _MASSES, _powers_of_ten(-24, 0, 4), _mass_ratio, "balancing_torque"),
-    Place("many turns", "crank angle [rad]", _powers_of_ten(0, 7), _after_turns, "balancing_torque"),
+    Place("rhombus", _IN_LINE, DISTANCES, _FOLDED["rhombus"], "O"),
+    Place("kite", _IN_LINE, DISTANCES, _FOLDED["kite"], "O"),
+    Place("kite, A passing O2", _ON_PIVOT, DISTANCES, _FOLDED["kite, A passing O2"], "balancing_torque"),
+    Place("parallelogram, folded", _IN_LINE, DISTANCES, _FOLDED["parallelogram"], "O"),
+    Place("coupler as long as the crank", _IN_LINE, DISTANCES, _FOLDED["equal links"], "O"),
+    Place("size", "size, times the sawframe's [1]", _SIZES, _SCALED["size"], "O"),
+    Place("unequal masses", _MASSES, _RATIOS, _mass_ratio, "balancing_torque"),
+    Place("many turns", "crank angle [rad]", _ANGLES, _SCALED["turns"], "balancing_torque"),
     Place("nearly balanced", "share of the coupler's mass [1]", DISTANCES, _nearly_balanced, "balancing_torque"),
 )
 

@@ -92,11 +92,7 @@ def test_angles_outside_the_gap_are_solved():
     )
 
 
-LINKS = {
-    "crank": ks.Link(3.0, 0.4, 0.2),
-    "coupler": ks.Link(7.0, (0.4, 0.1), 0.9),
-    "slider": ks.Link(11.0, (0.1, 0.2)),
-}
+LINKS = {"crank": ks.Link(3.0, 0.4, 0.2), "coupler": ks.Link(7.0, (0.4, 0.1), 0.9), "slider": ks.Link(11.0, (0.1, 0.2))}
 
 
 def test_nan_stands_exactly_in_the_gap():

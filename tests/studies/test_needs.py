@@ -261,14 +261,6 @@ def test_quantity_that_is_zero_throughout_is_refused(saw):
         ks.needs(saw["plain"], "guide_moment")
 
 
-def test_left_out_simplifications_are_named(monkeypatch):
-    monkeypatch.setattr(ingredients, "MAX_MODELS", 2)
-    found = ks.needs(solved(cranked()), "O")
-    assert found.tried <= 2
-    assert "massless slider" in found.left_out
-    assert found.left_out["massless slider"].endswith("and there are more than 2 models")
-
-
 def test_harmonics_of_gaps_are_left_out():
     gapping = ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0))
     found = ks.needs(solved(gapping, angle=np.linspace(-0.5, 0.5, 12)), "O")

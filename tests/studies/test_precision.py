@@ -255,25 +255,3 @@ def test_missing_flint_is_named_and_nothing_written(tmp_path, monkeypatch, capsy
     assert told.startswith("kinetostatics: ")
     assert told.endswith('pip install "kinetostatics[precision]"\n')
     assert not (tmp_path / "out").exists()
-
-
-# What cannot be
-
-
-@pytest.mark.parametrize("library", ["flint", "mpmath"])
-def test_missing_library_is_named_with_its_command(monkeypatch, case, library):
-    monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[precision\]"'):
-        precision.study(case.solve("plain", 8))
-
-
-def test_uncertifiable_scenes_are_named(case):
-    turn = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
-    coupler = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
-    sampled = ks.cam_crank_slider(ks.cams.Sampled(turn, 0.3 + 0.05 * np.cos(turn)), 2.0, **coupler)
-    with pytest.raises(ks.errors.NotGivenError, match="cam Sampled"):
-        precision.study(ks.solve(sampled, turn, crank_speed=3.0))
-    force = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, [0.0, 6.3], [0.0, 1e4]))
-    loaded = ks.solve(case.variant("plain").mechanism, turn, crank_speed=3.0, loads=[ks.Gravity(), force])
-    with pytest.raises(ks.errors.NotGivenError, match="load 2, ProcessForce on 'slider'"):
-        precision.study(loaded)

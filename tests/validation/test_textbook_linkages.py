@@ -11,14 +11,8 @@ import kinetostatics as ks
 B, C, D = 1.52 + 0.0j, 4.23 + 3.029j, 4.572 + 0.0j
 EXACT = 1e-14
 ROWS = {
-    0: {
-        "coupler": (-0.537707806825430, -0.0981933666211512),
-        "rocker": (-0.537707806825430, 0.778081940185145),
-    },
-    90: {
-        "coupler": (-0.102232102356830, 0.231680861727353),
-        "rocker": (0.506736383917586, 0.192595295526762),
-    },
+    0: {"coupler": (-0.537707806825430, -0.0981933666211512), "rocker": (-0.537707806825430, 0.778081940185145)},
+    90: {"coupler": (-0.102232102356830, 0.231680861727353), "rocker": (0.506736383917586, 0.192595295526762)},
 }
 
 
@@ -45,10 +39,7 @@ def test_rates_equal_the_reference_set(row, link):
 
 def shaper(crank, centres, lever):
     """Pivot below O; the free end C of the lever drives a ram on a level guide by a long link."""
-    parts = (
-        ks.LeverGroup((0.0, -centres)),
-        ks.Pin(on="lever", at=(lever, 0.0)),
-    )
+    parts = (ks.LeverGroup((0.0, -centres)), ks.Pin(on="lever", at=(lever, 0.0)))
     return ks.Mechanism("crank shaper", ks.Crank(crank), parts)
 
 

@@ -35,7 +35,7 @@ from ...machine.loads import Force, Gravity, PointDamper, PointSpring
 from ...machine.mechanism import Mechanism
 from ...numbers import checks
 from ...solution.scene import Scene
-from .global_system.constraints import Configuration, Model
+from .global_system.constraints import Configuration, Model, integrate
 from .high_precision.certified import exact_speed
 from .method import Method, run_methods, seconds
 
@@ -94,16 +94,6 @@ OUR_METHODS = (
 )
 
 
-def _integrate(slopes, end, start, method, asked, rtol, atol):
-    """States at the times asked for of an integration from 0 to the end by SciPy, (components, N)."""
-    from scipy.integrate import solve_ivp
-
-    found = solve_ivp(slopes, (0.0, end), start, method, asked, rtol=rtol, atol=atol)
-    if found.status < 0:
-        raise NotGivenError(f"integration stops: {found.message}")
-    return found.y
-
-
 MIN_TOLERANCE = 3e-14
 """Smallest relative tolerance that SciPy takes from us."""
 
@@ -126,7 +116,7 @@ def _reduced_inertia(method, problem, quantity, tolerance):
     def slopes(time, state):
         return state[1], acceleration(*state.tolist())
 
-    return lambda: _integrate(slopes, end, start, method, [end], max(tolerance, MIN_TOLERANCE), tolerance)[0, -1]
+    return lambda: integrate(slopes, (0.0, end), start, method, [end], max(tolerance, MIN_TOLERANCE), tolerance)[0, -1]
 
 
 def _runge_kutta(problem, quantity, steps):
@@ -163,8 +153,7 @@ def _constraints(problem, quantity, tolerance):
     def change(time, state):
         q, rates = np.split(state, 2)
         at = Configuration(model, q, q[crank])
-        right = at.gamma(rates) - 2.0 * DAMPING * (at.jacobian @ rates - model.drive * rates[crank])
-        still = at.solve(right - DAMPING * DAMPING * at.residual)
+        still = at.solve(at.damped_gamma(rates, rates[crank], DAMPING))
         faster = still + at.solve(model.drive)
         asked = [
             (torque @ at.solve(at.demand(rates, accelerations, loaded), transposed=True)).item()
@@ -173,7 +162,7 @@ def _constraints(problem, quantity, tolerance):
         alpha = -asked[0] / (asked[1] - asked[0])
         return np.concatenate([rates, still + alpha * (faster - still)])
 
-    return lambda: _integrate(change, end, start, "DOP853", [end], tolerance, tolerance)[crank, -1]
+    return lambda: integrate(change, (0.0, end), start, "DOP853", [end], tolerance, tolerance)[crank, -1]
 
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
@@ -264,7 +253,7 @@ def _integrated_turns(find_energy, method, problem, quantity, tolerance):
 
     def energies(energy, asked):
         limits = max(tolerance, MIN_TOLERANCE), tolerance * scale
-        return _integrate(problem.slope, problem.period, [energy], method, asked, *limits)[0]
+        return integrate(problem.slope, (0.0, problem.period), [energy], method, asked, *limits)[0]
 
     def run():
         energy = find_energy(lambda energy: float(energies(energy, None)[-1]), scale, tolerance)

@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.cams.cams import Circle, CosineLaw, Harmonic
 from ...machine.group import FRAME
-from ...machine.links import Rolling, Sliding, Turning
+from ...machine.links import CamDriven, Rolling, Sliding, Turning
 from ...machine.loads import (
     Force,
     Gravity,
@@ -26,6 +26,7 @@ from ...machine.loads import (
 )
 from ...machine.loads.points import point_on_link
 from ...mechanics.load_values import evaluate_load, slider_push
+from ...numbers.lazy import cached_property
 
 LINK_NUMBERS = "mass", "along", "across", "inertia"
 CURVE_NAMES = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
@@ -34,54 +35,23 @@ SAMPLED_CURVE = "given"
 """Name of any other curve: its values and derivatives are computed by the curve itself."""
 
 
-class PinReaction(NamedTuple):
-    """Reaction of a turning pair by name: on a link, from another, at their joint."""
-
-    name: str
-    link: str
-    joint: str
-    other: str
-
-
-class SlidingPair(NamedTuple):
-    """A straight pair: a joint of a link slides along another link; force and couple about `about` act on the first.
-
-    `vector` is the name of the force as a vector, or empty. A link that is a rod points against its slot.
-    """
-
-    link: str
-    joint: str
-    other: str
-    force: str
-    couple: str
-    about: str
-    vector: str
-    rod: bool
-
-
-class CamPair(NamedTuple):
-    """A cam that drives a link, the formula of its curve, and the numbers of cosines and sines in it."""
-
-    link: str
-    joint: str
-    body: str
-    force: str
-    flat: bool
-    curve: str
-    terms: tuple[int, int]
-
-
 class PartStructure(NamedTuple):
-    """Crank or group: links with reference joints, joints with their links, bars (start, end, link), and pairs."""
+    """Crank or group: links with reference joints, joints with their links, bars (start, end, link), and pairs by name.
+
+    Pairs name the link that they are against, and the joint that their couple is about. `rods` are links that point
+    against their slots. `curve` is the formula of a cam's curve, with the numbers of cosines and sines in it.
+    """
 
     kind: str
     outputs: tuple[str, ...]
     links: tuple[tuple[str, str], ...]
     joints: tuple[tuple[str, str], ...]
     bars: tuple[tuple[str, str, str], ...]
-    pins: tuple[PinReaction, ...]
-    slides: tuple[SlidingPair, ...]
-    cams: tuple[CamPair, ...]
+    pins: tuple[tuple[str, Turning], ...]
+    slides: tuple[tuple[str, Sliding], ...]
+    rods: tuple[str, ...]
+    cams: tuple[CamDriven, ...]
+    curve: tuple[str, tuple[int, int]]
 
 
 class Structure(NamedTuple):
@@ -112,20 +82,17 @@ def structure(mechanism):
 
 
 def _part_structure(part, owners):
-    pinned, slid = [], []
+    pins, slides = {}, {}
     for name, pair in part.pairs.items():
         if isinstance(pair, Turning):
-            pinned.append(PinReaction(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
+            pins[name] = pair._replace(against=pair.against or owners[pair.joint])
         elif isinstance(pair, Sliding):
-            rod = any(slot.rod == pair.link for slot in part.slots)
-            vector, about = name if name in part.outputs else "", pair.about or pair.joint
-            slid.append(SlidingPair(pair.link, pair.joint, pair.against, pair.force, pair.couple, about, vector, rod))
-    cams = tuple(CamPair(*led, *_curve(part.cam)) for led in part.led)
-    found = {*(item.name for item in pinned), *(cam.force for cam in cams)}
-    found |= {name for item in slid for name in (item.force, item.couple, item.vector)}
-    missing = part.outputs.keys() - found - {"balancing_torque"}
-    held = {item.link for item in pinned} | {item.link for item in slid} | {item.other for item in pinned}
-    free = part.links.keys() - held
+            slides[name] = pair._replace(about=pair.about or pair.joint)
+    found = {*pins, *slides, *(cam.force for cam in part.led), "balancing_torque"}
+    found |= {name for pair in slides.values() for name in (pair.force, pair.couple)}
+    missing = part.outputs.keys() - found
+    held = {link for pair in pins.values() for link in (pair.link, pair.against)}
+    free = part.links.keys() - held - {pair.link for pair in slides.values()}
     if missing or free:
         what = ", ".join(sorted(missing)) or f"what holds {', '.join(sorted(free))}"
         declared = f"{type(part).__name__} does not declare in its pairs"
@@ -136,9 +103,11 @@ def _part_structure(part, owners):
         tuple(part.references.items()),
         tuple((name, point.link) for name, point in part.joints.items()),
         tuple((bar.start, bar.end, bar.link) for bar in part.bars),
-        tuple(pinned),
-        tuple(slid),
-        cams,
+        tuple(pins.items()),
+        tuple(slides.items()),
+        tuple(slot.rod for slot in part.slots),
+        tuple(part.led),
+        _curve(getattr(part, "cam", None)),
     )
 
 
@@ -196,6 +165,18 @@ class LoadForces:
         return (
             slider_push(item, self.solution) if hasattr(item, "push") else evaluate_load(item, self.solution).value_now
         )
+
+    @cached_property
+    def declared(self):
+        """Structure of the mechanism, and its numbers by name."""
+        return structure(self.mechanism)
+
+    def way(self, pair):
+        """Direction of a straight pair, along the guide or slot."""
+        if pair.against == FRAME:
+            return self.at(pair.link)[1]
+        angle = self.number(self.declared[1][f"{pair.against}_{pair.joint}_angle"])
+        return self.at(pair.against)[1] * self.expj(angle)
 
     def posture(self, link):
         """As ``at(link)``, of the frame too."""
@@ -281,7 +262,6 @@ class FrictionForces:
             raise NotGivenError("friction of a sense that is given, not of the motion, has no independent formula")
         self._acting, self._friction = acting, solution.friction.acting
         self._number, self._speed = acting.number, acting.number(solution.crank_speed)
-        self._numbers = structure(acting.mechanism)[1] if self._friction else {}
 
     def converge(self, solve, named, largest, limit):
         """Unknowns of the equations, consistent with the friction that their forces cause.
@@ -320,12 +300,7 @@ class FrictionForces:
         return [(pair.link, 0.0, 0.0, couple), (other, 0.0, 0.0, -couple)]
 
     def _sliding(self, name, pair, friction, forces):
-        place = self._acting.point(pair.joint)[1]
-        if pair.against == FRAME:
-            way = self._acting.at(pair.link)[1]
-        else:
-            angle = self._number(self._numbers[f"{pair.against}_{pair.joint}_angle"])
-            way = self._acting.at(pair.against)[1] * self._acting.expj(angle)
+        place, way = self._acting.point(pair.joint)[1], self._acting.way(pair)
         press = abs(forces[pair.force])
         if friction.half_length is not None:
             edges = abs(forces[pair.couple]) / self._number(friction.half_length)

@@ -10,13 +10,14 @@ Each equation is signed so that its multiplier in lambda is a reaction as the li
 Slots and cams give nonlinear equations, each with its `terms`: the distance from a slot or pitch curve stays zero.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ....errors import NotGivenError
 from ....machine.followers.translating import FlatFollower
-from ....machine.group import FRAME
+from ....machine.group import FRAME, RATES, TRAVELS
 from ....machine.loads import Gravity
 from ....numbers.lazy import cached_property
 from ....numbers.planar import left
@@ -69,33 +70,20 @@ class ContactEquation(NamedTuple):
         return CurvedTerms(_dot(normal, apart - centre), parts, _dot(normal, rest) + bending)
 
 
-def straight_slot(way, offset):
-    """Curve of a slot in the direction of a complex unit vector, at an offset to the left of its link's joint."""
-    return lambda place, turned: (1j * way * offset, way, 0.0)
-
-
-def fixed_pitch_curve(cam):
+def fixed_pitch_curve(cam, place, turned):
     """Pitch curve of a fixed cam, at the polar angle of the place."""
-
-    def curve(place, turned):
-        ray = place / np.abs(place)
-        radius, slope, second = cam.polar(np.angle(place), (ray.real, ray.imag))
-        return radius * ray, (slope + 1j * radius) * ray, (second - radius + 2j * slope) * ray
-
-    return curve
+    ray = place / np.abs(place)
+    radius, slope, second = cam.polar(np.angle(place), (ray.real, ray.imag))
+    return radius * ray, (slope + 1j * radius) * ray, (second - radius + 2j * slope) * ray
 
 
-def turning_pitch_curve(disk):
+def turning_pitch_curve(disk, place, turned):
     """Pitch curve of a cam on the crank, at the foot of the perpendicular from the place."""
-
-    def curve(place, turned):
-        for _ in range(MAX_FOOT_ITERATIONS):
-            centre, first, second = disk.curve(turned)
-            off = place - centre
-            turned = turned - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
-        return disk.curve(turned)
-
-    return curve
+    for _ in range(MAX_FOOT_ITERATIONS):
+        centre, first, second = disk.curve(turned)
+        off = place - centre
+        turned = turned - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
+    return disk.curve(turned)
 
 
 class FlatFollowerEquation(NamedTuple):
@@ -148,16 +136,19 @@ class Model:
         made, self.numbers = structure(mechanism)
         bars = {(end, link) for part in made.parts for _, end, link in part.bars}
         for part, group in zip(made.parts[1:], mechanism.groups, strict=True):
-            for pin in part.pins:
-                one, other = (self._on(link, pin.joint, bars) for link in (pin.link, pin.other))
-                self._add(pin.name, *(one - other))
-            for slide in part.slides:
-                self._slide(slide)
+            for name, pin in part.pins:
+                one, other = (self._on(link, pin.joint, bars) for link in (pin.link, pin.against))
+                self._add(name, *(one - other))
+            for name, pair in part.slides:
+                if pair.against == FRAME:
+                    self._guide(name, pair)
+                else:
+                    self._slot(pair, pair.link in part.rods)
             for cam in part.cams:
                 self._cam(cam, group)
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
-            self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
+            self.readings |= {name + ending: (order, turning) for order, ending in enumerate(RATES, RATE)}
         self.equations = np.array(self.equations)
         self.linear, self.of_cosine, self.of_sine, _ = np.split(self.equations, np.arange(3, 6) * self.size, axis=1)
         self.drive = -self.equations @ self._phi
@@ -179,38 +170,38 @@ class Model:
             return self._joint(joint) if self.mechanism.references.get(link) != joint else self._point(link)
         return self._point(link, self.numbers[f"{link}_length"])
 
-    def _slide(self, item):
-        """Keep a link on a guide, or in the slot of another link; a rod in reverse."""
-        if item.other == FRAME:
-            self._guide(item)
-            return
-        place = f"{item.other}_{item.joint}"
+    def _slot(self, item, is_rod):
+        """Keep a link in the slot of another; a rod in reverse."""
+        place = f"{item.against}_{item.joint}"
         offset, angle = self.numbers[f"{place}_offset"], self.numbers[f"{place}_angle"]
-        ends = (item.link, item.other) if item.rod else (item.other, item.link)
+        ends = (item.link, item.against) if is_rod else (item.against, item.link)
         slotted, block = (self.names.index(name) for name in ends)
-        self._curve(item.force, ContactEquation, slotted, block, 0.0, straight_slot(np.exp(1j * angle), offset))
-        ahead = angle + (np.pi if item.rod else 0.0)
-        self._held.append((item.link, item.other, ahead))
-        self._add(item.couple, self._theta(item.link) - self._theta(item.other) - ahead * self._one)
+        way = np.exp(1j * angle)
+        self._curve(
+            item.force, ContactEquation, slotted, block, 0.0, lambda place, turned: (1j * way * offset, way, 0.0)
+        )
+        ahead = angle + (np.pi if is_rod else 0.0)
+        self._held.append((item.link, item.against, ahead))
+        self._add(item.couple, self._theta(item.link) - self._theta(item.against) - ahead * self._one)
 
     def _cam(self, cam, group):
         """Keep a link on a cam, fixed or turning with the crank."""
         link = self.names.index(cam.link)
         if cam.body == FRAME:
-            self._curve(cam.force, ContactEquation, None, link, 0.0, fixed_pitch_curve(group.cam))
+            self._curve(cam.force, ContactEquation, None, link, 0.0, partial(fixed_pitch_curve, group.cam))
             return
         crank, along = self.names.index(cam.body), self.numbers[f"{cam.joint}_along"]
         if isinstance(group, FlatFollower):
             self._curve(cam.force, FlatFollowerEquation, crank, link, along, group)
         else:
-            self._curve(cam.force, ContactEquation, crank, link, along, turning_pitch_curve(group.disk))
+            self._curve(cam.force, ContactEquation, crank, link, along, partial(turning_pitch_curve, group.disk))
 
     def _curve(self, force, kind, *data):
         """Add a nonlinear equation, whose multiplier is a force."""
         self.curved.append(kind(len(self.equations), *data))
         self._add(force, 0.0 * self._one)
 
-    def _guide(self, item):
+    def _guide(self, name, item):
         slider = item.link
         guide, pin = self.mechanism.guides[slider], self._joint(item.joint)
         self._held.append((slider, None, guide.guide_angle))
@@ -218,10 +209,9 @@ class Model:
         self.guides[slider] = complex(*along)
         force = self._add(item.force, across @ pin - guide.guide_offset * self._one)
         self._add(item.couple, self._theta(slider) - guide.guide_angle * self._one)
-        if item.vector:
-            self.readings[item.vector] = (FORCE, across[:, None] * force)
-        for name, order in {"position": POSITION, "velocity": RATE, "acceleration": ACCELERATION}.items():
-            self.readings[f"{slider}_{name}"] = (order, (along @ pin)[None, : 3 * self.size])
+        self.readings[name] = (FORCE, across[:, None] * force)
+        for order, ending in enumerate(TRAVELS):
+            self.readings[slider + ending] = (order, (along @ pin)[None, : 3 * self.size])
 
     def _add(self, name, *equations):
         """Add equations; their multipliers are the components of the force or moment `name`."""
@@ -305,6 +295,14 @@ class Configuration:
         for item in model.curved:
             gamma[..., item.row] = -item.terms(self, rates).second
         return gamma
+
+    def damped_gamma(self, rates, speed, damping):
+        """Right side with Baumgarte's terms, by which the errors of positions and rates decay."""
+        right = self.gamma(rates)
+        if damping:
+            right = right - 2.0 * damping * (self.jacobian @ rates - self.model.drive * speed)
+            right = right - damping * damping * self.residual
+        return right
 
     def solve(self, right, transposed=False):
         """Solution of J or of its transpose."""
@@ -401,3 +399,13 @@ def components(model, solution, quantity, q, rates=None):
         force = at.forces(rates, at.demand(rates, found, solution), solution)[quantity]
         return (force.real, force.imag) if np.iscomplexobj(force) else (force,)
     return tuple(coefficients @ found.T)
+
+
+def integrate(slopes, span, start, method, asked, rtol, atol):
+    """States at the times asked for of an integration by SciPy, (components, N)."""
+    from scipy.integrate import solve_ivp
+
+    found = solve_ivp(slopes, span, start, method, asked, rtol=rtol, atol=atol)
+    if found.status < 0:
+        raise NotGivenError(f"integration stops: {found.message}")
+    return found.y

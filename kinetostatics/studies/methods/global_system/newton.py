@@ -15,11 +15,10 @@ projection  one Newton iteration corrects q at each output angle, and J gives qd
 from functools import partial
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from ....errors import NotGivenError
 from ..method import Method, require_moving, require_one_design
-from .constraints import Configuration, Model, components
+from .constraints import Configuration, Model, components, integrate
 
 TABLE_STEP = np.radians(15.0)
 """Largest step, rad, of the table of starting positions: 24 in a turn."""
@@ -96,17 +95,11 @@ def _integration(damping, projected, solution, quantity, tolerance):
     def derivative(phi, state):
         q, rates = np.split(state, 2)
         at = Configuration(model, q, phi)
-        right = at.gamma(rates)
-        if damping:
-            right -= 2 * damping * (at.jacobian @ rates - model.drive) + damping * damping * at.residual
-        return np.concatenate([rates, at.solve(right)])
+        return np.concatenate([rates, at.solve(at.damped_gamma(rates, 1.0, damping))])
 
     def run():
-        span, tolerances = angle[[0, -1]], {"rtol": tolerance, "atol": tolerance * scale}
-        found = solve_ivp(derivative, span, start, "DOP853", t_eval=angle, **tolerances)
-        if not found.success:
-            raise NotGivenError(f"integration stops: {found.message}")
-        q, rates = np.split(found.y.T, 2, axis=1)
+        states = integrate(derivative, angle[[0, -1]], start, "DOP853", angle, tolerance, tolerance * scale)
+        q, rates = np.split(states.T, 2, axis=1)
         if projected:
             return components(model, solution, quantity, Configuration(model, q, angle).newton_step())
         return components(model, solution, quantity, q, rates * solution.crank_speed)

@@ -28,7 +28,7 @@ from ....machine.loads import Gravity, Load
 from ....mechanics.quantities import RATES
 from ....numbers import checks
 from ..method import require_moving
-from ..structures import FrictionForces, LoadForces, structure
+from ..structures import FrictionForces, LoadForces
 from .enclosures import on_arb, require_library, require_one_design
 
 
@@ -315,17 +315,12 @@ class Machine(Posture, LoadForces):
         none = self.mp.mpc(0)
         at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
         found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", FRAME)]
-        made, numbers = structure(self.mechanism)
-        for part in made.parts:
-            for pin in part.pins:
-                found += [(pin.name, way, 0, at[pin.joint], pin.link, pin.other) for way in self.parts]
-            for pair in part.slides:
-                ends = at[pair.about], pair.link, pair.other
-                along = self.position["direction", pair.link]
-                if pair.other != FRAME:
-                    turned = self.mp.expj(self.number(numbers[f"{pair.other}_{pair.joint}_angle"]))
-                    along = self.position["direction", pair.other] * turned
-                found += [(pair.force, left(along), 0, *ends), (pair.couple, none, 1, *ends)]
+        for part in self.declared[0].parts:
+            for name, pin in part.pins:
+                found += [(name, way, 0, at[pin.joint], pin.link, pin.against) for way in self.parts]
+            for _, pair in part.slides:
+                ends = at[pair.about], pair.link, pair.against
+                found += [(pair.force, left(self.way(pair)), 0, *ends), (pair.couple, none, 1, *ends)]
             found += [(cam.force, *self.contact(cam, at[cam.joint]), cam.link, cam.body) for cam in part.cams]
         return found
 

@@ -45,10 +45,10 @@ class Equations(Motion):
                 self._part(link, body)
         self.loads.append((self.frames["crank"], TORQUE * N.z))
         for part in self.structure.parts:
-            for pin in part.pins:
-                self._pin(pin)
-            for slide in part.slides:
-                self._slide(slide)
+            for name, pin in part.pins:
+                self._pin(name, pin)
+            for name, pair in part.slides:
+                self._slide(name, pair)
             for cam in part.cams:
                 self._press(cam)
         outputs = {"balancing_torque", *(name for part in structure.parts for name in part.outputs)}
@@ -75,7 +75,7 @@ class Equations(Motion):
         self.loads.append((centre, mass * planar(*sp.symbols("gravity_x gravity_y"))))
         x, y, moment = sp.symbols([f"{link}_load_{part}" for part in ("x", "y", "moment")])
         force = planar(x, y)
-        if link in self.slides and self.slides[link].other == FRAME:
+        if link in self.slides and self.slides[link].against == FRAME:
             names = "push", "stiffness", "free", "cubic"
             push, stiffness, free, cubic = sp.symbols([f"{link}_{name}" for name in names])
             deflection = self.travels[link] - free
@@ -103,22 +103,21 @@ class Equations(Motion):
         self._push(link, position, force, couple)
         self._push(other, position, -force, -couple)
 
-    def _pin(self, item):
-        guided = [self.bodies[link].ways for link in (item.link, item.other) if self.bodies[link].ways[0] != N.x]
+    def _pin(self, name, item):
+        guided = [self.bodies[link].ways for link in (item.link, item.against) if self.bodies[link].ways[0] != N.x]
         ways = guided[0] if guided else (N.x, N.y)
-        x, y = self._unknown(f"{item.name}_x"), self._unknown(f"{item.name}_y")
+        x, y = self._unknown(f"{name}_x"), self._unknown(f"{name}_y")
         force = x * ways[0] + y * ways[1]
-        self.reactions[item.name] = (force & N.x, force & N.y)
+        self.reactions[name] = (force & N.x, force & N.y)
         self._push(item.link, self._on(item.link, item.joint), force)
-        self._push(item.other, self._on(item.other, item.joint), -force)
+        self._push(item.against, self._on(item.against, item.joint), -force)
 
-    def _slide(self, item):
+    def _slide(self, name, item):
         force, couple = self._unknown(item.force), self._unknown(item.couple)
         across = self.bodies[item.link].frame.y
         self.reactions |= {item.force: (force,), item.couple: (couple,)}
-        if item.vector:
-            self.reactions[item.vector] = (force * across & N.x, force * across & N.y)
-        self._act(item.link, item.other, self.places[item.about], force * across, couple)
+        self.reactions[name] = (force * across & N.x, force * across & N.y)
+        self._act(item.link, item.against, self.places[item.about], force * across, couple)
 
     def _press(self, cam):
         """Apply the contact force of a cam, normal to the relative motion along its curve."""
@@ -177,24 +176,23 @@ class AppliedLoads(LoadForces):
 
     def __init__(self, solution, result):
         self.solution, self.mechanism = solution, solution.mechanism
-        links, sliders, loads = self.mechanism.links, self.mechanism.guides, solution.loads
+        links, sliders = self.mechanism.links, self.mechanism.guides
         self.numbers: dict[str, Any] = {f"{link}_load_{part}": 0 for link in links for part in LOAD_PARTS}
         self.numbers |= {f"{slider}_{part}": 0 for slider in sliders for part in ("push", "stiffness", "free", "cubic")}
-        pushes = [item for item in loads if hasattr(item, "push")]
-        self.springs, self.pushes = [], []
-        for item in pushes:
-            if isinstance(item, Spring):
-                self.springs.append(item)
+        self.pushes, self.others, sprung = [], [], set()
+        for item in solution.loads:
+            if isinstance(item, Spring) and item.on not in sprung:
+                sprung.add(item.on)
+                parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
+                self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
             elif isinstance(item, ProcessForce) and isinstance(item.force, int | float):
                 self.numbers[f"{item.on}_push"] += item.force
-            else:
+            elif hasattr(item, "push"):
                 self.pushes.append(item)
-        for item in {item.on: item for item in reversed(self.springs)}.values():
-            parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
-            self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
-            self.springs.remove(item)
-        self.others = [item for item in loads if not hasattr(item, "push") and not isinstance(item, Gravity)]
-        self.travels = {item.on: result(f"{item.on}_position") for item in self.springs}
+            elif not isinstance(item, Gravity):
+                self.others.append(item)
+        further = {item.on for item in self.pushes if isinstance(item, Spring)}
+        self.travels = {slider: result(f"{slider}_position") for slider in further}
         self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}
         self.fixed = self.numbers
         moving = self()
@@ -206,11 +204,9 @@ class AppliedLoads(LoadForces):
         def add(name, amount):
             found[name] = found.get(name, self.fixed[name]) + amount
 
-        for item in self.springs:
-            (travel,) = self.travels[item.on]()
-            add(f"{item.on}_push", self.push(item, travel))
         for item in self.pushes:
-            add(f"{item.on}_push", self.value(item))
+            coordinate = self.travels[item.on]()[0] if isinstance(item, Spring) else None
+            add(f"{item.on}_push", self.push(item, coordinate))
         self.places = {link: run() for link, run in self.motions.items()}
         for item in self.others:
             for link, force, at, couple in self.of(item):

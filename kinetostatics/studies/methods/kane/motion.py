@@ -120,8 +120,9 @@ class Motion:
         self.bodies: dict[str, Body] = {FRAME: Body(0 * N.x, N, N.x, 0, (N.x, N.y))}
         self.owners = dict(item for part in structure.parts for item in part.joints)
         self.bars = {(end, link): link for part in structure.parts for _, end, link in part.bars}
-        self.slides = {item.link: item for part in structure.parts for item in part.slides}
-        self.led = {cam.link: cam for part in structure.parts for cam in part.cams}
+        self.slides = {pair.link: pair for part in structure.parts for _, pair in part.slides}
+        self.rods = {link for part in structure.parts for link in part.rods}
+        self.led = {cam.link: part.curve for part in structure.parts for cam in part.cams}
         self.angles: dict[str, Any] = {}
         self.rays: dict[Any, Any] = {}
         self.travels: dict[str, Any] = {}
@@ -153,14 +154,14 @@ class Motion:
             self.angles[link] = theta = unknown(f"theta_{link}")
             frame, turning = self._frame(link, theta), slope(theta)
             self.rays[theta] = frame.x
-        elif item.other == FRAME:
+        elif item.against == FRAME:
             frame, turning = self._frame(f"{link} guide", sp.Symbol(f"{link}_guide_angle"), turning=0), sp.S.Zero
             ways = frame.x, frame.y
         else:
-            body = self._point(item.other)
-            angle, turning = self.number(f"{item.other}_{item.joint}_angle"), body.turning
+            body = self._point(item.against)
+            angle, turning = self.number(f"{item.against}_{item.joint}_angle"), body.turning
             frame = self._frame(f"{link} slot", angle, body.frame, 0) if angle else body.frame
-        self.bodies[link] = Body(None, frame, -frame.x if item and item.rod else frame.x, turning, ways)
+        self.bodies[link] = Body(None, frame, -frame.x if link in self.rods else frame.x, turning, ways)
         return self.bodies[link]
 
     def _frame(self, name, angle, base=N, turning=None):
@@ -172,9 +173,9 @@ class Motion:
     def _foot(self, item):
         """Foot of the perpendicular on the line of a pair, from the slotted link's reference joint or from O."""
         frame = self.bodies[item.link].frame
-        if item.other == FRAME:
+        if item.against == FRAME:
             return sp.Symbol(f"{item.link}_guide_offset") * frame.y
-        return self.bodies[item.other].joint + self.number(f"{item.other}_{item.joint}_offset") * frame.y
+        return self.bodies[item.against].joint + self.number(f"{item.against}_{item.joint}_offset") * frame.y
 
     def _place(self, joint):
         """Position of a joint."""
@@ -207,17 +208,17 @@ class Motion:
 
     def _close(self, part):
         """Define the unknown functions of a group and their derivatives from its loops."""
-        gaps = (self._on(pin.link, pin.joint) - self._on(pin.other, pin.joint) for pin in part.pins)
+        gaps = (self._on(pin.link, pin.joint) - self._on(pin.against, pin.joint) for _, pin in part.pins)
         loops = [gap for gap in gaps if gap != 0]
         lines = [
             (self.places[item.joint] - self._foot(item)) & self.bodies[item.link].frame.y
-            for item in part.slides
+            for _, item in part.slides
             if item.link not in self.travels
         ]
         links = [link for link, _ in part.links]
         for link in links:
             if link in self.led:
-                self._lead(self.led[link])
+                self._lead(link)
         angles = [self.angles[link] for link in links if link in self.angles and link not in self.led]
         travels = [link for link in links if link in self.travels and link not in self.led]
         shape = len(angles), len(travels), len(loops), len(lines)
@@ -237,15 +238,15 @@ class Motion:
         else:
             raise NotGivenError(f"the loops of {part.kind} have no closed form that is known")
 
-    def _lead(self, cam):
+    def _lead(self, link):
         """Define the travel or angle of a link on a cam."""
-        curve, prefix = CURVES[cam.curve], f"{cam.link}_cam"
-        if cam.link in self.travels:
-            curve(self, self.travels[cam.link], prefix, cam.terms)
+        (kind, terms), prefix = self.led[link], f"{link}_cam"
+        if link in self.travels:
+            CURVES[kind](self, self.travels[link], prefix, terms)
             return
-        theta, law = self.angles[cam.link], unknown(f"law_{cam.link}")
-        curve(self, law, prefix, cam.terms)
-        start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
+        theta, law = self.angles[link], unknown(f"law_{link}")
+        CURVES[kind](self, law, prefix, terms)
+        start, sense = sp.symbols([f"{link}_from", f"{link}_sense"])
         self._define_direction(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
         self.define(theta, None, sense * slope(law), sense * slope(law, 2))
 
@@ -322,7 +323,7 @@ class Motion:
             parts = [vector & way for vector in (body.joint, body.axis, moving) for way in (N.x, N.y)]
             self.motions[f"{link} in motion"] = (*parts, OMEGA * turning)
         for link, item in self.slides.items():
-            if item.other == FRAME:
+            if item.against == FRAME:
                 travel = self.travels[link]
                 self.motions[f"{link}_position"] = (travel,)
                 self.motions[f"{link}_velocity"] = (OMEGA * slope(travel),)
