@@ -6,6 +6,7 @@ varied ones (`DerivedNumbers`). Ratios divide the reference's output by the desi
 
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
+from ..numbers.lazy import cached_property
 from ..numbers.units import to_si
 from ..results.kinks import has_kinks
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
@@ -135,10 +137,11 @@ class Problem:
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
         self.stepped: Any = None
-        self._curves: dict[bytes, dict] = {}
-        self._parted: dict[tuple, Any] = {}
-        self._bends: set[str] | None = None
-        self._fixed: dict = {}
+        self._curves = lru_cache(MAX_CACHED_DESIGNS)(lambda design: self._computed(np.frombuffer(design)))
+        self._parted = lru_cache(MAX_CACHED_DESIGNS * len(self.quantities))(
+            lambda output, design: self._on_pieces(output, np.frombuffer(design))
+        )
+        self._of_reference = cache(lambda output: true_value(output, scene_of(reference)))
         self._shared = [place for place, name in enumerate(self.names) if name in SHARED_NUMBERS]
         self._compared: Problem | None = None
         if reference is not None and self._shared:
@@ -161,26 +164,19 @@ class Problem:
 
     def curves(self, values):
         """Curve by quantity of a design; NaN where it cannot be built."""
-        key = values.tobytes()
-        if key not in self._curves:
-            while len(self._curves) >= MAX_CACHED_DESIGNS:
-                self._curves.pop(next(iter(self._curves)))
-            self._curves[key] = self._computed(values)
-        return self._curves[key]
+        return self._curves(values.tobytes())
+
+    @cached_property
+    def _kinked(self):
+        """Quantities with kinks."""
+        solution = unchecked_turn(scene_of(self.source), 1)
+        return {name for name in self.quantities if has_kinks(solution, name)}
 
     def curve(self, output, values):
         """Curve of an output's quantity; on pieces between kinks if it has some."""
-        if self._bends is None:
-            solution = unchecked_turn(scene_of(self.source), 1)
-            self._bends = {name for name in self.quantities if has_kinks(solution, name)}
-        if output.quantity not in self._bends:
+        if output.quantity not in self._kinked:
             return self.curves(values)[output.quantity]
-        key = str(without_ratio(output)), values.tobytes()
-        if key not in self._parted:
-            while len(self._parted) >= MAX_CACHED_DESIGNS * len(self.quantities):
-                self._parted.pop(next(iter(self._parted)))
-            self._parted[key] = self._on_pieces(without_ratio(output), values)
-        return self._parted[key]
+        return self._parted(without_ratio(output), values.tobytes())
 
     def _on_pieces(self, output, values):
         self.evaluations += 1
@@ -206,13 +202,11 @@ class Problem:
         found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
-        rises = np.zeros(len(self.names))
-        if self._compared is not None:
-            above, rises[self._shared] = self._compared.output(without_ratio(output), values[self._shared])
+        plain, rises = without_ratio(output), np.zeros(len(self.names))
+        if self._compared is None:
+            above = self._of_reference(plain)
         else:
-            if output not in self._fixed:
-                self._fixed[output] = true_value(output, scene_of(self.reference))
-            above = self._fixed[output]
+            above, rises[self._shared] = self._compared.output(plain, values[self._shared])
         return above / found, (rises - above / found * slopes) / found
 
     def _computed(self, values):
