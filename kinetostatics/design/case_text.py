@@ -30,14 +30,8 @@ CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "ha
 def write_case(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference.
 
-    A comment precedes them; tables of designs from another case file follow.
-
-    Raises
-    ------
-    ParameterError
-        A part of a scene is a function or an object without a text in case files.
-    FileError
-        A file cannot be written, or a file of a table exists already.
+    A comment precedes them; tables of designs from another case file follow. Raises `ParameterError` for a part without
+    a text in case files, `FileError` where a file cannot be written or that of a table exists already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -55,13 +49,7 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None) -> P
 
 
 def tables(path, scenes) -> dict[Path, str]:
-    """Text of each file with a table of the scenes, by path beside the case file.
-
-    Raises
-    ------
-    FileError
-        One of them exists already.
-    """
+    """Text of each file with a table of the scenes, by path beside the case file; `FileError` if one exists already."""
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
     there = [str(file) for file in beside if file.exists()]
     if there:

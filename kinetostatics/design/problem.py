@@ -32,14 +32,7 @@ class DerivedNumbers:
     """Numbers of a scene as functions of varied ones, with exact derivatives.
 
     A case file derives numbers from others, as a mass centre at mid-length. The variant is built once on recording
-    numbers; the recording gives the derived values and their derivatives for all varied ones.
-
-    Attributes
-    ----------
-    names : tuple of str
-        Paths of the varied numbers, as the source calls them.
-    paths : tuple of str
-        Paths of the scene's numbers that depend on them.
+    numbers; the recording gives the numbers at `paths` of the scene and their derivatives by those at `names`.
     """
 
     def __init__(self, source, names):
@@ -274,13 +267,7 @@ def compared_value(output, scene, reference):
 
 
 def true_value(output, scene, angles=5760):
-    """Value of an output of a scene, exact to rounding where the scene is smooth.
-
-    Raises
-    ------
-    DesignError
-        Pieces of the turn do not resolve it.
-    """
+    """Value of an output of a scene, exact to rounding where it is smooth; `DesignError` if no pieces resolve it."""
     plain, turns = without_ratio(output), turns_of(scene)
     if has_kinks(unchecked_turn(scene, 1), output.quantity):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
@@ -301,13 +288,7 @@ def turns_of(scene):
 
 
 def parse_bounds(source, vary):
-    """Lowest and highest value of each number that varies.
-
-    Raises
-    ------
-    ParameterError
-        There is no such number, or its bounds are no two numbers, or texts with units, that rise.
-    """
+    """Lowest and highest value of each number that varies; one `ParameterError` for all that do not."""
     if not hasattr(vary, "items") or not vary:
         raise ParameterError(
             'design: vary must be a dict of path to (low, high), such as {"spring.stiffness": ("600 kN/m", "900 kN/m")}'
