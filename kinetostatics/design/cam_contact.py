@@ -19,7 +19,7 @@ from ..machine.loads import Gravity
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..results.turn import require_single
-from .follower_speed import lift_off_speed, starting_torque
+from .follower_speed import force_changes, lift_off_speed, starting_torque
 
 
 class Reversal(NamedTuple):
@@ -337,22 +337,7 @@ class Contact:
     @cached_property
     def changes(self):
         """Crank angles at which the roller changes sides, rad."""
-        from scipy.optimize import brentq
-
-        force = self._samples.cam_force
-        angle = np.append(self._samples.crank_angle, self.solution.period)
-        force = np.append(force, force[0])
-        places = np.flatnonzero((force[:-1] > 0.0) != (force[1:] > 0.0))
-
-        def at(angle):
-            return float(self.solution.at(np.array([angle])).cam_force[0])
-
-        return tuple(
-            float(brentq(at, angle[place], angle[place + 1], xtol=1e-13))
-            if at(angle[place]) * at(angle[place + 1]) < 0
-            else float(angle[place])
-            for place in places
-        )
+        return tuple(force_changes(self.solution, "cam_force", self._samples.crank_angle.size).tolist())
 
     @property
     def sides(self):
