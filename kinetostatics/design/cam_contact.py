@@ -5,7 +5,7 @@ ring, so it reverses where it changes sides. The contact must drive it, J dv/dt 
 friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .follower_speed import lift_off_speed, starting_torque
+from .follower_speed import force_changes, lift_off_speed, starting_torque
 
 
 class Reversal(NamedTuple):
@@ -299,7 +299,7 @@ class Contact:
     @property
     def pressure(self):
         """Largest Hertz pressure in the contact, Pa."""
-        return self._pressure(self.cam_force, self._bend)
+        return roller.pressure(self.cam_force, self.width, self.modulus, self.relative_radius)
 
     @property
     def half_width(self):
@@ -310,16 +310,12 @@ class Contact:
     def _bend(self):
         return curvature(self.cam, self.crank_angle)
 
-    def _pressure(self, force, bend):
-        radius = roller.relative_radius(bend, self.roller_radius, _side_of(force))
-        return roller.pressure(force, self.width, self.modulus, radius)
-
     # over the period
 
     @cached_property
     def largest_pressure(self):
         """Largest Hertz pressure over the period, Pa, and where, between the crank angles given too."""
-        return self._highest(lambda at: self._pressure(at.cam_force, curvature(self.cam, at.crank_angle)))
+        return self._highest(lambda at: replace(self, solution=at).pressure)
 
     @cached_property
     def largest_pin_load(self):
@@ -341,28 +337,12 @@ class Contact:
     @cached_property
     def changes(self):
         """Crank angles at which the roller changes sides, rad."""
-        from scipy.optimize import brentq
-
-        force = self._samples.cam_force
-        angle = np.append(self._samples.crank_angle, self.solution.period)
-        force = np.append(force, force[0])
-        places = np.flatnonzero((force[:-1] > 0.0) != (force[1:] > 0.0))
-
-        def at(angle):
-            return float(self.solution.at(np.array([angle])).cam_force[0])
-
-        return tuple(
-            float(brentq(at, angle[place], angle[place + 1], xtol=1e-13))
-            if at(angle[place]) * at(angle[place + 1]) < 0
-            else float(angle[place])
-            for place in places
-        )
+        return tuple(force_changes(self.solution, "cam_force", self._samples.crank_angle.size).tolist())
 
     @property
     def sides(self):
         """Sides that carry the roller somewhere in the period."""
-        positive = self._samples.cam_force > 0.0
-        return tuple(name for name, there in (("disk", not positive.all()), ("ring", positive.any())) if there)
+        return tuple(np.unique(np.where(self._samples.cam_force > 0.0, "ring", "disk")).tolist())
 
     @cached_property
     def life(self):
@@ -447,8 +427,13 @@ def _side_of(force):
     return np.where(force > 0.0, 1.0, -1.0)
 
 
-NOT_NEGATIVE = {"low": 0.0}
 PARTS = ("roller", "cam")
+ROLLER_RULES: dict[str, tuple[str, dict[str, Any]]] = {
+    "roller_mass": ("kg", {"low": 0.0}),
+    "life_exponent": ("1", POSITIVE),
+    "roller_inertia": ("kg*m**2", {"low": 0.0}),
+    "load_rating": ("N", POSITIVE),
+}
 MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
     "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS_RULE.usual}),
     "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
@@ -519,21 +504,17 @@ def contact(
     given |= {"poissons_ratio": poissons_ratio}
     limits = {} if limits is None else limits
     known = limits if isinstance(limits, dict) else {}
-    own = {"roller_mass": (roller_mass, "kg", NOT_NEGATIVE), "life_exponent": (life_exponent, "1", POSITIVE)}
-    optional = {
-        "roller_inertia": (roller_inertia, "kg*m**2", NOT_NEGATIVE),
-        "load_rating": (load_rating, "N", POSITIVE),
-    }
+    own = {"roller_mass": roller_mass, "life_exponent": life_exponent}
+    own |= {"roller_inertia": roller_inertia, "load_rating": load_rating}
     no_roller = f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none"
     if any(group.led for group in solution.mechanism.groups):
         no_roller += "; give its follower a Roller or Face, then contact_pressure is an output"
-    own |= {name: item for name, item in optional.items() if item[0] is not None}
     values = checks.single_numbers(
         "contact",
         None if groups else no_roller,
         *_limit_problems(limits, load_rating),
         **_contact_rules(given, groups),
-        **own,
+        **{name: (value, *ROLLER_RULES[name]) for name, value in own.items() if value is not None},
         **{f"limit {name!r}": (known[name], unit, POSITIVE) for name, unit in LIMIT_UNITS.items() if name in known},
     )
     cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]

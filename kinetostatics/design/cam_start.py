@@ -64,20 +64,10 @@ class Machine:
 
 @dataclass(frozen=True)
 class Start:
-    """Start of a search.
+    """Start of a search: machine, extreme positions of its slider (m), and bounds of the numbers that vary by path.
 
-    Attributes
-    ----------
-    machine : Machine
-    ends : (float, float)
-        Extreme positions of the slider, m.
-    vary : dict of path to (low, high)
-    first : set of str
-        Paths varied by the least squares of the torque.
-    weight : float
-        Weight of the coupler on its joint A, across the guide to its left, N.
-    unit : float
-        Mean torque of a plain crank-slider with that stroke, N m.
+    `first` are the paths that vary in the least squares of the torque, `weight` that of the coupler on A across the
+    guide to its left (N), `unit` the mean torque of a plain crank-slider with that stroke (N m).
     """
 
     machine: Machine
@@ -145,15 +135,7 @@ def _harmonics_problem(name, value):
 
 
 def starting_machine(given, options) -> Start:
-    """The start of a search, with the links and loads of a scene.
-
-    Raises
-    ------
-    ParameterError
-        The scene is no crank-slider.
-    DesignError
-        A stroke that no coupler can make.
-    """
+    """The start of a search, with the links and loads of a scene; refused for other machines and impossible strokes."""
     group, links = crank_slider_links(given)
     low, high = _ends(given, options.ends)
     half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)

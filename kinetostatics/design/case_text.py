@@ -30,14 +30,8 @@ CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "ha
 def write_case(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference.
 
-    A comment precedes them; tables of designs from another case file follow.
-
-    Raises
-    ------
-    ParameterError
-        A part of a scene is a function or an object without a text in case files.
-    FileError
-        A file cannot be written, or a file of a table exists already.
+    A comment precedes them; tables of designs from another case file follow. Raises `ParameterError` for a part without
+    a text in case files, `FileError` where a file cannot be written or that of a table exists already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -55,13 +49,7 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None) -> P
 
 
 def tables(path, scenes) -> dict[Path, str]:
-    """Text of each file with a table of the scenes, by path beside the case file.
-
-    Raises
-    ------
-    FileError
-        One of them exists already.
-    """
+    """Text of each file with a table of the scenes, by path beside the case file; `FileError` if one exists already."""
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
     there = [str(file) for file in beside if file.exists()]
     if there:
@@ -177,7 +165,7 @@ def _keys(item, file=""):
         ):
             continue
         if isinstance(value, Guide):
-            found |= _guide_keys(value)
+            found |= _nonzero_keys(value, guide_angle="rad", guide_offset="m")
         elif isinstance(value, Link):
             link = _link_keys(value)
             found |= {name: _inline_table(link)} if link else {}
@@ -203,9 +191,7 @@ def _value(value, rule, name):
     if isinstance(rule, PlacePairRule):
         return f"[{', '.join(_value(part, PlaceRule(), name) for part in value)}]"
     if isinstance(value, tuple):
-        unit = getattr(getattr(rule, "rule", None), "unit", "m")
-        parts = (_quoted(part) if isinstance(part, str) else _number(part, _unit_text(unit), name) for part in value)
-        return f"[{', '.join(parts)}]"
+        return _numbers(value, _unit_text(getattr(getattr(rule, "rule", None), "unit", "m")), name)
     if isinstance(rule, checks.Number) and rule.unit in ("", "1"):
         return repr(_single_number(value, name))
     return _number(value, _unit_text(getattr(rule, "unit", "")), name)
@@ -219,23 +205,14 @@ def _table_reference(values, file):
     return _inline_table(keys | ({"slider": _quoted(values.slider)} if values.slider is not None else {}))
 
 
-def _guide_keys(guide):
-    found = {"guide_angle": _number(guide.guide_angle, "rad", "guide_angle")} if np.any(guide.guide_angle) else {}
-    return found | (
-        {"guide_offset": _number(guide.guide_offset, "m", "guide_offset")} if np.any(guide.guide_offset) else {}
-    )
-
-
 def _link_keys(link):
-    """Keys of a link that are not zero."""
-    found = {}
-    if np.any(link.mass):
-        found["mass"] = _number(link.mass, "kg", "mass")
-    if np.any(link.centre):
-        found["centre"] = f"[{', '.join(_number(part, 'm', 'centre') for part in link.centre)}]"
-    if np.any(link.inertia):
-        found["inertia"] = _number(link.inertia, "kg m^2", "inertia")
-    return found
+    return _nonzero_keys(link, mass="kg", centre="m", inertia="kg m^2")
+
+
+def _nonzero_keys(item, **units):
+    """Keys of numbers and pairs of a part that are not zero, by their units."""
+    values = {name: getattr(item, name) for name in units}
+    return {name: _numbers(value, units[name], name) for name, value in values.items() if np.any(value)}
 
 
 def _cam_text(cam, file):
@@ -257,6 +234,13 @@ KEYS_BY_FIELD = {"pitch_radius": "radius"}
 
 def _inline_table(keys):
     return f"{{ {', '.join(f'{key} = {value}' for key, value in keys.items())} }}"
+
+
+def _numbers(value, unit, name):
+    """Text of a number with its unit, or of a tuple of numbers and texts."""
+    if not isinstance(value, tuple):
+        return _number(value, unit, name)
+    return f"[{', '.join(_quoted(part) if isinstance(part, str) else _number(part, unit, name) for part in value)}]"
 
 
 def _number(value, unit, name):

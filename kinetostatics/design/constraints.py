@@ -46,12 +46,7 @@ class Constraint:
 def parse_constraint(text, known) -> Constraint:
     """Constraint from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
 
-    `known` is the scene, or another object with a mechanism.
-
-    Raises
-    ------
-    ParameterError
-        The text has another form; the output or its unit is not known.
+    `known` is the scene, or another object with a mechanism. Raises `ParameterError` for any other text.
     """
     found = _FORM.fullmatch(text.strip()) if isinstance(text, str) else None
     if found is None or not found["value"]:
@@ -70,13 +65,7 @@ def parse_constraint(text, known) -> Constraint:
 
 
 def parse_output(text, known) -> Output:
-    """Output of a design, with its unit; refused if it has no derivatives by the numbers.
-
-    Raises
-    ------
-    ParameterError
-        The text names no reduction and quantity, or the angle of an extreme, which jumps.
-    """
+    """Output of a design, with its unit; refused if it is unknown, or the angle of an extreme, which jumps."""
     output = parsed(text).of(known)
     if output.reduction.endswith("_at"):
         raise ParameterError(f"output {str(output)!r} is a place, which jumps; design by the value there")

@@ -289,13 +289,7 @@ def across_guide(solution, slider=None):
 
 
 def guide_direction(mechanism, slider=None):
-    """Direction of the guide of a slider, or of all guides, +x without any.
-
-    Raises
-    ------
-    ParameterError
-        The guides are not parallel.
-    """
+    """Direction of the guide of a slider, or of all guides, which must be parallel; +x without any."""
     guides = mechanism.guides
     if slider is not None:
         return guides[slider].direction
@@ -310,20 +304,11 @@ def guide_direction(mechanism, slider=None):
 
 
 def balancing_table(reference, variants, sampling=None):
-    """Counterweights and shaking forces of balanced variants, a column for each balanced link.
+    """Counterweights and shaking forces of variants, a pandas DataFrame with a column for each balanced link.
 
-    Parameters
-    ----------
-    reference : Solution
-        Unbalanced mechanism.
-    variants : dict of name to (Balanced, Solution)
-    sampling : float, optional
-        Crank-angle step (rad) of a published study; adds the extremes on its grid.
-
-    Returns
-    -------
-    pandas.DataFrame
-        In mm, kg, N; forces stand in the first column of each variant.
+    In mm, kg and N; forces stand in the first column of each variant. `reference` is the solution of the unbalanced
+    mechanism, `variants` are (Balanced, Solution) by name; `sampling`, the crank-angle step of a published study, rad,
+    adds the extremes on its grid.
     """
     import pandas as pd
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import sign_changes
 from ..cycle.turn import require_single
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, highest
@@ -157,23 +158,20 @@ def lifted(solution, force="cam_force"):
     >>> round(float(start), 6), round(float(stop), 6)
     (-1.108026, 1.108026)
     """
-    from scipy.optimize import brentq
-
     _require(solution, "lifted", force)
+    ends, period = force_changes(solution, force, PEAK_SAMPLES), solution.period
+    edges = np.append(ends[-1] - period, ends) if ends.size else np.array([0.0, period])
+    pulling = solution.at(np.mod(0.5 * (edges[1:] + edges[:-1]), period)).scalar(force) < 0.0
+    return tuple(zip(edges[:-1][pulling].tolist(), edges[1:][pulling].tolist(), strict=True))
 
-    def value(angle):
-        return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
 
-    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES + 1)
-    pressing = value(angle) >= 0.0
-    if np.all(pressing) or not np.any(pressing):
-        return () if pressing[0] else ((0.0, solution.period),)
-    places = np.flatnonzero(pressing[1:] != pressing[:-1])
-    ends = [(brentq(lambda x: float(value(x)[0]), angle[n], angle[n + 1], xtol=1e-14), pressing[n]) for n in places]
-    starts, stops = ([float(end) for end, leaves in ends if leaves == wanted] for wanted in (True, False))
-    if stops[0] < starts[0]:
-        starts = [starts[-1] - solution.period, *starts[:-1]]
-    return tuple(zip(starts, stops, strict=True))
+def force_changes(solution, force, samples):
+    """Crank angles at which a contact force changes its sign, rising, rad; `samples` over the period bracket them."""
+
+    def values(angle):
+        return [solution.at(angle).scalar(force) + 0.0]  # -0.0 has a sign
+
+    return np.sort(sign_changes(values, solution.period, samples)[1][0])
 
 
 def starting_torque(solution):

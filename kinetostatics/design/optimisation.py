@@ -173,10 +173,7 @@ def _numbers_text(problem, values):
 def best_design(problem, task, begins, reported, robust, progress) -> Found:
     """Best of the searches from several designs for a task, or for the quantile of its output over a spread.
 
-    Raises
-    ------
-    DesignError
-        No design keeps the limits at true extremes.
+    Raises `DesignError` if no design keeps the limits at true extremes.
     """
     checks.require("design", None if robust is None else spread_problem("robust", robust))
     text, output, sign, limits = task

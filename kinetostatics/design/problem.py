@@ -6,6 +6,7 @@ varied ones (`DerivedNumbers`). Ratios divide the reference's output by the desi
 
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, paths
+from ..numbers.lazy import cached_property
 from ..numbers.units import to_si
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
@@ -30,14 +32,7 @@ class DerivedNumbers:
     """Numbers of a scene as functions of varied ones, with exact derivatives.
 
     A case file derives numbers from others, as a mass centre at mid-length. The variant is built once on recording
-    numbers; the recording gives the derived values and their derivatives for all varied ones.
-
-    Attributes
-    ----------
-    names : tuple of str
-        Paths of the varied numbers, as the source calls them.
-    paths : tuple of str
-        Paths of the scene's numbers that depend on them.
+    numbers; the recording gives the numbers at `paths` of the scene and their derivatives by those at `names`.
     """
 
     def __init__(self, source, names):
@@ -135,10 +130,11 @@ class Problem:
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
         self.stepped: Any = None
-        self._curves: dict[bytes, dict] = {}
-        self._parted: dict[tuple, Any] = {}
-        self._bends: set[str] | None = None
-        self._fixed: dict = {}
+        self._curves = lru_cache(MAX_CACHED_DESIGNS)(lambda design: self._computed(np.frombuffer(design)))
+        self._parted = lru_cache(MAX_CACHED_DESIGNS * len(self.quantities))(
+            lambda output, design: self._on_pieces(output, np.frombuffer(design))
+        )
+        self._of_reference = cache(lambda output: true_value(output, scene_of(reference)))
         self._shared = [place for place, name in enumerate(self.names) if name in SHARED_NUMBERS]
         self._compared: Problem | None = None
         if reference is not None and self._shared:
@@ -161,26 +157,19 @@ class Problem:
 
     def curves(self, values):
         """Curve by quantity of a design; NaN where it cannot be built."""
-        key = values.tobytes()
-        if key not in self._curves:
-            while len(self._curves) >= MAX_CACHED_DESIGNS:
-                self._curves.pop(next(iter(self._curves)))
-            self._curves[key] = self._computed(values)
-        return self._curves[key]
+        return self._curves(values.tobytes())
+
+    @cached_property
+    def _kinked(self):
+        """Quantities with kinks."""
+        solution = unchecked_turn(scene_of(self.source), 1)
+        return {name for name in self.quantities if has_kinks(solution, name)}
 
     def curve(self, output, values):
         """Curve of an output's quantity; on pieces between kinks if it has some."""
-        if self._bends is None:
-            solution = unchecked_turn(scene_of(self.source), 1)
-            self._bends = {name for name in self.quantities if has_kinks(solution, name)}
-        if output.quantity not in self._bends:
+        if output.quantity not in self._kinked:
             return self.curves(values)[output.quantity]
-        key = str(without_ratio(output)), values.tobytes()
-        if key not in self._parted:
-            while len(self._parted) >= MAX_CACHED_DESIGNS * len(self.quantities):
-                self._parted.pop(next(iter(self._parted)))
-            self._parted[key] = self._on_pieces(without_ratio(output), values)
-        return self._parted[key]
+        return self._parted(without_ratio(output), values.tobytes())
 
     def _on_pieces(self, output, values):
         self.evaluations += 1
@@ -206,13 +195,11 @@ class Problem:
         found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
-        rises = np.zeros(len(self.names))
-        if self._compared is not None:
-            above, rises[self._shared] = self._compared.output(without_ratio(output), values[self._shared])
+        plain, rises = without_ratio(output), np.zeros(len(self.names))
+        if self._compared is None:
+            above = self._of_reference(plain)
         else:
-            if output not in self._fixed:
-                self._fixed[output] = true_value(output, scene_of(self.reference))
-            above = self._fixed[output]
+            above, rises[self._shared] = self._compared.output(plain, values[self._shared])
         return above / found, (rises - above / found * slopes) / found
 
     def _computed(self, values):
@@ -280,13 +267,7 @@ def compared_value(output, scene, reference):
 
 
 def true_value(output, scene, angles=5760):
-    """Value of an output of a scene, exact to rounding where the scene is smooth.
-
-    Raises
-    ------
-    DesignError
-        Pieces of the turn do not resolve it.
-    """
+    """Value of an output of a scene, exact to rounding where it is smooth; `DesignError` if no pieces resolve it."""
     plain, turns = without_ratio(output), turns_of(scene)
     if has_kinks(unchecked_turn(scene, 1), output.quantity):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
@@ -307,13 +288,7 @@ def turns_of(scene):
 
 
 def parse_bounds(source, vary):
-    """Lowest and highest value of each number that varies.
-
-    Raises
-    ------
-    ParameterError
-        There is no such number, or its bounds are no two numbers, or texts with units, that rise.
-    """
+    """Lowest and highest value of each number that varies; one `ParameterError` for all that do not."""
     if not hasattr(vary, "items") or not vary:
         raise ParameterError(
             'design: vary must be a dict of path to (low, high), such as {"spring.stiffness": ("600 kN/m", "900 kN/m")}'

@@ -185,7 +185,7 @@ class SampledOutput:
     def __call__(self, values):
         """The quantile, and its derivatives by the numbers that vary."""
         try:
-            found, slopes = self._sampled(values, True)
+            found, slopes = self._sampled(values)
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return np.nan, np.full(values.size, np.nan)
         order = np.argsort(found)
@@ -193,15 +193,16 @@ class SampledOutput:
 
     def outputs(self, values):
         """The output of each sample."""
-        return self._sampled(values, False)[0]
+        return self._sampled(values)[0]
 
-    def _sampled(self, values, sloped):
+    def _sampled(self, values):
+        """The output of each sample, and its derivatives (samples, n)."""
         design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
         padded, parts = np.zeros((len(self.paths), 1, changes.shape[1])), []
         padded[: len(changes), 0] = changes
         for start in range(0, self.count, BLOCK_SIZE):
             numbers, rises = self._numbers(design, slice(start, start + BLOCK_SIZE))
-            parts.append(self._part(numbers, rises[:, :, None] * padded, sloped))
+            parts.append(self._part(numbers, rises[:, :, None] * padded))
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
     def _numbers(self, design, part):
@@ -215,26 +216,25 @@ class SampledOutput:
             numbers[path] = (value * (1.0 + deviation) if share else value + deviation)[:, None]
         return numbers, np.array(rises)
 
-    def _part(self, numbers, changes, sloped):
+    def _part(self, numbers, changes):
         """Output of some samples, with derivatives (samples, n)."""
-        if self.spread.trim:
-            curves, slopes, above = self._trimmed(numbers, changes, sloped)
-        elif self._has_kinks:
-            curves, above = self._on_pieces(numbers, changes, sloped), self._above(numbers)
+        if self._has_kinks:
+            curves, above = self._on_pieces(numbers, changes), self._above(numbers)
         else:
-            (curves, slopes), above = self._curves(numbers, changes, sloped), self._above(numbers)
+            if self.spread.trim:
+                *pair, above = self._trimmed(numbers, changes)
+            else:
+                pair, above = self._curves(numbers, changes), self._above(numbers)
+            curves = [measures.Curve(*parts, self.turns) for parts in zip(*pair, strict=True)]
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
-            if not self._has_kinks:
-                curve = measures.Curve(curve, slopes[place] if sloped else np.zeros((0, curve.size)), self.turns)
             value, row = measures.reduced(self.output.reduction, curve)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
-            found[place] = value
-            rows[place] = row if sloped else 0.0
+            found[place], rows[place] = value, row
         return found, rows
 
-    def _on_pieces(self, numbers, changes, sloped):
+    def _on_pieces(self, numbers, changes):
         """Curves of some samples, each on pieces between its own kinks."""
         output = without_ratio(self.output)
         found: list[Any] = [None] * len(next(iter(numbers.values())))
@@ -243,23 +243,22 @@ class SampledOutput:
             some = {path: values[samples] for path, values in numbers.items()}
             values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
             slopes = np.zeros((len(samples), 0, *shape))
-            if sloped:
-                values, slopes = self._curves(some, changes[:, samples], True, pieces.angle)
+            if self._derived:
+                values, slopes = self._curves(some, changes[:, samples], pieces.angle)
             for place, sample in enumerate(samples):
                 parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
                 found[sample] = measures.PartedCurve(*parts, pieces.some([place]), bool(self._vector))
         return found
 
-    def _curves(self, numbers, changes, sloped, angle=None):
+    def _curves(self, numbers, changes, angle=None):
         """Values (samples, N) and derivatives (samples, n, N), at the crank angles of all or of each."""
         quantity, angle = self.output.quantity, self.angle if angle is None else angle
         shape = (*self._vector, len(next(iter(numbers.values()))), angle.shape[-1])
-        values = np.broadcast_to(self.program(angle, numbers)[quantity], shape)
-        if not sloped:
-            return (np.hypot(*values) if self._vector else values), None
-        found = self.program.derivatives(angle, self._derived.paths, numbers)[quantity]
-        by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
-        slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
+        values, slopes = np.broadcast_to(self.program(angle, numbers)[quantity], shape), np.zeros((0, *shape))
+        if self._derived:
+            found = self.program.derivatives(angle, self._derived.paths, numbers)[quantity]
+            by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
+            slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
         if self._vector:
             curve = [measures.size(values[:, place], slopes[:, :, place]) for place in range(shape[-2])]
             return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
@@ -291,10 +290,10 @@ class SampledOutput:
         known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
         return reference.varied({path: numbers[path] for path in known})
 
-    def _trimmed(self, numbers, changes, sloped):
-        """Curves at the speed within the trim at which each sample's output is best."""
+    def _trimmed(self, numbers, changes):
+        """Curves at the speed within the trim at which each sample's output is best, and the reference's output."""
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
-        (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
+        (low, low_slopes), (high, high_slopes) = (self._curves(at, changes) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
 
         def outputs(share):
@@ -304,9 +303,8 @@ class SampledOutput:
             return self.sign * found
 
         share = _golden_section(outputs, len(low))[:, None]
-        slopes = _interpolate(low_slopes, high_slopes, share[..., None]) if sloped else None
         compared = self._reduced(_interpolate(below, above, share)) if self.output.ratio else None
-        return _interpolate(low, high, share), slopes, compared
+        return _interpolate(low, high, share), _interpolate(low_slopes, high_slopes, share[..., None]), compared
 
     def _at_speed(self, numbers, share):
         """Numbers of samples at a share of the design's speed."""
@@ -319,10 +317,9 @@ class SampledOutput:
             problem = f"trim sets {SPEED}, so it cannot vary too"
         else:
             numbers, _ = self._numbers({}, slice(0, 1))
+            changes = np.zeros((len(self.paths), 1, len(self.problem.names)))
             squares = np.array([(1.0 - self.spread.trim) ** 2, 1.0, (1.0 + self.spread.trim) ** 2])
-            low, middle, high = (
-                self._curves(self._at_speed(numbers, share), None, False)[0] for share in np.sqrt(squares)
-            )
+            low, middle, high = (self._curves(self._at_speed(numbers, share), changes)[0] for share in np.sqrt(squares))
             share = (1.0 - squares[0]) / (squares[2] - squares[0])
             if not np.allclose(middle, _interpolate(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
                 problem = (

@@ -39,24 +39,11 @@ class Goal(NamedTuple):
 
 
 class SearchEnd(NamedTuple):
-    """End of a search.
-
-    Attributes
-    ----------
-    values : array
-        Of the numbers that vary.
-    goal : float
-        Least value of the goal.
-    missed : float
-        Excess over the worst limit, relative to its size.
-    message : str
-        Message of the optimiser.
-    """
+    """End of a search: numbers that vary, least value of the goal, excess over the worst limit relative to its size."""
 
     values: np.ndarray
     goal: float
     missed: float
-    message: str
 
 
 def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
@@ -86,7 +73,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
 
     turned = _ScaledProblem(problem, goal, limits, start)
     if not np.isfinite(turned.unit):
-        return SearchEnd(start, np.inf, np.inf, "the start cannot be built")
+        return SearchEnd(start, np.inf, np.inf)
     constraints: Any = [{"type": "ineq", "fun": turned.inside, "jac": lambda _: turned.walls}]
     for kind, equal in (("ineq", False), ("eq", True)):
         if turned.margins(turned.zero, equal)[0].size:
@@ -110,7 +97,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
         reached = turned.reached(start + share * (values - start))
     values = start + share * (values - start) if share < 1.0 else values
     off = worst_excess(problem, limits, values) if np.isfinite(reached) else np.inf
-    return SearchEnd(values, reached, off, found.message)
+    return SearchEnd(values, reached, off)
 
 
 def within_tables(problem, limits, start):

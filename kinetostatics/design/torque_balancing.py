@@ -18,6 +18,7 @@ from ..machine.guide import Guide
 from ..machine.laws.law import PanelLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
+from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
@@ -90,7 +91,7 @@ class TorqueBalancing:
     @cached_property
     def uneven(self):
         """Mean of ``abs(T - mean(T))`` before and after, N m, each from a solution of its scene."""
-        torques = (scene.solve(ANGLES).balancing_torque for scene in (self.reference, self.scene))
+        torques = (solution.balancing_torque for solution in self._solutions)
         return tuple(float(np.mean(np.abs(torque - np.mean(torque)))) for torque in torques)
 
     @property
@@ -99,32 +100,34 @@ class TorqueBalancing:
         return self.uneven[1] / self.uneven[0]
 
     @cached_property
-    def _solution(self):
-        return self.scene.solve(ANGLES)
+    def _solutions(self):
+        """Solutions before and after."""
+        return self.reference.solve(ANGLES), self.scene.solve(ANGLES)
 
-    def _contact_force(self, angle):
-        return self._solution.at(angle).scalar("contact_force" + self.follower.label)
+    def _of_follower(self, quantity):
+        """Function of the crank angle: a quantity of the follower."""
+        return lambda angle: values_of(self._solutions[1].at(angle), quantity + self.follower.label)
 
     @cached_property
     def least_contact_force(self) -> Peak:
         """N, and the crank angle."""
-        return lowest(self._contact_force)
+        return lowest(self._of_follower("contact_force"))
 
     @cached_property
     def largest_contact_force(self) -> Peak:
         """N, and the crank angle."""
-        return highest(self._contact_force)
+        return highest(self._of_follower("contact_force"))
 
     @property
     def lifts_off(self):
         """Crank-angle intervals (start, stop) of lift-off, rad; empty as designed."""
-        return lifted(self._solution, "contact_force" + self.follower.label)
+        return lifted(self._solutions[1], "contact_force" + self.follower.label)
 
     @cached_property
     def pressure_angle(self) -> Peak:
         """Largest size, rad."""
-        name = "pressure_angle" + self.follower.label
-        return highest(lambda angle: np.abs(self._solution.at(angle).measure(name)))
+        steepness = self._of_follower("pressure_angle")
+        return highest(lambda angle: np.abs(steepness(angle)))
 
     @cached_property
     def curvature_radius(self) -> Peak:
@@ -135,24 +138,21 @@ class TorqueBalancing:
     @cached_property
     def cam_radius(self) -> Peak:
         """Smallest distance of the roller centre from O, m, and the crank angle."""
-        name = "cam_radius" + self.follower.label
-        return lowest(lambda angle: self._solution.at(angle).measure(name))
+        return lowest(self._of_follower("cam_radius"))
 
     def table(self):
         """Torque and bearing force before and after, as a DataFrame."""
         import pandas as pd
 
-        rows = {}
-        for name, scene in (("before", self.reference), ("after", self.scene)):
-            s = scene.solve(ANGLES)
-            torque = s.balancing_torque
-            rows[name] = {
-                "mean torque [N m]": np.mean(torque),
-                "mean |T - mean| [N m]": np.mean(np.abs(torque - np.mean(torque))),
-                "largest |T| [N m]": np.max(np.abs(torque)),
-                "largest reaction at O [N]": np.max(np.hypot(*s.reaction("O"))),
+        columns = {}
+        for name, solution, uneven in zip(("before", "after"), self._solutions, self.uneven, strict=True):
+            columns[name] = {
+                "mean torque [N m]": np.mean(solution.balancing_torque),
+                "mean |T - mean| [N m]": uneven,
+                "largest |T| [N m]": np.max(np.abs(solution.balancing_torque)),
+                "largest reaction at O [N]": np.max(np.hypot(*solution.reaction("O"))),
             }
-        return pd.DataFrame(rows)
+        return pd.DataFrame(columns)
 
     def report(self):
         """Report as text, with a warning if the cam cuts into the shaft."""
@@ -197,6 +197,14 @@ ANGLE_BESIDE = 1e-9
 SWITCH_RULES = {"switches": checks.Number("rad", table=True)}
 OPTIONAL = ("stiffness", "base_radius", "roller_radius", "shaft_radius")
 DEFAULT_PRESSURE_ANGLE, MAX_PRESSURE_ANGLE = np.radians(30.0), np.radians(85.0)
+RULES = {
+    **dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE)),
+    "stiffness": ("N/m", POSITIVE),
+    "mass": ("kg", POSITIVE),
+    "pressure_angle": ("rad", POSITIVE | {"high": MAX_PRESSURE_ANGLE}),
+    "guide_angle": ("rad", {}),
+    "guide_offset": ("m", {}),
+}
 
 
 def torque_balancing_cam(
@@ -322,12 +330,8 @@ def _parse_values(scene, given):
         problem = (
             "friction at O grows with the force of the cam; leave it out, and look at it in the scene that is made"
         )
-    rules = dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE))
-    rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
-    rules |= {"pressure_angle": ("rad", POSITIVE | {"high": MAX_PRESSURE_ANGLE}), "guide_angle": ("rad", {})}
-    rules |= {"guide_offset": ("m", {})}
     given = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
-    return checks.single_numbers(OWNER, problem, **{name: (value, *rules[name]) for name, value in given.items()})
+    return checks.single_numbers(OWNER, problem, **{name: (value, *RULES[name]) for name, value in given.items()})
 
 
 def _energy(scene, switches):
@@ -359,11 +363,7 @@ def _energy_swing(torque, energy):
                 f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
                 "the follower would have to turn back at once; let the load that switches there take some degrees"
             )
-    return (
-        float(np.ptp(values)),
-        float(np.max(values)),
-        [angle for place, angle in enumerate(turns) if values[place] < values[place - 1]],
-    )
+    return float(np.ptp(values)), float(np.max(values)), turns[values < np.roll(values, 1)].tolist()
 
 
 def _base_radius(stretch, least, values):

@@ -80,13 +80,8 @@ def parse_fluctuation(owner, fluctuation):
 def find_flywheel(wanted, running_with, unit):
     """Flywheel in kg m2 for a coefficient of fluctuation, 0 where none is needed, and the running with it.
 
-    Parameters
-    ----------
-    wanted : float
-    running_with : function
-        Returns the `Running` with a flywheel in kg m2; raises `DriveError` where there is none.
-    unit : float
-        The machine's own inertia, kg m2.
+    `running_with` returns the `Running` with a flywheel in kg m2, or raises `DriveError` where there is none; `unit` is
+    the machine's own inertia, kg m2.
     """
     from scipy.optimize import brentq
 

@@ -128,14 +128,7 @@ MAX_SPEED_RATIO = 1.5
 
 
 def running_table(runs, starts):
-    """Table with a column for each machine, a pandas DataFrame, its rows with their units.
-
-    Parameters
-    ----------
-    runs : mapping of label to Running
-    starts : mapping of label to Trajectory or None
-        From rest, None where a machine does not start.
-    """
+    """Table of `Running` and start from rest, None where there is none, by label: a pandas DataFrame with units."""
     return _table({name: _running_rows(run, starts[name]) for name, run in runs.items()})
 
 

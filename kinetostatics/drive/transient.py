@@ -85,17 +85,10 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
     Parameters
     ----------
-    scene : Scene
-        Mechanism and loads; its crank speed does not matter.
-    motor : Motor
-    flywheel : float
-        Moment of inertia on the crank besides its own link, kg m2.
-    from_angle : float
-        rad.
+    scene, motor, flywheel, from_angle, engine
+        As for `coast`; the motor is needed.
     until : float, optional
         Time, s; by default until the crank has 99 per cent of the mean speed of steady running.
-    engine : "numpy" or "compiled"
-        As for `solve`.
 
     Returns
     -------
@@ -145,12 +138,15 @@ def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=
 
 def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """Driven machine, flywheel, crank angle and speed at the start, all checked."""
-    angle, wrong_angle = checks.single_number("from_angle", from_angle, "rad")
-    if not wrong_angle and abs(angle) > MAX_ANGLE:
-        wrong_angle = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
-    speed, wrong_speed = checks.single_number("from_speed", from_speed, "rad/s")
-    inertia, wrong_inertia = checks.single_number("flywheel", flywheel, "kg*m**2", low=0.0)
-    checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
+    found = checks.single_numbers(
+        owner,
+        from_angle=(from_angle, "rad", {}),
+        from_speed=(from_speed, "rad/s", {}),
+        flywheel=(flywheel, "kg*m**2", {"low": 0.0}),
+    )
+    angle, speed, inertia = found.values()
+    too_far = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
+    checks.require(owner, too_far if abs(angle) > MAX_ANGLE else None)
     for hint in plausibility.single_angle_hints(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
     driven = DrivenMachine(owner, scene, motor, inertia, engine)

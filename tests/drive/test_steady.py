@@ -1,6 +1,5 @@
 """Steady running."""
 
-import json
 import math
 
 import numpy as np
@@ -9,8 +8,7 @@ from scipy.integrate import quad
 
 import kinetostatics as ks
 from kinetostatics.drive.savings import running_table, speed_hint
-from support import DATA
-from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, SAW, TURN, saw
+from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, REFERENCE, SAW, TURN, saw
 
 
 def test_speed_and_time_are_integrals():
@@ -108,24 +106,19 @@ CAM = ks.cams.CosineLaw(0.3, 2.0)
 DAMPER = ks.PointDamper(150.0, between=("A", (0.5, 1.0)))
 
 
-@pytest.fixture(scope="module")
-def reference():
-    return json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
-def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
+def test_the_plain_sawframe_runs_as_30_digits_say(engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    motor = ks.drive.Motor.kloss(reference["motor"].pop("power", 55e3), **{**reference["motor"], "speed": 153.9})
+    motor = ks.drive.Motor.kloss(**REFERENCE["motor"])
     scene = ks.load_case("sawframe_2r63").variants["plain"].scene
-    run = ks.drive.steady(scene, motor, 1000.0, angles=np.radians(reference["angle [deg]"]), engine=engine)
+    run = ks.drive.steady(scene, motor, 1000.0, angles=np.radians(REFERENCE["angle [deg]"]), engine=engine)
     for name in ("speed", "acceleration", "motor_torque"):
-        exact = np.array(reference[name], dtype=float)
+        exact = np.array(REFERENCE[name], dtype=float)
         assert np.abs(getattr(run, name) - exact).max() < 1e-11 * np.abs(exact).max(), name
     for name in ("mean_speed", "fluctuation", "fluctuation_arithmetic"):
-        assert getattr(run, name) == pytest.approx(float(reference[name]), rel=1e-12), name
+        assert getattr(run, name) == pytest.approx(float(REFERENCE[name]), rel=1e-12), name
 
 
 @pytest.mark.slow
@@ -267,13 +260,10 @@ def test_weak_motor_names_the_missing_torque():
 def test_weak_motor_without_flywheel_stalls():
     peak = ks.Torque(lambda motion: -8000.0 * (0.5 - 0.5 * np.cos(motion.crank_angle)), on="crank")
     small = ks.Scene(ks.crank_slider(0.3, 2.0, crank=ks.Link(0.0, 0.0, 3.0)), 1.0, loads=(peak,))
-    assert ks.drive.steady(
-        small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 4e3
-    )
+    motor = ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
+    assert ks.drive.steady(small, motor, 4e3)
     with pytest.raises(ks.DriveError, match="comes to a standstill at crank angle") as caught:
-        ks.drive.steady(
-            small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 0.0
-        )
+        ks.drive.steady(small, motor, 0.0)
     assert 1.5 < caught.value.crank_angle < math.pi
 
 

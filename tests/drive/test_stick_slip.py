@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.one_dof import DrivenMachine
+from kinetostatics.drive.savings import running_table
 from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
@@ -19,14 +20,15 @@ PENDULUM = ks.Scene(
 )
 
 
-def test_a_wheel_on_a_rubbing_pin_stops_as_by_hand():
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_wheel_on_a_rubbing_pin_stops_as_by_hand(way):
     """Constant torque of friction: mu radius times the weight; no mass but a centred crank of 2 kg."""
     wheel = ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.0, 0.5))
     scene = ks.Scene(wheel, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(0.2, 0.05)})
-    motion = ks.drive.coast(scene, 0.0, 0.3, -4.0, "standstill")
+    motion = ks.drive.coast(scene, 0.0, 0.3, 4.0 * way, "standstill")
     slowing = 0.2 * 0.05 * 2.0 * 9.81 / 0.5
     assert motion.time[-1] == pytest.approx(4.0 / slowing, rel=1e-13)
-    assert motion.crank_angle[-1] == pytest.approx(0.3 - 8.0 / slowing, rel=1e-13)
+    assert motion.crank_angle[-1] == pytest.approx(0.3 + way * 8.0 / slowing, rel=1e-13)
     assert motion.friction_energy[-1] == pytest.approx(4.0, rel=1e-12)
 
 
@@ -90,14 +92,7 @@ def test_held_machine_names_the_missing_torque():
     weak = ks.drive.Motor.constant(30.0)
     with pytest.raises(ks.DriveError, match=r"does not start: .* of them to overcome friction") as caught:
         ks.drive.start(scene, weak, 0.3, -math.pi / 2, until=1.0)
-    still = ks.solve(
-        scene.mechanism,
-        -math.pi / 2,
-        crank_speed=0.0,
-        crank_acceleration=1e-30,
-        loads=scene.loads,
-        friction=friction,
-    )
+    still = ks.Scene(scene.mechanism, 0.0, 1e-30, scene.loads, friction).solve(-math.pi / 2)
     assert caught.value.missing == pytest.approx(float(still.balancing_torque) - 30.0, rel=1e-12)
 
 
@@ -229,11 +224,8 @@ def test_friction_that_jams_is_refused_with_its_angles():
             drive()
 
 
-def test_the_summary_tells_the_power_lost_by_joint():
-    from kinetostatics.drive.savings import running_table
-
-    run = ks.drive.steady(RUBBING, MOTOR, 1000.0)
-    table = running_table({"saw": run}, {"saw": None})["saw"]
+def test_the_summary_tells_the_power_lost_by_joint(run):
+    table = running_table({"machine": run}, {"machine": None})["machine"]
     assert table["lost by friction, mean"] == run.mean_friction_loss
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
 
