@@ -49,10 +49,6 @@ def work_precision(table, ax=None, like=None):
     like : pandas.DataFrame, optional
         A study of more methods, which sets the colours and marks.
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import pandas as pd
@@ -106,10 +102,6 @@ def error_by_distance(table, ax=None):
     table : pandas.DataFrame
         One place, from `stability.study`.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -167,10 +159,6 @@ def model_ladder(needs, ax=None):
     needs : Needs
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -218,10 +206,6 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
     ax : Axes, optional
     labels : mapping of column to text, optional
         Texts of axes, with units; by default the headings as words.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------

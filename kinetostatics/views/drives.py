@@ -29,10 +29,6 @@ def crank_speed(runs, ax=None):
         As of `ks.drive.steady`.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -60,10 +56,6 @@ def drive_torques(run, ax=None):
     run : Running
         As of `ks.drive.steady`.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -98,10 +90,6 @@ def energy_flow(runs, ax=None):
     runs : mapping of label to Running
         As of `ks.drive.steady`.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -177,10 +165,6 @@ def lost_power(solution, ax=None):
         With friction, of one design.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -213,10 +197,6 @@ def losses(solutions, ax=None):
     solutions : Solution or mapping of label to Solution
         With friction.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
