@@ -185,8 +185,7 @@ def lost_power(solution, ax=None):
     ax.axhline(factor * lost.total, color=INK, ls="--", lw=1.0, label="mean")
     ax = finish_axes(ax, f"power lost [{unit}]", legend=False, period=round(np.degrees(solution.period)))
     ax.set_ylim(0, 1.08 * ax.dataLim.ymax or 1.0)
-    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return ax
+    return _with_stack_legend(ax)
 
 
 def losses(solutions, ax=None):
@@ -226,13 +225,14 @@ def losses(solutions, ax=None):
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)
     ax.grid(axis="y", alpha=0.3)
     ax.set_axisbelow(True)
-    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return _with_stack_legend(ax)
+
+
+def _with_stack_legend(ax):
+    """The axes with a legend beside them, its entries in the order of the stack, from the top."""
+    handles, texts = (item[::-1] for item in ax.get_legend_handles_labels())
+    ax.legend(handles, texts, frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return ax
-
-
-def _reversed_legend(ax):
-    """Legend entries in the order of the stack, from the top."""
-    return tuple(item[::-1] for item in ax.get_legend_handles_labels())
 
 
 def _require_friction(named):

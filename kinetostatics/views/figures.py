@@ -277,18 +277,16 @@ def front(found, ax=None):
     True
     """
     ax = axes(ax)
-    scales, headings = [], []
-    for column in list(found.table.columns)[:2]:
+    outputs = []
+    for column, before in zip(found.table.columns, found.before, strict=False):
         name, unit = parse_heading(column)
-        factor, shown = display_unit(unit, [found.table[column].to_numpy()])
-        scales.append(factor)
-        headings.append(axis_words(f"{name} [{shown or '1'}]"))
-    first, second = (found.table.iloc[:, place].to_numpy() * scales[place] for place in (0, 1))
-    ax.plot(second, first, "o-", color=INK, label="best designs")
-    before = [value * scale for value, scale in zip(found.before, scales, strict=True)]
-    ax.plot(before[1], before[0], "x", color=ACCENT, label="before")
-    ax.set_ylabel(headings[0])
-    ax.set_xlabel(headings[1])
+        values = found.table[column].to_numpy()
+        factor, shown = display_unit(unit, [values])
+        outputs.append((values * factor, before * factor, axis_words(f"{name} [{shown or '1'}]")))
+    (y, y_before, y_label), (x, x_before, x_label) = outputs
+    ax.plot(x, y, "o-", color=INK, label="best designs")
+    ax.plot(x_before, y_before, "x", color=ACCENT, label="before")
+    ax.set(ylabel=y_label, xlabel=x_label)
     ax.grid(alpha=0.3)
     ax.legend(frameon=False, fontsize="small")
     return ax
