@@ -6,7 +6,7 @@ A command imports its libraries when it runs, so that the others start fast.
 import os
 import shlex
 import sys
-from math import isnan, nan
+from math import isnan
 from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
@@ -20,7 +20,6 @@ from .output import (
     require_writable,
     stack_variants,
     variant_words,
-    with_published,
     write_table,
 )
 
@@ -295,6 +294,7 @@ RESIDUAL = "power residual"
 def compare(options):
     from ..casefile.case import load_case
     from ..cycle.comparison import Comparison
+    from ..views.report.tables import special_tables
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
@@ -309,11 +309,7 @@ def compare(options):
         name: Comparison(reference, case.solve(name), (case.reference, name))
         for name in output.progress(options, names, "comparing")
     }
-    special = {
-        "balancing": ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
-        "linkage": ("swing and transmission", case.linkage_table(), case.published.linkage),
-    }
-    special = {key: item for key, item in special.items() if item[1] is not None}
+    special = special_tables(case)
     if output.wants_json(options):
         ratios = "reference / variant; above 1 the variant has less"
         variants = {
@@ -340,76 +336,47 @@ def _with_roles(case, name, comparison):
 
 
 def _print_comparison(case, found, special):
-    from ..cycle.comparison import left_out
+    from ..views.report.tables import merged_rows, with_published
 
-    tables = {name: {row.label: row for row in comparison.rows} for name, comparison in found.items()}
-    published = [case.published_of(list(table)) for table in tables.values()]
+    rows, omitted = merged_rows(found.values())
+    published = case.published_of([row.label for row in rows])
+    residual = max(next(row.numbers for row in rows if row.label == RESIDUAL))
+    rows = [row for row in rows if row.label != RESIDUAL]
     print_folded(case.title)
     if case.published.note:
         print_folded("\n" + " ".join(case.published.note.split()))
     for heading, table, figures in special.values():
-        print_folded(f"\n{heading}{'; published figures in brackets' if figures else ''}\n")
-        print_table(with_published(table, figures, case.path))
-    residual = max(max(table[RESIDUAL].pair) for table in tables.values())
-    labels = [label for label in _in_order([list(table) for table in tables.values()]) if label != RESIDUAL]
-    first = {label: next(table[label] for table in tables.values() if label in table) for label in labels}
-    values = {label: [row.pair[0], *_of_all(tables, label, "pair")] for label, row in first.items()}
-    bounds = {label: [row.bounds[0], *_of_all(tables, label, "bounds")] for label, row in first.items()}
-    ratios = {label: _of_all(tables, label, "ratio") for label in labels}
-    bounds_of_ratios = {label: _of_all(tables, label, "bound_of_ratio") for label in labels}
-    more = left_out(values)
-    shown = [label for label in labels if label not in more]
-    heads = ("quantity", shown), ("unit", [first[label].unit for label in shown])
-    columns = _columns([case.reference, *tables], shown, values, bounds)
-    if len(tables) == 1:
-        (name,) = tables
+        print_folded(f"\n{heading[0].lower()}{heading[1:]}{'; published figures in brackets' if figures else ''}\n")
+        print_table(with_published(table.map(output.cell_text), figures, case.path))
+    columns = [("quantity", [row.label for row in rows]), ("unit", [row.unit for row in rows])]
+    columns += _columns([case.reference, *found], [row.numbers for row in rows], [row.bounds for row in rows])
+    ratios = [row for row in rows if len(found) == 1 or not all(map(isnan, row.ratios))]
+    columns_of_ratios = _columns(
+        found if len(found) > 1 else ["ratio"], [row.ratios for row in ratios], [row.bounds_of_ratios for row in ratios]
+    )
+    if len(found) == 1:
+        (name,) = found
         print_folded(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
-        columns += _columns(["ratio"], shown, ratios, bounds_of_ratios)
-        texts = [("published", [published[0].get(label, "") for label in shown])] if published[0] else []
-        print_columns(*heads, *columns, *texts)
+        print_columns(*columns, *columns_of_ratios, *_published(rows, published))
     else:
         print_folded(f"\nvalues of {case.reference} and of what it is compared with\n")
-        print_columns(*heads, *columns, *_published(shown, case.published.value))
+        print_columns(*columns, *_published(rows, case.published.value))
         print_folded(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
-        shown = [label for label in shown if not all(map(isnan, ratios[label]))]
-        columns = _columns(tables, shown, ratios, bounds_of_ratios)
-        print_columns(("quantity", shown), *columns, *_published(shown, case.published.ratio))
-    if more:
-        print_folded(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
+        labels = [row.label for row in ratios]
+        print_columns(("quantity", labels), *columns_of_ratios, *_published(ratios, case.published.ratio))
+    if omitted:
+        print_folded(f"\n{omitted} torque extrema between the smallest and the largest are left out; --csv has them")
     print_folded(
         f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power"
     )
 
 
-def _of_all(tables, label, name):
-    """Attribute of a row in each table, of a pair its second value; NaN for tables without the row."""
-    found = [getattr(table[label], name) if label in table else nan for table in tables.values()]
-    return [item[1] if isinstance(item, tuple) else item for item in found]
+def _columns(headings, values, bounds):
+    """Columns to print, with their headings, from rows of values and bounds."""
+    return list(zip(headings, zip(*values, strict=True), zip(*bounds, strict=True), strict=True))
 
 
-def _columns(headings, shown, values, bounds):
-    """Columns to print: heading, values and bounds of the shown rows."""
-    return [
-        (heading, [values[label][at] for label in shown], [bounds[label][at] for label in shown])
-        for at, heading in enumerate(headings)
-    ]
-
-
-def _published(shown, figures):
+def _published(rows, figures):
     """Column of published figures, if there are any."""
-    texts = [figures.get(label, "") for label in shown]
+    texts = [figures.get(row.label, "") for row in rows]
     return [("published", texts)] if any(texts) else []
-
-
-def _in_order(lists):
-    """Names of all lists, each after its predecessor in its own list."""
-    found: list[str] = []
-    for names in lists:
-        place = 0
-        for name in names:
-            if name in found:
-                place = found.index(name) + 1
-            else:
-                found.insert(place, name)
-                place += 1
-    return found

@@ -86,7 +86,7 @@ def print_columns(*columns):
     texts = []
     for heading, values, *bounds in columns:
         errors = bounds[0] if bounds else [0.0] * len(values)
-        texts.append((str(heading), [_cell(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
+        texts.append((str(heading), [cell_text(*pair, str(heading)) for pair in zip(values, errors, strict=True)]))
     for place, part in enumerate(_parts(texts, width())):
         rules = ["-" * _widest([heading, *cells]) for heading, cells in part]
         rows = [[heading for heading, _ in part], rules, *zip(*(cells for _, cells in part), strict=True)]
@@ -95,19 +95,7 @@ def print_columns(*columns):
         print(("\n" if place else "") + whole)
 
 
-def with_published(table, published, path):
-    """Cells as text, with the published figure in brackets."""
-    from ..views.report.tables import require_places
-
-    require_places(table, published, path)
-    cells = table.map(_cell).astype(object)
-    for quantity, entries in published.items():
-        for column, printed in entries.items():
-            cells.loc[quantity, column] += f" ({printed})"
-    return cells
-
-
-def _cell(value, bound=0.0, heading=""):
+def cell_text(value, bound=0.0, heading=""):
     """A value as text."""
     return (
         angle(value)

@@ -7,13 +7,14 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ..numbers import checks
-from .canvas import ACCENT, FROM_X, INK, STEEL, axes, close_curve, with_line_styles
+from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
 
 POINTS_PER_TURN = 1440
 """Crank angles of drawn curves."""
 ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 RADIUS_RULE = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
 LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
+LIMIT_STYLE = {"color": ACCENT, "lw": 1.0, "ls": "--"}
 
 
 def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
@@ -53,13 +54,8 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
     ax.plot(*surface, color=INK, lw=1.5, label="working curve")
     ax.plot(*close_curve(made.pitch), color=ACCENT, lw=0.8, ls="-.", label="pitch curve")
     if cutter_radius is not None:
-        ax.plot(
-            *close_curve(made.cutter_path(cutter_radius)),
-            color="tab:green",
-            lw=0.8,
-            ls="--",
-            label="path of the cutter",
-        )
+        path = close_curve(made.cutter_path(cutter_radius))
+        ax.plot(*path, color=LOAD, lw=0.8, ls="--", label="path of the cutter")
     posed = cam.profile(roller_radius, np.radians(angles), side)
     for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
         ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
@@ -86,10 +82,6 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     side : "disk" or "ring"
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -99,16 +91,13 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     """
     named = _items_by_label(cams, "cam_curvature", _cam_problem)
     side_problem = checks.choice("side", side, ("disk", "ring"))
-    radius = checks.check_values("cam_curvature", RADIUS_RULE, {"roller_radius": roller_radius}, side_problem)[
-        "roller_radius"
-    ]
+    given = {"roller_radius": roller_radius}
+    (radius,) = checks.check_values("cam_curvature", RADIUS_RULE, given, side_problem).values()
     ax = axes(ax)
-    angle = np.linspace(0.0, 2 * np.pi, POINTS_PER_TURN + 1)
-    for name, cam, style in with_line_styles(named):
-        ax.plot(np.degrees(angle), 1.0 / cam.curvature_radius(angle), linestyle=style, label=name)
+    draw_each_over_turn(ax, named, lambda cam, angle: 1.0 / cam.curvature_radius(angle))
     if radius is not None:
         limit = (1.0 if side == "disk" else -1.0) / radius
-        ax.axhline(limit, color=ACCENT, lw=1.0, ls="--", label=f"undercut by the roller, {side}")
+        ax.axhline(limit, label=f"undercut by the roller, {side}", **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
     return _label_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
@@ -123,10 +112,6 @@ def cam_pressure_angle(cams, largest=None, ax=None):
         A limit, rad, drawn on both sides of 0.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -135,13 +120,11 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     'crank angle from +x, counter-clockwise [deg]'
     """
     named = _items_by_label(cams, "cam_pressure_angle", _cam_problem)
-    largest = checks.check_values("cam_pressure_angle", LIMIT_RULE, {"largest": largest})["largest"]
+    (largest,) = checks.check_values("cam_pressure_angle", LIMIT_RULE, {"largest": largest}).values()
     ax = axes(ax)
-    angle = np.linspace(0.0, 2 * np.pi, POINTS_PER_TURN + 1)
-    for name, cam, style in with_line_styles(named):
-        ax.plot(np.degrees(angle), np.degrees(cam.pressure_angle(angle)), linestyle=style, label=name)
+    draw_each_over_turn(ax, named, lambda cam, angle: np.degrees(cam.pressure_angle(angle)))
     for limit in () if largest is None else (-largest, largest):
-        ax.axhline(np.degrees(limit), color=ACCENT, lw=1.0, ls="--")
+        ax.axhline(np.degrees(limit), **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
     return _label_turn(ax, "pressure angle [deg]", len(named) > 1)
 
@@ -154,10 +137,6 @@ def contact_pressure(contacts, ax=None):
     contacts : Contact or mapping of label to Contact
         As of ``ks.design.contact``.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -178,7 +157,7 @@ def contact_pressure(contacts, ax=None):
         for angle in contact.changes:
             ax.axvline(np.degrees(angle), color=line.get_color(), lw=0.6, ls=":")
         if "pressure" in contact.limits:
-            ax.axhline(contact.limits["pressure"] / 1e6, color=ACCENT, lw=1.0, ls="--")
+            ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
     ax.set_ylim(bottom=0.0)
     return _label_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
 
@@ -213,10 +192,8 @@ def law_motion(laws, ax=None):
         "law_motion", None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
     )
     four: Any = plt.subplots(4, 1, sharex=True, layout="constrained", figsize=(6.4, 7.2))[1] if ax is None else ax
-    angle = np.linspace(0.0, 2 * np.pi, 2 * POINTS_PER_TURN + 1)
-    for name, law, style in with_line_styles(named):
-        for part, values in zip(four, law(angle), strict=True):
-            part.plot(np.degrees(angle), values, linestyle=style, label=name)
+    for order, part in enumerate(four):
+        draw_each_over_turn(part, named, lambda law, angle, order=order: law(angle)[order], 2 * POINTS_PER_TURN)
     texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
     for part, text in zip(four, texts, strict=True):
         part.set_ylabel(text)
@@ -224,6 +201,13 @@ def law_motion(laws, ax=None):
     if len(named) > 1:
         four[0].legend(frameon=False, fontsize="small")
     return four
+
+
+def draw_each_over_turn(ax, named, value, points=POINTS_PER_TURN):
+    """Draw a value of each item over the crank angle; ``value(item, angle)`` gives it at the angles of a turn."""
+    angle = np.linspace(0.0, 2 * np.pi, points + 1)
+    for name, item, style in with_line_styles(named):
+        ax.plot(np.degrees(angle), value(item, angle), linestyle=style, label=name)
 
 
 def _label_turn(ax, text, legend):

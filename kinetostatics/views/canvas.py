@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -107,6 +107,18 @@ def with_line_styles(named):
     return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
+def grouped(items, alike):
+    """Lists of items that are alike, by a function of the first item of a list and another."""
+    groups: list[list[Any]] = []
+    for item in items:
+        group = next((group for group in groups if alike(group[0], item)), None)
+        if group is None:
+            groups.append([item])
+        else:
+            group.append(item)
+    return groups
+
+
 LONG_LABEL = 20
 """Letters of a label from which on the legend has one column."""
 LEGEND_COLUMNS = (3, 2, 1)
@@ -127,20 +139,16 @@ def distinct_curves(curves, apart=False):
     finite = {name: np.where(np.isfinite(array), array, 0.0) for name, array in arrays.items()}
     largest = max((float(np.max(np.abs(array), initial=0.0)) for array in finite.values()), default=0.0)
     extents = {name: float(np.max(np.ptp(array, axis=-1), initial=0.0)) for name, array in finite.items()}
-    found: list[list[str]] = []
-    for name, array in arrays.items():
-        for names in found:
-            other, extent = arrays[names[0]], extents[name] if apart else max(extents.values())
-            if other.shape == array.shape and np.allclose(
-                array, other, rtol=0.0, atol=SAME_CURVE_TOLERANCE * extent, equal_nan=True
-            ):
-                names.append(name)
-                break
-        else:
-            found.append([name])
+
+    def coincide(name, other):
+        tolerance = SAME_CURVE_TOLERANCE * (extents[other] if apart else max(extents.values()))
+        one, two = arrays[name], arrays[other]
+        return one.shape == two.shape and np.allclose(two, one, rtol=0.0, atol=tolerance, equal_nan=True)
+
     several = len(arrays) > 1
     zero = {name: several and np.max(np.abs(finite[name]), initial=0.0) <= ZERO_TOLERANCE * largest for name in arrays}
-    return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in found}
+    groups = grouped(arrays, coincide)
+    return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in groups}
 
 
 def period_curve(solution, value, counted=FROM_X):
@@ -197,6 +205,12 @@ def ordinary_size(arrays):
         return apart
     usual, largest = float(np.quantile(finite, ORDINARY_SHARE)), float(np.nanmax(sizes))
     return usual if 0.0 < UNBOUNDED_RATIO * usual < largest else most
+
+
+def hidden_beyond(limit, values):
+    """Values (N,) or vectors (2, N), NaN where they are larger than a limit."""
+    sizes = np.hypot(*values) if np.ndim(values) > 1 else np.abs(values)
+    return np.where(sizes <= limit, values, np.nan)
 
 
 def drawn_limit(arrays):

@@ -49,10 +49,6 @@ def work_precision(table, ax=None, like=None):
     like : pandas.DataFrame, optional
         A study of more methods, which sets the colours and marks.
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import pandas as pd
@@ -76,13 +72,8 @@ def work_precision(table, ax=None, like=None):
             text += "" if device == "cpu" else f", on {device}"
             ax.plot(rows[time], np.maximum(rows["error"], MIN_DRAWN_ERROR), label=text, **style)
             proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
-            ax.vlines(
-                proven[time],
-                np.maximum(proven["error"], MIN_DRAWN_ERROR),
-                proven["bound"],
-                color=style["color"],
-                lw=1.0,
-            )
+            errors = np.maximum(proven["error"], MIN_DRAWN_ERROR)
+            ax.vlines(proven[time], errors, proven["bound"], color=style["color"], lw=1.0)
             ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
     if "bound" in given and given["bound"].notna().any():
         ax.plot([], [], "_", color=ACCENT, markersize=9, label="proven bound on the error below it")
@@ -107,10 +98,6 @@ def error_by_distance(table, ax=None):
         One place, from `stability.study`.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> from dataclasses import replace
@@ -127,29 +114,17 @@ def error_by_distance(table, ax=None):
         rows = table[(table["method"] == name) & (table["not given"] == "")]
         failing = (rows["nan"] > 0) | (rows["raised"] != "")
         if len(rows):
-            ax.plot(
-                rows["number"],
-                rows["error"].where(~failing, MAX_DRAWN_ERROR).clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
-                label=name,
-                **style,
-            )
+            errors = rows["error"].where(~failing, MAX_DRAWN_ERROR).clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR)
+            ax.plot(rows["number"], errors, label=name, **style)
     problem = table.drop_duplicates("number")
-    ax.plot(
-        problem["number"],
-        np.clip(problem["condition"] * 2.0**-53, MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
-        "k--",
-        label="condition x rounding",
-    )
-    if "angle rounding" in problem:
-        shown = problem["angle rounding"].clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR)
-        ax.plot(problem["number"], shown, "-.", color="0.5", label="one rounding of the crank angle")
-    if "bound" in problem:
-        ax.plot(
-            problem["number"],
-            problem["bound"].clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR),
-            "k:",
-            label="proven bound of ours",
-        )
+    limits = {
+        "condition": ({"color": "k", "ls": "--", "label": "condition x rounding"}, 2.0**-53),
+        "angle rounding": ({"color": "0.5", "ls": "-.", "label": "one rounding of the crank angle"}, 1.0),
+        "bound": ({"color": "k", "ls": ":", "label": "proven bound of ours"}, 1.0),
+    }
+    for column, (style, factor) in limits.items():
+        if column in problem:
+            ax.plot(problem["number"], (factor * problem[column]).clip(MIN_DRAWN_ERROR, MAX_DRAWN_ERROR), **style)
     ax.set(xscale="log", yscale="log", ylim=(MIN_DRAWN_ERROR / 3, 3 * MAX_DRAWN_ERROR), xlabel=table["axis"].iloc[0])
     ax.xaxis.set_major_locator(LogLocator(numticks=7))
     ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
@@ -166,10 +141,6 @@ def model_ladder(needs, ax=None):
     ----------
     needs : Needs
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -218,10 +189,6 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
     ax : Axes, optional
     labels : mapping of column to text, optional
         Texts of axes, with units; by default the headings as words.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------

@@ -48,10 +48,6 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
         Velocity or acceleration.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -90,10 +86,6 @@ def shaking_force(solutions, by="direction", ax=None):
     by : "direction" or "crank angle"
         What the polar angle is.
     ax : polar Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -152,10 +144,6 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     counted : AngleConvention, optional
         Convention for crank angles; by default from +x, counter-clockwise.
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -184,10 +172,6 @@ def torque(solutions, ax=None, counted=FROM_X):
     counted : AngleConvention, optional
         As for `over_turn`.
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -209,10 +193,6 @@ def cam_force(solutions, ax=None):
         With a cam roller.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -231,10 +211,6 @@ def pressure_angle(solutions, ax=None):
     solutions : Solution or mapping of label to Solution
         With a cam roller.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -259,10 +235,6 @@ def acceleration_error(solutions, ax=None, slider=None):
         With a slider.
     ax : Axes, optional
     slider : str, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -319,39 +291,38 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
     ax = axes(ax)
     named = with_peaks(solutions_by_label(solutions, joint), joint)
-    curves = {}
+    whole = {}
     for name, solution in named.items():
         vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
         if joint not in vectors:
             raise QuantityError(choice(f"{solution.mechanism.name}: reaction", joint, tuple(vectors)))
-        curves[name] = vectors[joint].read(solution)
+        whole[name] = vectors[joint].read(solution)
     declared = quantities.quantity(next(iter(named.values())), joint)
-    factor, shown = display_unit(declared.unit, curves.values())
-    sizes = [np.hypot(*curve) for curve in curves.values()]
+    factor, shown = display_unit(declared.unit, whole.values())
+    sizes = [np.hypot(*curve) for curve in whole.values()]
     sight = drawn_limit(sizes)
-    whole = curves
-    curves = {name: np.where(np.hypot(*curve) <= sight, curve, np.nan) for name, curve in curves.items()}
+    curves = {name: canvas.hidden_beyond(sight, curve) for name, curve in whole.items()}
     most = 2.0 * ordinary_size(sizes)
-    drawn = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
+    finite = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
     extents = {
-        name: factor * min(float(np.max(np.ptp(curve, axis=1))) if curve.size else 0.0, most)
-        for name, curve in drawn.items()
+        name: factor * min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()
     }
     whys: set[str] = set()
     for name, solution, style in with_line_styles(named):
-        (line,) = ax.plot(*close_curve(factor * curves[name]), linestyle=style, label=name)
-        rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curves[name][0, row])]
-        ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
+        curve = factor * curves[name]
+        (line,) = ax.plot(*close_curve(curve), linestyle=style, label=name)
+        rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curve[0, row])]
+        ax.plot(*curve[:, rows], "o", ms=3, color=line.get_color())
         ends = list(canvas.curve_ends(solution, whole[name], curves[name]))
         for end in ends:
             mark = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
-            ax.plot(*factor * curves[name][:, end.row], ls="", color=line.get_color(), zorder=4, **mark)
+            ax.plot(*curve[:, end.row], ls="", color=line.get_color(), zorder=4, **mark)
         whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[name], 0.02 * max(extents.values()))
         period = np.degrees(solution.period)
         degrees = counted(np.degrees(solution.crank_angle)[rows], period) % period
-        for text, point in _merge_labels(degrees, factor * curves[name][:, rows], near):
+        for text, point in _merge_labels(degrees, curve[:, rows], near):
             label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
@@ -380,9 +351,7 @@ def _rows_at_marks(solution, step):
 
 def _merge_labels(degrees, points, near):
     """Crank-angle labels of points (2, M) with their places; points nearer than `near` share a label."""
-    labels: dict[int, list[str]] = {}
-    for row, point in enumerate(points.T):
-        first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)
-        labels.setdefault(first, []).append(f"{degrees[row]:.4g}°")
-    for row, names in labels.items():
-        yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, row]
+    rows = range(points.shape[1])
+    for group in canvas.grouped(rows, lambda row, other: np.hypot(*(points[:, row] - points[:, other])) < near):
+        names = [f"{degrees[row]:.4g}°" for row in group]
+        yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, group[0]]

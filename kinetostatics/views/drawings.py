@@ -19,6 +19,7 @@ from .canvas import (
     ZERO_TOLERANCE,
     axes,
     close_curve,
+    grouped,
     set_equal_scales,
     solutions_by_label,
     with_line_styles,
@@ -203,16 +204,9 @@ def first_moving_joint(made):
 
 def _names_by_place(poses, shape):
     """Names of joints with their place in the first pose; joints that coincide share an entry."""
-    found: list[tuple[list[str], Any]] = []
-    for name in shape.mechanism.joints:
-        place = poses.position(name)[:, 0]
-        near = (names for names, other in found if np.hypot(*(place - other)) < 1e-6 * shape.size)
-        names = next(near, None)
-        if names is None:
-            found.append(([name], place))
-        else:
-            names.append(name)
-    return found
+    places = {name: poses.position(name)[:, 0] for name in shape.mechanism.joints}
+    names = grouped(places, lambda name, other: np.hypot(*(places[other] - places[name])) < 1e-6 * shape.size)
+    return [(group, places[group[0]]) for group in names]
 
 
 def stroke_artist(ax, stroke, shade):

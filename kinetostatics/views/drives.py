@@ -29,10 +29,6 @@ def crank_speed(runs, ax=None):
         As of `ks.drive.steady`.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -60,10 +56,6 @@ def drive_torques(run, ax=None):
     run : Running
         As of `ks.drive.steady`.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -98,10 +90,6 @@ def energy_flow(runs, ax=None):
     runs : mapping of label to Running
         As of `ks.drive.steady`.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -177,10 +165,6 @@ def lost_power(solution, ax=None):
         With friction, of one design.
     ax : Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -201,8 +185,7 @@ def lost_power(solution, ax=None):
     ax.axhline(factor * lost.total, color=INK, ls="--", lw=1.0, label="mean")
     ax = finish_axes(ax, f"power lost [{unit}]", legend=False, period=round(np.degrees(solution.period)))
     ax.set_ylim(0, 1.08 * ax.dataLim.ymax or 1.0)
-    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return ax
+    return _with_stack_legend(ax)
 
 
 def losses(solutions, ax=None):
@@ -213,10 +196,6 @@ def losses(solutions, ax=None):
     solutions : Solution or mapping of label to Solution
         With friction.
     ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -246,13 +225,14 @@ def losses(solutions, ax=None):
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)
     ax.grid(axis="y", alpha=0.3)
     ax.set_axisbelow(True)
-    ax.legend(*_reversed_legend(ax), frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return _with_stack_legend(ax)
+
+
+def _with_stack_legend(ax):
+    """The axes with a legend beside them, its entries in the order of the stack, from the top."""
+    handles, texts = (item[::-1] for item in ax.get_legend_handles_labels())
+    ax.legend(handles, texts, frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return ax
-
-
-def _reversed_legend(ax):
-    """Legend entries in the order of the stack, from the top."""
-    return tuple(item[::-1] for item in ax.get_legend_handles_labels())
 
 
 def _require_friction(named):

@@ -3,7 +3,7 @@
 `FIGURES` lists the figures of a case by name, with the condition for each.
 """
 
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +12,16 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ..casefile import reading
 from ..cycle.losses import lose
 from ..design.pareto_front import Front
-from ..errors import CaseError, ParameterError
+from ..errors import ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
 from . import curves, drawings, drives
+from .cams import draw_each_over_turn
 from .canvas import (
     ACCENT,
     FROM_X,
@@ -31,6 +33,7 @@ from .canvas import (
     display_unit,
     distinct_curves,
     finish_axes,
+    grouped,
     panels,
     save_figure,
     with_line_styles,
@@ -67,54 +70,49 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     """
     checks.require("figures", checks.case("case", case))
     figures = figures_of(case)
-    unknown = [checks.choice("published.figures", name, tuple(FIGURES)) for name in case.published.figures]
-    if any(unknown):
-        raise CaseError(case.path, [problem for problem in unknown if problem])
+    unknown = (checks.choice("published.figures", name, tuple(FIGURES)) for name in case.published.figures)
+    reading.require(case.path, *unknown)
     problem = checks.choice("figure", only, figures) if only else None
     if problem:
         raise ParameterError(problem)
-    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in ([only] if only else figures)}
-    checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
-    names = [case.reference, *(name for name in case.variants if name != case.reference)]
-    solutions = {name: case.solve(name) for name in names}
     counted = FROM_Y_CLOCKWISE if _is_chain_unit(case) else FROM_X
-    found = []
-    for name in progress(paths):
-        with rc_context(FONT):
-            figure = figures[name](solutions, counted)
-            if number := case.published.figures.get(name):
-                text = f"figure{'s' * (',' in number)} {number} of the study"
-                figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
-                figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
-            found.append(save_figure(figure, paths[name], case.path.stem))
-    return found
+
+    @cache
+    def solutions():
+        return {name: case.solve(name) for name in dict.fromkeys([case.reference, *case.variants])}
+
+    def page(name):
+        figure = figures[name](solutions(), counted)
+        if number := case.published.figures.get(name):
+            text = f"figure{'s' * (',' in number)} {number} of the study"
+            figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
+            figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
+        return figure
+
+    pages = {name: partial(page, name) for name in ([only] if only else figures)}
+    return _draw_pages(case, pages, folder, file_format, progress)
 
 
 def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
     bars = len(drives.energy_parts(runs)) * (1 + len(runs))
     pages = {
-        "drive_speed": lambda: _one_axes(drives.crank_speed)(runs),
-        "drive_torque": lambda: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
-        "drive_energy": lambda: _one_axes(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
+        "drive_speed": partial(_one_axes, drives.crank_speed, runs),
+        "drive_torque": partial(_one_each, drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
+        "drive_energy": partial(_one_axes, drives.energy_flow, runs, 7.2, 1.2 + 0.19 * bars),
     }
     return _draw_pages(case, pages, folder, "png")
 
 
-def _draw_pages(case, pages, folder, file_format):
+def _draw_pages(case, pages, folder, file_format, progress=iter):
     """Draw pages by name into files named after the case; returns the paths."""
     paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in pages}
     checks.require("figures", *dict.fromkeys(write_problem(path, inputs=case.files) for path in paths.values()))
     found = []
-    for name, draw in pages.items():
+    for name in progress(paths):
         with rc_context(FONT):
-            figure = draw()
-            found.append(save_figure(figure, paths[name], case.path.stem))
+            found.append(save_figure(pages[name](), paths[name], case.path.stem))
     return found
-
-
-def _having(quantity, items):
-    return {name: item for name, item in items.items() if quantity in of_mechanism(item.mechanism)}
 
 
 def _is_chain_unit(case):
@@ -141,22 +139,22 @@ def _with_friction(solutions):
     return {name: solution for name, solution in solutions.items() if lose(solution)}
 
 
-def _one_axes(plot, width=6.4, height=4.0, **axes):
+def _one_axes(plot, shown, width=6.4, height=4.0, **axes) -> Figure:
+    """A figure with one plot of all that is shown."""
+    figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
+    plot(shown, ax=ax)
+    return figure
+
+
+def _page_of(plot, *size, **axes):
     """Function that draws a plot as a page, with the plot's own convention for crank angles."""
-
-    def draw(solutions, _=FROM_X) -> Figure:
-        figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
-        plot(solutions, ax=ax)
-        return figure
-
-    return draw
+    return lambda solutions, _: _one_axes(plot, solutions, *size, **axes)
 
 
 def _over_turn(quantity):
-    def draw(solutions, counted) -> Figure:
-        figure, ax = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-        curves.over_turn(_having(quantity, solutions), quantity, ax=ax, counted=counted)
-        return figure
+    def draw(solutions, counted):
+        having = {name: item for name, item in solutions.items() if quantity in of_mechanism(item.mechanism)}
+        return _one_axes(partial(curves.over_turn, quantity=quantity, counted=counted), having)
 
     return draw
 
@@ -185,14 +183,8 @@ def _proportion(solution):
 
 def _mechanisms(solutions, counted=FROM_X) -> Figure:
     """Mechanisms of all variants; equal ones are drawn once. Wide ones are stacked, others side by side."""
-    alike: list[dict[str, Any]] = []
-    for name, solution in solutions.items():
-        same = next((group for group in alike if moves_alike(next(iter(group.values())), solution)), None)
-        if same is None:
-            alike.append({name: solution})
-        else:
-            same[name] = solution
-    shown = {", ".join(group): group for group in alike}
+    alike = grouped(solutions, lambda name, other: moves_alike(solutions[name], solutions[other]))
+    shown = {", ".join(group): {name: solutions[name] for name in group} for group in alike}
     wide = max(map(_proportion, solutions.values()))
     width = 8.0 if wide > WIDE_RATIO else max(3.2, min(5.2, 5.5 * wide))
     plot = partial(drawings.mechanism, angles=counted.from_x(DRAWN_ANGLES), counted=counted)
@@ -242,23 +234,23 @@ FIGURES = {
     "overview": (_overview, None),
     "mechanism": (_mechanisms, None),
     "torque": (_over_turn("balancing_torque"), None),
-    "acceleration_error": (_one_axes(curves.acceleration_error), "cosine law"),
+    "acceleration_error": (_page_of(curves.acceleration_error), "cosine law"),
     "hodograph": (_hodographs, None),
     "pressure_angle": (_over_turn("pressure_angle"), "pressure_angle"),
     "cam_force": (_over_turn("cam_force"), "cam_force"),
-    "losses": (lambda solutions, _: _one_axes(drives.losses)(_with_friction(solutions)), "friction"),
+    "losses": (lambda solutions, _: _one_axes(drives.losses, _with_friction(solutions)), "friction"),
     "lost_power": (
         lambda solutions, _: _one_each(drives.lost_power, _with_friction(solutions), 6.4, 3.2, 1),
         "friction",
     ),
-    "mass_centres": (_one_axes(drawings.mass_centres, 9.0, 3.6), "balanced"),
-    "shaking_by_direction": (_one_axes(curves.shaking_force, 6.4, 4.8, projection="polar"), "balanced"),
+    "mass_centres": (_page_of(drawings.mass_centres, 9.0, 3.6), "balanced"),
+    "shaking_by_direction": (_page_of(curves.shaking_force, 6.4, 4.8, projection="polar"), "balanced"),
     "shaking_by_crank_angle": (
-        _one_axes(partial(curves.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
+        _page_of(partial(curves.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
         "balanced",
     ),
     **{
-        f"{link}_{kind}": (_one_axes(partial(curves.chain_unit_motion, link=link, order=order)), "chain unit")
+        f"{link}_{kind}": (_page_of(partial(curves.chain_unit_motion, link=link, order=order)), "chain unit")
         for link in ("coupler", "rocker")
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },
@@ -274,10 +266,6 @@ def front(found, ax=None):
     found : design.Front
     ax : matplotlib Axes, optional
 
-    Returns
-    -------
-    Axes
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -289,18 +277,16 @@ def front(found, ax=None):
     True
     """
     ax = axes(ax)
-    scales, headings = [], []
-    for column in list(found.table.columns)[:2]:
+    outputs = []
+    for column, before in zip(found.table.columns, found.before, strict=False):
         name, unit = parse_heading(column)
-        factor, shown = display_unit(unit, [found.table[column].to_numpy()])
-        scales.append(factor)
-        headings.append(axis_words(f"{name} [{shown or '1'}]"))
-    first, second = (found.table.iloc[:, place].to_numpy() * scales[place] for place in (0, 1))
-    ax.plot(second, first, "o-", color=INK, label="best designs")
-    before = [value * scale for value, scale in zip(found.before, scales, strict=True)]
-    ax.plot(before[1], before[0], "x", color=ACCENT, label="before")
-    ax.set_ylabel(headings[0])
-    ax.set_xlabel(headings[1])
+        values = found.table[column].to_numpy()
+        factor, shown = display_unit(unit, [values])
+        outputs.append((values * factor, before * factor, axis_words(f"{name} [{shown or '1'}]")))
+    (y, y_before, y_label), (x, x_before, x_label) = outputs
+    ax.plot(x, y, "o-", color=INK, label="best designs")
+    ax.plot(x_before, y_before, "x", color=ACCENT, label="before")
+    ax.set(ylabel=y_label, xlabel=x_label)
     ax.grid(alpha=0.3)
     ax.legend(frameon=False, fontsize="small")
     return ax
@@ -312,7 +298,7 @@ ANGLES_PER_TURN = 720
 def draw_designs(case, found, folder, file_format="png"):
     """Draw results of a case's designs by name into a folder, a page each; returns the paths."""
     pages = {
-        name: partial(_one_axes(front, 6.4, 4.4) if isinstance(item, Front) else before_and_after, item)
+        name: partial(_one_axes, front, item, 6.4, 4.4) if isinstance(item, Front) else partial(before_and_after, item)
         for name, item in found.items()
     }
     return _draw_pages(case, pages, folder, file_format)
@@ -385,12 +371,9 @@ def pitch_curves(cams, ax=None):
 def cam_radius(cams, ax=None):
     """Distance of pitch curves from O over the crank angle, by label."""
     ax = axes(ax)
-    angle = np.linspace(0.0, 2 * np.pi, ANGLES_PER_TURN + 1)
-    curves = [1e3 * cam.radius(angle)[0] for cam in cams.values()]
-    for (name, _, style), curve in zip(with_line_styles(cams), curves, strict=True):
-        ax.plot(np.degrees(angle), curve, linestyle=style, label=name)
+    draw_each_over_turn(ax, cams, lambda cam, angle: 1e3 * cam.radius(angle)[0], ANGLES_PER_TURN)
+    low, high = ax.dataLim.intervaly
     finish_axes(ax, "radius [mm]", len(cams) > 1)
     ax.lines[-1].remove()  # the line at zero, far below
-    low, high = min(map(np.min, curves)), max(map(np.max, curves))
     ax.set_ylim(low - 0.08 * (high - low), high + 0.25 * (high - low))
     return ax

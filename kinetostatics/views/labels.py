@@ -33,7 +33,8 @@ class Labels(Artist):
         """Move each label to its best place."""
         ax: Any = self.axes
         lines, scale = ax.lines, renderer.points_to_pixels(1.0)
-        paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
+        filled = [(line, False) for line in lines] + [(patch, True) for patch in ax.patches]
+        paths = [(path, _extents(path), full) for item, full in filled if len((path := _in_pixels(item)).vertices)]
         marks = [NO_BOX]  # boxes of markers with path shapes, (N, 4)
         for line in lines:
             if isinstance(shape := line.get_marker(), Path):
@@ -48,12 +49,10 @@ class Labels(Artist):
             places = _Places.around(point, size.width, size.height, scale)
             boxes = places.boxes
             outside = ~_contain(np.array([ax.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
-            bounds = [Bbox.from_extents(box) for box in boxes]
-            crossed = [[path.intersects_bbox(box, filled=filled) for path, filled in paths] for box in bounds]
             costs = (
                 ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
                 + ON_POINT * _overlap(boxes, np.concatenate(marks)).sum(axis=1)
-                + ON_CURVE * np.sum(crossed, axis=1)
+                + ON_CURVE * sum((places.crossed(*path) for path in paths), np.zeros(len(boxes)))
                 + OUTSIDE * outside
             )
             frees.append((places, DISTANCE_COSTS + costs))
@@ -83,6 +82,12 @@ def _contain(boxes, points):
     return _overlap(boxes, np.hstack([points, points]))
 
 
+def _extents(path):
+    """Box (4,) around all vertices of a path; NaN without one."""
+    vertices = path.vertices[np.isfinite(path.vertices).all(axis=1)]
+    return np.concatenate([vertices.min(axis=0), vertices.max(axis=0)]) if len(vertices) else np.full(4, np.nan)
+
+
 def _in_pixels(item):
     return item.get_transform().transform_path(item.get_path())
 
@@ -98,13 +103,19 @@ class _Places(NamedTuple):
     offsets : array (P, 2)
         Of the lower left corner from the point.
     boxes : array (P, 4)
+    bounds : list of Bbox
+        The same boxes.
     leaders : list of Path or None
         Line from the point to the nearest point of the label, if the label is far away.
+    reaches : array (P, 4)
+        Boxes around the leaders; NaN without one.
     """
 
     offsets: np.ndarray
     boxes: np.ndarray
+    bounds: list
     leaders: list
+    reaches: np.ndarray
 
     @classmethod
     def around(cls, point, width, height, scale):
@@ -118,21 +129,28 @@ class _Places(NamedTuple):
             Path([point, np.clip(point, box[:2], box[2:])]) if far else None
             for far, box in zip(distance > LEADER_DISTANCE, boxes, strict=True)
         ]
-        return cls(offsets, boxes, leaders)
+        reaches = np.array([np.full(4, np.nan) if leader is None else _extents(leader) for leader in leaders])
+        return cls(offsets, boxes, [Bbox.from_extents(box) for box in boxes], leaders, reaches)
+
+    def crossed(self, path, extents, filled):
+        """Whether a path meets the box of each place, (P,); only boxes within its extents are looked at closely."""
+        count = _overlap(self.boxes, extents[None])[:, 0].astype(int)
+        for place in np.flatnonzero(count):
+            count[place] = path.intersects_bbox(self.bounds[place], filled=filled)
+        return count
 
     def met(self, others):
         """Costs of each place for overlap with other labels and their leaders, (P,)."""
         others_boxes = np.array([box for _, box, _ in others]).reshape(-1, 4)
         count = _overlap(self.boxes, others_boxes).sum(axis=1)
-        bounds = [Bbox.from_extents(box) for box in self.boxes]
         for _, other, line in others:
+            for place in np.flatnonzero(_overlap(self.reaches, other[None])[:, 0]):
+                count[place] += self.leaders[place].intersects_bbox(Bbox.from_extents(other), filled=False)
             if line is not None:
-                count += [line.intersects_bbox(box, filled=False) for box in bounds]
-            other = Bbox.from_extents(other)
-            for place, leader in enumerate(self.leaders):
-                if leader is not None:
-                    count[place] += leader.intersects_bbox(other, filled=False)
-                    count[place] += line is not None and leader.intersects_path(line, filled=False)
+                extents = _extents(line)
+                count += self.crossed(line, extents, False)
+                for place in np.flatnonzero(_overlap(self.reaches, extents[None])[:, 0]):
+                    count[place] += self.leaders[place].intersects_path(line, filled=False)
         return ON_LABEL * count
 
 

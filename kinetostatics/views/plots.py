@@ -1,8 +1,8 @@
 """Figures by matplotlib; none is shown, and no global setting changes.
 
-Every function draws on `ax` (new axes by default) and returns it; `animation` returns the film. `solutions` is one
-`Solution` or a mapping of label to `Solution`. A quantity that the mechanism does not have raises `QuantityError`, a
-batch of designs `ParameterError`.
+Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result.
+`solutions` is one `Solution` or a mapping of label to `Solution`. A quantity that the mechanism does not have raises
+`QuantityError`, a batch of designs `ParameterError`.
 """
 
 from .animations import animation

@@ -12,6 +12,7 @@ from ..machine.group import FRAME
 from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import rotate_back
+from .canvas import grouped
 
 UP = (np.nan, np.nan)
 SPRING = (
@@ -325,21 +326,13 @@ def load_strokes(solution, angle):
 
 def strokes_by_owner(named, angle):
     """Counterweights and signs of loads in a pose, each with the labels of the machines that have it."""
-    found: list[tuple[Any, list[str]]] = []
+    found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
-        for stroke in (*weights, *load_strokes(solution, angle)):
-            kind, points = stroke
-            same = (
-                owners
-                for other, owners in found
-                if kind == other.kind
-                and points.shape == other.points.shape
-                and np.allclose(points, other.points, rtol=1e-6, equal_nan=True)
-            )
-            owners = next(same, None)
-            if owners is None:
-                found.append((stroke, [name]))
-            elif name not in owners:
-                owners.append(name)
-    return found
+        found += [(stroke, name) for stroke in (*weights, *load_strokes(solution, angle))]
+
+    def same(one, two):
+        (kind, points), (other, others) = two[0], one[0]
+        return kind == other and points.shape == others.shape and np.allclose(points, others, rtol=1e-6, equal_nan=True)
+
+    return [(group[0][0], list(dict.fromkeys(name for _, name in group))) for group in grouped(found, same)]

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
 from ...numbers.formatting import pretty_unit
-from ..canvas import close_curve, display_unit, drawn_limit, with_peaks
+from ..canvas import close_curve, display_unit, drawn_limit, hidden_beyond, with_peaks
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
 """Quiet colours of the machines, in their order."""
@@ -39,7 +39,7 @@ def over_turn(solutions, name, height=300):
     known = quantity(next(iter(have.values())), name)
     found = {row: values(s, name) for row, s in have.items()}
     sight = drawn_limit(list(found.values()))
-    found = {row: np.where(np.abs(value) <= sight, value, np.nan) for row, value in found.items()}
+    found = {row: hidden_beyond(sight, value) for row, value in found.items()}
     factor, unit = display_unit(known.unit, found.values())
     curves = {row: (np.degrees(s.crank_angle), factor * found[row]) for row, s in have.items()}
     label = f"|{known.label}|" if known.vector else known.label
@@ -82,7 +82,7 @@ def hodograph(solutions, name, height=420):
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]
     sight = drawn_limit([np.hypot(*vector) for vector in vectors.values()])
-    vectors = {row: np.where(np.hypot(*vector) <= sight, vector, np.nan) for row, vector in vectors.items()}
+    vectors = {row: hidden_beyond(sight, vector) for row, vector in vectors.items()}
     factor, unit = display_unit(known.unit, vectors.values())
     plot = _plot(
         height, f"{known.label}, x [{pretty_unit(unit)}]", f"{known.label}, y [{pretty_unit(unit)}]", match_aspect=True

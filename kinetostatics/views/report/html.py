@@ -20,7 +20,7 @@ from ...cycle.losses import lose
 from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty_unit
 from ...version import __version__
-from ..canvas import display_unit
+from ..canvas import display_unit, grouped
 from . import figures, tables
 from .movement import movements, to_base64
 from .tables import readings
@@ -125,19 +125,14 @@ def _published(subject):
 
 def _same_torque_text(subject):
     """Sentence on machines with equal torque, whose curves coincide; "" if there are none."""
-    groups: list[list[str]] = []
     torques = {name: solution.balancing_torque for name, solution in subject.solutions.items()}
-    for name, torque in torques.items():
-        for group in groups:
-            first = torques[group[0]]
-            if first.shape == torque.shape and np.nanmax(np.abs(first - torque)) < 1e-9 * np.nanmax(
-                np.abs(first), initial=1e-300
-            ):
-                group.append(name)
-                break
-        else:
-            groups.append([name])
-    same = [" and ".join(group) for group in groups if len(group) > 1]
+
+    def alike(name, other):
+        first, torque = torques[name], torques[other]
+        largest = np.nanmax(np.abs(first), initial=1e-300)
+        return first.shape == torque.shape and np.nanmax(np.abs(first - torque)) < 1e-9 * largest
+
+    same = [" and ".join(group) for group in grouped(torques, alike) if len(group) > 1]
     return f"Curves lie on one another where machines take the same torque: {'; '.join(same)}." if same else ""
 
 

@@ -6,16 +6,17 @@
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...casefile.reading import require
 from ...casefile.variant import run_under_motors
-from ...cycle.comparison import Comparison, left_out
+from ...cycle.comparison import Comparison, Row, left_out
 from ...cycle.losses import lose
 from ...cycle.means import mean_absolute_torque
 from ...cycle.rounding import FLOOR, zeroed
-from ...errors import CaseError, KinetostaticsError, NotGivenError, ParameterError
+from ...errors import KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
@@ -51,49 +52,94 @@ class Table:
     code: bool = False
 
 
+def texts_of(frame):
+    """A frame with its numbers as text; a column `unit` has the units of the rows."""
+    texts = frame.astype(object)
+    for column in frame:
+        for name, value in frame[column].items():
+            if column == "unit":
+                texts.loc[name, column] = pretty_unit(value)
+            elif str(column).endswith("[deg]"):
+                texts.loc[name, column] = angle(value)
+            else:
+                texts.loc[name, column] = number(value, digits_of(str(name), str(column)))
+    return texts
+
+
 def table_of_frame(frame, caption, note=""):
-    """Table of a frame with an index of row names, and a column `unit` if rows have units."""
+    """Table of a frame with an index of row names; cells of text stay unchanged."""
     columns = [str(name) for name in frame.columns]
-    rows = []
-    for name, values in zip(frame.index, frame.itertuples(index=False), strict=True):
-        digits = [digits_of(str(name), column) for column in columns]
-        cells = [
-            pretty_unit(value)
-            if column == "unit"
-            else angle(value)
-            if column.endswith("[deg]")
-            else number(value, most)
-            for column, value, most in zip(columns, values, digits, strict=True)
-        ]
-        rows.append([str(name), *cells])
-    words = 2 if columns[:1] == ["unit"] else 1
-    return Table(caption, [frame.index.name or "", *columns], rows, words, note)
+    rows = [[str(name), *cells] for name, *cells in texts_of(frame).itertuples()]
+    return Table(caption, [frame.index.name or "", *columns], rows, 2 if columns[:1] == ["unit"] else 1, note)
 
 
-def with_published(frame, published, path, caption, note=""):
-    """Table of a frame, with published figures in brackets after ours."""
-    require_places(frame, published, path)
-    table = table_of_frame(frame, caption, note)
-    places = {str(name): row for row, name in enumerate(frame.index)}
-    columns = [str(name) for name in frame.columns]
+def with_published(texts, published, path):
+    """A frame of texts with published figures in brackets after ours; an error for those without a row or column."""
+    problems = [checks.choice("published: row", quantity, tuple(texts.index)) for quantity in published]
+    texts = texts.astype(object)
     for quantity, entries in published.items():
-        for column, printed in entries.items():
-            row = table.rows[places[quantity]]
-            place = 1 + columns.index(column)
-            row[place] = f"{row[place]} ({printed})"
-    return table
+        for column, printed in entries.items() if quantity in texts.index else ():
+            problem = checks.choice(f"published: column of {quantity!r}", column, tuple(texts.columns))
+            if problem:
+                problems.append(problem)
+            else:
+                texts.loc[quantity, column] += f" ({printed})"
+    require(path, *problems)
+    return texts
 
 
-def require_places(frame, published, path):
-    """Raise an error for published figures without a row or column."""
-    problems = [checks.choice("published: row", quantity, tuple(frame.index)) for quantity in published] + [
-        checks.choice(f"published: column of {quantity!r}", column, tuple(frame.columns))
-        for quantity, entries in published.items()
-        if quantity in frame.index
-        for column in entries
-    ]
-    if any(problems):
-        raise CaseError(path, [problem for problem in problems if problem])
+def special_tables(case):
+    """Caption, frame and published figures of a case's tables of balancing and of linkages, by name; those it has."""
+    found = {
+        "balancing": ("Counterweights and shaking force", case.balancing_table(), case.published.balancing),
+        "linkage": ("Swing and transmission", case.linkage_table(), case.published.linkage),
+    }
+    return {name: item for name, item in found.items() if item[1] is not None}
+
+
+class MergedRow(NamedTuple):
+    """Row of comparisons with one reference, NaN for those without it.
+
+    Attributes
+    ----------
+    label, unit : str
+    numbers, bounds : list of float
+        Of the reference, then of each other.
+    ratios, bounds_of_ratios : list of float
+    """
+
+    label: str
+    unit: str
+    numbers: list[float]
+    bounds: list[float]
+    ratios: list[float]
+    bounds_of_ratios: list[float]
+
+
+def merged_rows(comparisons):
+    """Rows of comparisons with one reference, without torque extrema if they are many, and the number left out.
+
+    A row stands behind its predecessor in its own table.
+    """
+    tables = [{row.label: row for row in comparison.rows} for comparison in comparisons]
+    labels: list[str] = []
+    for table in tables:
+        place = 0
+        for label in table:
+            if label not in labels:
+                labels.insert(place, label)
+            place = labels.index(label) + 1
+    found = []
+    for label in labels:
+        first = next(table[label] for table in tables if label in table)
+        lacking = Row(label, first.unit, (np.nan, np.nan), np.nan)
+        rows = [table.get(label, lacking) for table in tables]
+        numbers = [first.pair[0], *(row.pair[1] for row in rows)]
+        bounds = [first.bounds[0], *(row.bounds[1] for row in rows)]
+        ratios, bounds_of_ratios = [row.ratio for row in rows], [row.bound_of_ratio for row in rows]
+        found.append(MergedRow(label, first.unit, numbers, bounds, ratios, bounds_of_ratios))
+    more = left_out({row.label: row.numbers for row in found})
+    return [row for row in found if row.label not in more], len(more)
 
 
 def ratio_text(ratio, bound=0.0):
@@ -218,55 +264,37 @@ def comparisons(subject):
     tables = [_coefficients(subject)] if subject.others else []
     case = subject.case
     if case is not None and set(case.variants) == set(subject.machines):
-        for caption, frame, published in (
-            ("Counterweights and shaking force", case.balancing_table(), case.published.balancing),
-            ("Swing and transmission", case.linkage_table(), case.published.linkage),
-        ):
-            if frame is not None:
-                note = "Published figures in brackets." if published else ""
-                tables.append(_without_empty(with_published(frame, published, case.path, caption, note)))
+        for caption, frame, published in special_tables(case).values():
+            texts = with_published(texts_of(frame), published, case.path)
+            tables.append(
+                _without_empty(table_of_frame(texts, caption, "Published figures in brackets." * bool(published)))
+            )
     return tables
 
 
 def _coefficients(subject):
     """Table of all machines: values, with the ratio of the reference to each below."""
-    name = subject.reference.name
-    frames, bounds = {}, {}
-    for machine in subject.others:
-        found = Comparison(subject.reference.solution, machine.solution, (name, machine.name))
-        frame = found.frame()
-        frames[machine.name] = frame if subject.case is None else subject.case.with_published(frame)
-        bounds[machine.name] = found.error_bounds()
+    name, others = subject.reference.name, [machine.name for machine in subject.others]
+    merged, omitted = merged_rows(Comparison(subject.reference.solution, item.solution) for item in subject.others)
+    published = {} if subject.case is None else subject.case.published_of([row.label for row in merged])
     rows = []
-    more = {
-        row
-        for other, frame in frames.items()
-        for row in left_out(dict(zip(frame.index, frame[[name, other]].to_numpy(), strict=True)))
-    }
-    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index if row not in more):
-        with_row = [other for other, frame in frames.items() if quantity in frame.index]
-        known = [frames[other].loc[quantity] for other in with_row]
-        cells = [
-            _value_and_ratio(frame.loc[quantity], bounds[other].loc[quantity], other) if other in with_row else ""
-            for other, frame in frames.items()
-        ]
-        first = number(known[0][name], digits_of(quantity), bounds[with_row[0]].loc[quantity, name])
-        published = next((row["published"] for row in known if row.get("published")), "")
-        rows.append([quantity, pretty_unit(known[0]["unit"]), first, *cells, published])
+    for label, unit, (first, *values), (bound, *bounds), *ratios in merged:
+        cells = map(_value_and_ratio, values, bounds, *ratios)
+        reference = number(first, digits_of(label), bound)
+        rows.append([label, pretty_unit(unit), reference, *cells, published.get(label, "")])
     note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
-    if more:
-        note += f" {len(more)} torque extrema between the smallest and the largest are left out."
-    return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
+    if omitted:
+        note += f" {omitted} torque extrema between the smallest and the largest are left out."
+    return _without_empty(Table("", ["", "unit", name, *others, "published"], rows, 2, note))
 
 
-def _value_and_ratio(row, errors, name):
+def _value_and_ratio(value, bound, ratio, bound_of_ratio):
     """A machine's value and its ratio with certain digits; "0" if it is negligible beside the reference."""
-    value, ratio = row[name], row["ratio"]
     if np.isinf(ratio):
         return "0"
     if np.isnan(ratio) and abs(value) < 1e-12:
         return number(value, 2)
-    return number(value, bound=errors[name]), ratio_text(ratio, errors["ratio"])
+    return number(value, bound=bound), ratio_text(ratio, bound_of_ratio)
 
 
 def extremes(subject):

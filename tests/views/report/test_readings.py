@@ -12,7 +12,7 @@ from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.views.report import tables
 from kinetostatics.views.report.movement import from_base64
 from kinetostatics.views.report.report import subject_of
-from kinetostatics.views.report.tables import decimals, ratio_text, readings, table_of_frame, with_published
+from kinetostatics.views.report.tables import decimals, ratio_text, readings, table_of_frame, texts_of, with_published
 from support.case_files import shipped
 from support.every import every
 from support.reports import near_change_points, plain, series, subject
@@ -116,14 +116,14 @@ def test_frame_becomes_text_with_wanted_digits():
 
 
 def test_published_figures_stand_in_brackets():
-    found = with_published(FRAME, {"torque": {"plain": "about 287 kN m"}}, "x.toml", "")
-    assert found.rows[0][2] == "286772 (about 287 kN m)"
+    found = with_published(texts_of(FRAME), {"torque": {"plain": "about 287 kN m"}}, "x.toml")
+    assert found.loc["torque", "plain"] == "286772 (about 287 kN m)"
 
 
 def test_misplaced_published_figures_are_refused():
     published = {"torqe": {"plain": "1"}, "torque": {"plan": "1"}}
     with pytest.raises(ks.CaseError, match=r"2 problems[\s\S]*row is 'torqe'[\s\S]*column of 'torque' is 'plan'"):
-        with_published(FRAME, published, "x.toml", "")
+        with_published(texts_of(FRAME), published, "x.toml")
 
 
 def test_a_ratio_says_how_many_times():
