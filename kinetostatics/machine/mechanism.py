@@ -117,13 +117,16 @@ def name_problems(parts):
     return [*problems, *repeated, *([NAME_REMEDY] if repeated else [])]
 
 
-def _collected(mechanism, table):
-    return {name: item for part in mechanism.parts for name, item in getattr(part, table).items()}
-
-
 def _table(name, doc):
-    """Cached property: a table of all parts, from the crank outwards."""
-    found = cached_property(lambda mechanism: _collected(mechanism, name))
+    """Cached property: a table of all parts, or all entries of one, from the crank outwards."""
+
+    def collect(mechanism):
+        tables = [getattr(part, name) for part in mechanism.parts]
+        if isinstance(tables[0], tuple):
+            return sum(tables, ())
+        return {key: item for table in tables for key, item in table.items()}
+
+    found = cached_property(collect)
     found.__doc__ = doc
     return found
 
@@ -186,14 +189,7 @@ class Mechanism(Batched):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
 
-    @cached_property
-    def throws(self):
-        """Pins of the crank by joint, each a `Throw`."""
-        found = self.crank.throws
-        for group in self.groups:
-            if group.throws:
-                found = found | group.throws
-        return found
+    throws = _table("throws", "Pins of the crank by joint, each a `Throw`.")
 
     @cached_property
     def turns(self):
@@ -242,7 +238,7 @@ class Mechanism(Batched):
     @cached_property
     def pairs(self):
         """Pairs of links by reaction; a pin turns by default against the link that carries it."""
-        found = _collected(self, "pairs")
+        found = {name: pair for part in self.parts for name, pair in part.pairs.items()}
         whole: dict[str, str] = {}  # link to which each link of a rigid triangle belongs
         for group in self.groups:
             carriers = {self.joints[name].link for name in group.hangs_on} if group.is_rigid_triangle else ()
@@ -273,15 +269,9 @@ class Mechanism(Batched):
     own_names = _table("own_names", "Name of each link without the label of its group.")
     curves = _table("curves", "Title in drawings of the curve that a joint runs on, by joint.")
 
-    @property
-    def slots(self):
-        """Links in which a joint slides, each as a `Slot`."""
-        return sum((group.slots for group in self.groups), ())
-
-    @property
-    def rollers(self):
-        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
-        return {joint: radius for group in self.groups for joint, radius in group.rollers.items()}
+    slots = _table("slots", "Links in which a joint slides, each as a `Slot`.")
+    rollers = _table("rollers", "Radii of rollers by the joints that are their centres, m; None if it is not known.")
+    bars = _table("bars", "Links that keep two joints at a distance, from the crank outwards.")
 
     @cached_property
     def hints(self):
@@ -302,11 +292,6 @@ class Mechanism(Batched):
         shortest = min(lengths, default=math.inf) if are_floats else reduce(np.minimum, lengths, math.inf)
         found = self.extent / shortest
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
-
-    @cached_property
-    def bars(self):
-        """Links that keep two joints at a distance, from the crank outwards."""
-        return sum((group.bars for group in self.groups), self.crank.bars)
 
     @property
     def couplers(self):
