@@ -79,7 +79,7 @@ class Crank(checks.Checked, Part):
         """Facts that its names depend on."""
         return (self.length is None,)
 
-    @cached_property
+    @property
     def declaration(self):
         """Joint O, and pin A if the crank has a length."""
         joints, pairs = {"O": Point(FRAME)}, (Turning("crank", "O"),)
