@@ -25,7 +25,6 @@ from .links import Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
 
 NAME = checks.Name()
-GROUP_CLASS = f"{Group.__module__}.{Group.__name__}"
 
 
 class GroupsRule:
@@ -44,11 +43,11 @@ class GroupsRule:
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.check(group, "a group") for group in value]
-        found += [NAME.check(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
-        strange = [group for group in value if not isinstance(group, Group)]
-        found += [(group, f"{type(group).__name__} is not derived from {GROUP_CLASS}") for group in strange]
-        problem = next((problem for _, problem in found if problem), None)
-        return tuple(group for group, _ in found[: len(value)]), problem
+        problems = [problem for _, problem in found]
+        problems += [NAME.check(name, f"on of {type(group).__name__}")[1] for group in value for name in _on(group)]
+        strange = (type(group).__name__ for group in value if not isinstance(group, Group))
+        problems += [f"{name} is not derived from {Group.__module__}.{Group.__name__}" for name in strange]
+        return tuple(group for group, _ in found), next(filter(None, problems), None)
 
 
 def _on(group):
@@ -58,20 +57,18 @@ def _on(group):
 
 
 NAME_REMEDY = "give the second group another pin, pivot_name or label"
+MARK = 0xE000
+"""First of the characters that stand for texts of a part; none is in use."""
 
 
 def _spelled(part, table):
     """Names in a table of a part; for the library's own parts with repetitions, which a dict drops."""
     if not part.trusted:
         return list(getattr(part, table))
-    texts = {field.name: getattr(part, field.name) for field in fields(part)}
-    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
-    found = []
-    for spelled in getattr(replace_unchecked(part, **marks), table):
-        for name, mark in marks.items():
-            spelled = spelled.replace(mark, texts[name])
-        found.append(spelled)
-    return found
+    texts = {field.name: text for field in fields(part) if type(text := getattr(part, field.name)) is str}
+    marks = {name: chr(MARK + place) for place, name in enumerate(texts)}
+    back = str.maketrans({marks[name]: text for name, text in texts.items()})
+    return [spelled.translate(back) for spelled in getattr(replace_unchecked(part, **marks), table)]
 
 
 def name_problems(parts):
