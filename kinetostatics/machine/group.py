@@ -138,8 +138,8 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 class Declaration(NamedTuple):
     """Parts of a group, called without the label.
 
-    `inner` holds the pairs at the joints it hangs on, `pairs` all others; `Group` names and describes their reactions.
-    `lengths` holds the numbers in m, but for mass centres.
+    `Group` names and describes the reactions of `pairs`. `lengths` holds the numbers in m, but for mass centres: by
+    default bars, offsets of guides and slots, and fixed joints.
     """
 
     joints: Mapping[str, Point] = EMPTY
@@ -147,7 +147,6 @@ class Declaration(NamedTuple):
     guides: Mapping[str, Any] = EMPTY
     slots: tuple[Slot, ...] = ()
     led: tuple[CamDriven, ...] = ()
-    inner: tuple[Turning, ...] = ()
     pairs: tuple[Turning | Sliding, ...] = ()
     motions: Mapping[str, Output] = EMPTY
     contacts: Mapping[str, Any] = EMPTY
@@ -244,7 +243,11 @@ class Part:
     @property
     def lengths(self):
         """All lengths, places of mass centres among them, to estimate the condition; m."""
-        own = self.declaration.lengths or [bar.length for bar in self.bars]
+        own = self.declaration.lengths
+        if not own:
+            fixed = (point for point in self.joints.values() if point.link == FRAME)
+            own = [bar.length for bar in self.bars] + [guide.guide_offset for guide in self.guides.values()]
+            own += [part for point in fixed for part in point[1:]] + [slot.offset for slot in self.slots]
         return (*own, *(part for link in self.links.values() for part in link.centre))
 
     @property
@@ -262,13 +265,14 @@ class Part:
         several; that of a slider as its force, but for the ending.
         """
         found: dict[str, Any] = {}
-        inner = self.declaration.inner
-        for pair in inner:
-            name = self.called(pair.joint) if len(inner) == 1 else f"{self.called(pair.link)}_{pair.joint}"
-            found[name] = self._renamed(pair)
         for pair in self.declaration.pairs:
-            is_pin = isinstance(pair, Turning)
-            found[pair.joint if is_pin else self.called(pair.force.removesuffix("_force"))] = self._renamed(pair)
+            if isinstance(pair, Sliding):
+                name = self.called(pair.force.removesuffix("_force"))
+            elif pair.joint not in self.hangs_on:
+                name = pair.joint
+            else:
+                name = self.called(pair.joint) if len(self.hangs_on) == 1 else f"{self.called(pair.link)}_{pair.joint}"
+            found[name] = self._renamed(pair)
         return found
 
     @cached_property

@@ -124,8 +124,7 @@ class Dyad(checks.Checked, Group):
         return Declaration(
             joints={self.pin: Point("dyad2", self.length2)},
             bars=(Bar(first, self.pin, "dyad1", self.length1), Bar(second, self.pin, "dyad2", self.length2)),
-            inner=(Turning("dyad1", first), Turning("dyad2", second)),
-            pairs=(Turning("dyad2", self.pin, "dyad1"),),
+            pairs=(Turning("dyad1", first), Turning("dyad2", second), Turning("dyad2", self.pin, "dyad1")),
         )
 
     def place(self, placement):

@@ -209,9 +209,11 @@ class RockerGroup(checks.Checked, Branch, Group):
                 Bar(self.on, self.pin, "coupler", self.coupler_length),
                 Bar(self.pivot_name, self.pin, "rocker", self.rocker_length),
             ),
-            inner=(Turning("coupler", self.on),),
-            pairs=(Turning("rocker", self.pin, "coupler"), Turning("rocker", self.pivot_name)),
-            lengths=(self.coupler_length, self.rocker_length, *self.pivot),
+            pairs=(
+                Turning("coupler", self.on),
+                Turning("rocker", self.pin, "coupler"),
+                Turning("rocker", self.pivot_name),
+            ),
         )
 
     @property
