@@ -46,9 +46,9 @@ from .machine.friction import GuideFriction as GuideFriction
 from .machine.friction import PinFriction as PinFriction
 from .machine.friction import RollerFriction as RollerFriction
 from .machine.friction import SlotFriction as SlotFriction
-from .machine.groups.dyad import Dyad as Dyad
 from .machine.groups.lever import CylinderGroup as CylinderGroup
 from .machine.groups.lever import LeverGroup as LeverGroup
+from .machine.groups.rocker import Dyad as Dyad
 from .machine.groups.rocker import RockerGroup as RockerGroup
 from .machine.groups.slider import SliderGroup as SliderGroup
 from .machine.groups.yoke import YokeGroup as YokeGroup

@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
+from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
-from .group import EMPTY, FRAME, Bar, Group, Output, Point, Resolved
+from .group import EMPTY, FRAME, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
@@ -29,7 +30,7 @@ def pin(ray, length):
 
 
 @dataclass(frozen=True, eq=False)
-class Crank(checks.Checked):
+class Crank(checks.Checked, Part):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
@@ -64,27 +65,14 @@ class Crank(checks.Checked):
         link=checks.InstanceOf(Link, "a Link"),
     )
 
+    PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
+    references: ClassVar = {"crank": "O"}
+    hangs_on = ()
+    TRUSTED = True
+
     @property
     def links(self):
         return {"crank": self.link}
-
-    PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
-    references: ClassVar = {"crank": "O"}
-    own_names: ClassVar = {"crank": "crank"}
-    guides: ClassVar[dict] = {}
-    motions: ClassVar[dict] = {}
-    contacts: ClassVar[dict] = {}
-    curves: ClassVar[dict] = {}
-    pairs: ClassVar = {"O": Turning("crank", "O")}
-    slots = ()
-    led = ()
-    hangs_on = ()
-    trusted = True
-    """True for this class; a class derived from it may do otherwise."""
-
-    def __init_subclass__(cls, **options):
-        super().__init_subclass__(**options)
-        cls.trusted = False
 
     @property
     def names(self):
@@ -92,35 +80,24 @@ class Crank(checks.Checked):
         return (self.length is None,)
 
     @property
-    def reaches(self):
-        """Length of the crank, if any, to estimate the condition; m."""
-        return () if self.length is None else (self.length,)
-
-    @property
-    def lengths(self):
-        """All lengths, the place of the mass centre among them, to estimate the condition; m."""
-        return (*self.link.centre, 0.0 if self.length is None else self.length)
-
-    @property
-    def joints(self):
-        pins = {} if self.length is None else {"A": Point("crank", self.length)}
-        return {"O": Point(FRAME), **pins}
+    def declaration(self):
+        """Joint O, and pin A if the crank has a length."""
+        joints, pairs = {"O": Point(FRAME)}, (Turning("crank", "O"),)
+        if self.length is None:
+            return Declaration(joints, pairs=pairs)
+        return Declaration(
+            joints | {"A": Point("crank", self.length)}, (Bar("O", "A", "crank", self.length),), pairs=pairs
+        )
 
     @property
     def throws(self):
         """Pin A, if the crank has a length."""
         return {} if self.length is None else {"A": Throw((self.length, 0.0), True)}
 
-    @property
-    def bars(self):
-        return () if self.length is None else (Bar("O", "A", "crank", self.length),)
-
-    @property
+    @cached_property
     def outputs(self):
-        return {
-            "O": Output("N", True, "ground on crank"),
-            "balancing_torque": Output("N m", False, "on the crank, counter-clockwise, to keep the motion"),
-        }
+        text = "on the crank, counter-clockwise, to keep the motion"
+        return {**super().outputs, "balancing_torque": Output("N m", False, text)}
 
     def place(self, angle) -> Placement:
         direction = ray(angle)
@@ -175,7 +152,6 @@ class Pin(checks.Checked, Group):
     at: Any
     name: str = "C"
 
-    LINKS: ClassVar[dict[str, str]] = {}
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_"}
     hangs_on, outputs = (), EMPTY

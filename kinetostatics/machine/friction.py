@@ -48,12 +48,21 @@ class PinFriction(checks.Checked, Batched):
     mu: Any
     radius: Any
 
-    PAIR: ClassVar = Turning
     RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN_RADIUS)
 
 
 @dataclass(frozen=True, eq=False)
-class GuideFriction(checks.Checked, Batched):
+class SlidingFriction(checks.Checked, Batched):
+    """Friction of a sliding pair, against its velocity."""
+
+    mu: Any
+    half_length: Any = None
+
+
+SLIDING_RULES = {"mu": COEFFICIENT, "half_length": checks.Optional(SIZE)}
+
+
+class GuideFriction(SlidingFriction):
     """Friction of a slider on its guide, against its velocity.
 
     Parameters
@@ -77,15 +86,10 @@ class GuideFriction(checks.Checked, Batched):
     (0.1, True)
     """
 
-    mu: Any
-    half_length: Any = None
-
-    PAIR: ClassVar = Sliding
-    RULES = checks.Rules("guide friction", mu=COEFFICIENT, half_length=checks.Optional(SIZE))
+    RULES = checks.Rules("guide friction", **SLIDING_RULES)
 
 
-@dataclass(frozen=True, eq=False)
-class SlotFriction(checks.Checked, Batched):
+class SlotFriction(SlidingFriction):
     """Friction of a block or rod in the slot or cylinder of another link, as `GuideFriction` on a guide.
 
     Parameters
@@ -110,11 +114,7 @@ class SlotFriction(checks.Checked, Batched):
     36.7
     """
 
-    mu: Any
-    half_length: Any = None
-
-    PAIR: ClassVar = Sliding
-    RULES = checks.Rules("slot friction", mu=COEFFICIENT, half_length=checks.Optional(SIZE))
+    RULES = checks.Rules("slot friction", **SLIDING_RULES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,11 +160,11 @@ class RollerFriction(checks.Checked, Batched):
                 stuck,
             )
 
-    PAIR: ClassVar = Rolling
     RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN_RADIUS, roller_radius=SIZE)
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
+MOTIONS = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}
 
 
 def friction_kind(pair):
@@ -259,29 +259,24 @@ def friction_problems(mechanism, given):
     for name, friction in given.items():
         if not isinstance(name, str) or name not in pairs:
             yield checks.choice("friction: joint", name, tuple(pairs))
-        elif not isinstance(friction, friction_kind(pairs[name])):
-            wanted = friction_kind(pairs[name]).__name__
-            what = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}[
-                type(pairs[name])
-            ]
-            yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"
+        elif not isinstance(friction, wanted := friction_kind(pairs[name])):
+            what = MOTIONS[type(pairs[name])]
+            yield f"friction: {name!r} {what} and takes a {wanted.__name__}, got {checks.shown(friction)}"
         elif isinstance(pairs[name], Rolling):
             group = next(group for group in mechanism.groups if name in group.pairs)
-            given = friction.roller_radius
-            tightest, roller = getattr(group, "tightest", None), getattr(group, "roller", None)
-            if not checks.has_known_values(given):
-                continue
-            if tightest is not None and checks.has_known_values(tightest) and np.any(np.asarray(given) >= tightest):
-                yield (
-                    f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be less than the smallest "
-                    f"radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
-                    "smaller roller or a larger cam"
-                )
-            if roller is None or not checks.has_known_values(roller.radius):
-                continue
-            if np.any(other := np.asarray(given) != roller.radius):
-                yield checks.Problem(
-                    f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be that of the roller of its "
-                    f"group, {np.max(roller.radius):.6g} m",
-                    other,
-                )
+            own = getattr(getattr(group, "roller", None), "radius", None)
+            yield from _roller_problems(name, friction.roller_radius, getattr(group, "tightest", None), own)
+
+
+def _roller_problems(name, given, tightest, own):
+    """Yield problems of a roller's radius beside that of the curvature of its path and that of its group."""
+    if not checks.has_known_values(given):
+        return
+    words = f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be"
+    if tightest is not None and checks.has_known_values(tightest) and np.any(np.asarray(given) >= tightest):
+        yield (
+            f"{words} less than the smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has "
+            "such a profile; give a smaller roller or a larger cam"
+        )
+    if own is not None and checks.has_known_values(own) and np.any(other := np.asarray(given) != own):
+        yield checks.Problem(f"{words} that of the roller of its group, {np.max(own):.6g} m", other)

@@ -138,8 +138,8 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 class Declaration(NamedTuple):
     """Parts of a group, called without the label.
 
-    `inner` holds the pairs at the joints it hangs on, `pairs` all others; `Group` names and describes their reactions.
-    `lengths` holds the numbers in m, but for mass centres.
+    `Group` names and describes the reactions of `pairs`. `lengths` holds the numbers in m, but for mass centres: by
+    default bars, offsets of guides and slots, and fixed joints.
     """
 
     joints: Mapping[str, Point] = EMPTY
@@ -147,7 +147,6 @@ class Declaration(NamedTuple):
     guides: Mapping[str, Any] = EMPTY
     slots: tuple[Slot, ...] = ()
     led: tuple[CamDriven, ...] = ()
-    inner: tuple[Turning, ...] = ()
     pairs: tuple[Turning | Sliding, ...] = ()
     motions: Mapping[str, Output] = EMPTY
     contacts: Mapping[str, Any] = EMPTY
@@ -170,41 +169,28 @@ def _declared(table, doc):
     return property(entries, doc=doc)
 
 
-class Group:
-    """Structural group: tables of its parts and results, with the label; see the module."""
+class Part:
+    """Crank or structural group: tables of its parts and results, with the label; see the module."""
 
-    LINKS: ClassVar[dict[str, str]]
+    LINKS: ClassVar[dict[str, str]] = {}
     """Fields that hold links, which give them their names, and for each the field that names its reference joint."""
-    LAW = ("r", "m")
-    """Letter and unit of what a curve in the field `cam` gives."""
     TRUSTED = False
     """Whether tests show that its forces balance and that its names come from its texts: the library's own."""
     trusted = False
     """`TRUSTED` of its own class: a class derived from it may do otherwise."""
     declaration: Any = Declaration()
-    passage, is_close = "", False
-    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
-
-    def __init_subclass__(cls, **options):
-        super().__init_subclass__(**options)
-        cls.trusted = vars(cls).get("TRUSTED", False)
-
-    is_rigid_triangle = False
-    """Whether its links never turn against the link that carries all joints it hangs on, if that is one."""
     label: Any = ""
     """Ending of its names, and of paths of its numbers, that tells them from those of another of its kind."""
-    knots: Any = ()
-    """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
     curves: Any = EMPTY
     """Joints that run on a curve, with what drawings call it."""
     rollers: Any = EMPTY
     """Radii of rollers by the joints that are their centres, m; None where it is not known."""
-    outlines: Any = EMPTY
-    """Curves fixed to links, points (2, K) in the axes of each."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
-    turns: Any = 1
-    """Turns of the crank after which its branch closes."""
+
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        cls.trusted = vars(cls).get("TRUSTED", False)
 
     # Names
 
@@ -243,10 +229,6 @@ class Group:
         """Name without the label of each of its links."""
         return {name: name.removesuffix(self.label) or name for name in self.links}
 
-    def with_link(self: Any, name, link):
-        """The group with other mass properties of one link, whose field is called as the link but for the label."""
-        return replace(self, **{self.own_names[name]: link})
-
     @property
     def joints(self) -> dict[str, Point]:
         return {name: self._renamed(point) for name, point in self.declaration.joints.items()}
@@ -261,8 +243,12 @@ class Group:
     @property
     def lengths(self):
         """All lengths, places of mass centres among them, to estimate the condition; m."""
-        own = self.declaration.lengths or [bar.length for bar in self.bars]
-        return (*own, *(part for name in getattr(self, "LINKS", ()) for part in getattr(self, name).centre))
+        own = self.declaration.lengths
+        if not own:
+            fixed = (point for point in self.joints.values() if point.link == FRAME)
+            own = [bar.length for bar in self.bars] + [guide.guide_offset for guide in self.guides.values()]
+            own += [part for point in fixed for part in point[1:]] + [slot.offset for slot in self.slots]
+        return (*own, *(part for link in self.links.values() for part in link.centre))
 
     @property
     def reaches(self):
@@ -279,13 +265,14 @@ class Group:
         several; that of a slider as its force, but for the ending.
         """
         found: dict[str, Any] = {}
-        inner = self.declaration.inner
-        for pair in inner:
-            name = self.called(pair.joint) if len(inner) == 1 else f"{self.called(pair.link)}_{pair.joint}"
-            found[name] = self._renamed(pair)
         for pair in self.declaration.pairs:
-            is_pin = isinstance(pair, Turning)
-            found[pair.joint if is_pin else self.called(pair.force.removesuffix("_force"))] = self._renamed(pair)
+            if isinstance(pair, Sliding):
+                name = self.called(pair.force.removesuffix("_force"))
+            elif pair.joint not in self.hangs_on:
+                name = pair.joint
+            else:
+                name = self.called(pair.joint) if len(self.hangs_on) == 1 else f"{self.called(pair.link)}_{pair.joint}"
+            found[name] = self._renamed(pair)
         return found
 
     @cached_property
@@ -309,7 +296,26 @@ class Group:
                 found[name] = Output("N", True, f"{pair.against or 'ground'} on {pair.link}")
         return found
 
-    # Placing and resolving
+
+class Group(Part):
+    """Structural group: how it is placed and resolved, besides its tables; see the module."""
+
+    LAW = ("r", "m")
+    """Letter and unit of what a curve in the field `cam` gives."""
+    passage, is_close = "", False
+    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
+    is_rigid_triangle = False
+    """Whether its links never turn against the link that carries all joints it hangs on, if that is one."""
+    knots: Any = ()
+    """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
+    outlines: Any = EMPTY
+    """Curves fixed to links, points (2, K) in the axes of each."""
+    turns: Any = 1
+    """Turns of the crank after which its branch closes."""
+
+    def with_link(self: Any, name, link):
+        """The group with other mass properties of one link, whose field is called as the link but for the label."""
+        return replace(self, **{self.own_names[name]: link})
 
     def of_links(self, table) -> Any:
         """Entries of a table for its links, in the order of `LINKS`; None without one."""

@@ -57,16 +57,8 @@ class Orbit(NamedTuple):
 class Course(NamedTuple):
     """Motion of a joint that is known without the rounding of its position; None: unknown.
 
-    Attributes
-    ----------
-    throw : Throw
-        For a pin of the crank.
-    swing : Swing
-        For a joint that a link swings about a fixed place.
-    orbit : Orbit
-        For a joint on the crank ray.
-    departure : vector
-        Sum of position and second derivative; zero for a throw, and left out.
+    A pin of the crank has a `throw`, a joint that a link swings about a fixed place a `swing`, one on the crank ray an
+    `orbit`. `departure` is the sum of position and second derivative; zero for a throw, and left out.
     """
 
     throw: Throw | None = None
@@ -82,18 +74,9 @@ UNKNOWN_COURSE = Course()
 class Placement:
     """Mechanism at its crank angles, in tables that the groups fill from the crank outwards.
 
-    Attributes
-    ----------
-    angle, ray : array and unit vector
-        Crank angle, and direction of the crank.
-    joints, links : dict
-        A `Joint` or `LinkMotion` by name.
-    travels : dict
-        Coordinate along its guide by slider, with kinematic coefficients.
-    courses : dict
-        `Course` by joint, if known.
-    details : dict
-        Motion that a group needs again, by its first link.
+    `ray` is the direction of the crank. `joints` and `links` are by name; `travels` holds coordinates along guides with
+    kinematic coefficients by slider, `courses` a `Course` by joint if it is known, `details` the motion that a group
+    needs again by its first link.
     """
 
     angle: Any
@@ -123,21 +106,23 @@ def place(group, placement):
             f"{owner} hangs on {hung}, but its place asks for {error}; it finds there what earlier parts of the chain "
             "place, and what it adds itself"
         ) from error
-    problems = []
-    declared = (
-        ("joint", "joints", "joints", group.joints, Joint),
-        ("link", "links", "links", group.links, LinkMotion),
-        ("travel of", "travels", "guides", group.guides, Joint),
-    )
-    for what, table, declaring, names, kind in declared:
-        found = getattr(placement, table)
-        problems += [
-            f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its {declaring} "
-            f"declare, but puts {checks.shown(found[name]) if name in found else 'none'}"
-            for name in names
-            if not isinstance(found.get(name), kind)
-        ]
+    problems = [
+        f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its {declaring} "
+        f"declare, but puts {checks.shown(found[name]) if name in found else 'none'}"
+        for what, table, declaring, kind in PLACED
+        for found in (getattr(placement, table),)
+        for name in getattr(group, declaring)
+        if not isinstance(found.get(name), kind)
+    ]
     checks.require(owner, *problems)
+
+
+PLACED = (
+    ("joint", "joints", "joints", Joint),
+    ("link", "links", "links", LinkMotion),
+    ("travel of", "travels", "guides", Joint),
+)
+"""Word for what a group places, its table in a `Placement`, the group's table that declares it, and its class."""
 
 
 def margin(group, placement, shape):
@@ -146,20 +131,24 @@ def margin(group, placement, shape):
     if group.trusted:
         return found
     words = "one value, not several" if isinstance(found, list | tuple) else checks.not_a_number(found)
-    if getattr(found, "dtype", np.dtype(float)) == np.dtype(bool):
+    if getattr(found, "dtype", None) == np.dtype(bool):
         words = "truth values; give numbers"
-    if words is None:
-        try:
-            fits = np.broadcast_shapes(np.shape(found), shape) == tuple(shape)
-        except ValueError:
-            fits = False
-        words = None if fits else f"of shape {np.shape(found)}"
+    if words is None and not _fits(np.shape(found), tuple(shape)):
+        words = f"of shape {np.shape(found)}"
     text = "a number, or an array with a value for each crank angle"
     checks.require(
         type(group).__name__,
         words and f"its closure must return its margin, {text}, got {checks.shown(found)}, {words}",
     )
     return found
+
+
+def _fits(shape, wanted):
+    """Whether arrays of a shape broadcast to the wanted one."""
+    try:
+        return np.broadcast_shapes(shape, wanted) == wanted
+    except ValueError:
+        return False
 
 
 def require_positions(group, placement, margins):

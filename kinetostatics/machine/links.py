@@ -32,7 +32,6 @@ from ..numbers.planar import (
 )
 
 TERMS = {
-    "joint_at.reach": ("h", "from the reference joint to the point"),
     "load.scale": ("W", "mass times the square of the crank speed"),
     "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
 }

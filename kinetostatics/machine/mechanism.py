@@ -25,7 +25,6 @@ from .links import Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
 
 NAME = checks.Name()
-GROUP_CLASS = f"{Group.__module__}.{Group.__name__}"
 
 
 class GroupsRule:
@@ -44,11 +43,11 @@ class GroupsRule:
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.check(group, "a group") for group in value]
-        found += [NAME.check(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
-        strange = [group for group in value if not isinstance(group, Group)]
-        found += [(group, f"{type(group).__name__} is not derived from {GROUP_CLASS}") for group in strange]
-        problem = next((problem for _, problem in found if problem), None)
-        return tuple(group for group, _ in found[: len(value)]), problem
+        problems = [problem for _, problem in found]
+        problems += [NAME.check(name, f"on of {type(group).__name__}")[1] for group in value for name in _on(group)]
+        strange = (type(group).__name__ for group in value if not isinstance(group, Group))
+        problems += [f"{name} is not derived from {Group.__module__}.{Group.__name__}" for name in strange]
+        return tuple(group for group, _ in found), next(filter(None, problems), None)
 
 
 def _on(group):
@@ -58,20 +57,18 @@ def _on(group):
 
 
 NAME_REMEDY = "give the second group another pin, pivot_name or label"
+MARK = 0xE000
+"""First of the characters that stand for texts of a part; none is in use."""
 
 
 def _spelled(part, table):
     """Names in a table of a part; for the library's own parts with repetitions, which a dict drops."""
     if not part.trusted:
         return list(getattr(part, table))
-    texts = {field.name: getattr(part, field.name) for field in fields(part)}
-    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
-    found = []
-    for spelled in getattr(replace_unchecked(part, **marks), table):
-        for name, mark in marks.items():
-            spelled = spelled.replace(mark, texts[name])
-        found.append(spelled)
-    return found
+    texts = {field.name: text for field in fields(part) if type(text := getattr(part, field.name)) is str}
+    marks = {name: chr(MARK + place) for place, name in enumerate(texts)}
+    back = str.maketrans({marks[name]: text for name, text in texts.items()})
+    return [spelled.translate(back) for spelled in getattr(replace_unchecked(part, **marks), table)]
 
 
 def name_problems(parts):
@@ -117,13 +114,16 @@ def name_problems(parts):
     return [*problems, *repeated, *([NAME_REMEDY] if repeated else [])]
 
 
-def _collected(mechanism, table):
-    return {name: item for part in mechanism.parts for name, item in getattr(part, table).items()}
-
-
 def _table(name, doc):
-    """Cached property: a table of all parts, from the crank outwards."""
-    found = cached_property(lambda mechanism: _collected(mechanism, name))
+    """Cached property: a table of all parts, or all entries of one, from the crank outwards."""
+
+    def collect(mechanism):
+        tables = [getattr(part, name) for part in mechanism.parts]
+        if isinstance(tables[0], tuple):
+            return sum(tables, ())
+        return {key: item for table in tables for key, item in table.items()}
+
+    found = cached_property(collect)
     found.__doc__ = doc
     return found
 
@@ -186,14 +186,7 @@ class Mechanism(Batched):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
 
-    @cached_property
-    def throws(self):
-        """Pins of the crank by joint, each a `Throw`."""
-        found = self.crank.throws
-        for group in self.groups:
-            if group.throws:
-                found = found | group.throws
-        return found
+    throws = _table("throws", "Pins of the crank by joint, each a `Throw`.")
 
     @cached_property
     def turns(self):
@@ -242,7 +235,7 @@ class Mechanism(Batched):
     @cached_property
     def pairs(self):
         """Pairs of links by reaction; a pin turns by default against the link that carries it."""
-        found = _collected(self, "pairs")
+        found = {name: pair for part in self.parts for name, pair in part.pairs.items()}
         whole: dict[str, str] = {}  # link to which each link of a rigid triangle belongs
         for group in self.groups:
             carriers = {self.joints[name].link for name in group.hangs_on} if group.is_rigid_triangle else ()
@@ -273,15 +266,9 @@ class Mechanism(Batched):
     own_names = _table("own_names", "Name of each link without the label of its group.")
     curves = _table("curves", "Title in drawings of the curve that a joint runs on, by joint.")
 
-    @property
-    def slots(self):
-        """Links in which a joint slides, each as a `Slot`."""
-        return sum((group.slots for group in self.groups), ())
-
-    @property
-    def rollers(self):
-        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
-        return {joint: radius for group in self.groups for joint, radius in group.rollers.items()}
+    slots = _table("slots", "Links in which a joint slides, each as a `Slot`.")
+    rollers = _table("rollers", "Radii of rollers by the joints that are their centres, m; None if it is not known.")
+    bars = _table("bars", "Links that keep two joints at a distance, from the crank outwards.")
 
     @cached_property
     def hints(self):
@@ -302,11 +289,6 @@ class Mechanism(Batched):
         shortest = min(lengths, default=math.inf) if are_floats else reduce(np.minimum, lengths, math.inf)
         found = self.extent / shortest
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
-
-    @cached_property
-    def bars(self):
-        """Links that keep two joints at a distance, from the crank outwards."""
-        return sum((group.bars for group in self.groups), self.crank.bars)
 
     @property
     def couplers(self):

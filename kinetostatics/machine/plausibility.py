@@ -106,11 +106,7 @@ def compared_sizes(mechanism):
         if (link := mechanism.links.get(bar.link)) is not None and bar.link not in mechanism.crank.links
         if present(link.inertia) is not None and present(link.mass) is not None
     ]
-    arms = []
-    for bar, _ in _on_arms(mechanism):
-        _, along, across = mechanism.joints[bar.start]
-        away = abs(along) if present(across) is None else sqrt(along * along + across * across)
-        arms.append((bar.length, away - bar.length))
+    arms = [(bar.length, away - bar.length) for bar, _, away in _on_arms(mechanism)]
     return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, turning, arms
 
 
@@ -119,11 +115,9 @@ def _still(mechanism):
 
     That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
-    for bar, slider in _on_arms(mechanism):
-        _, along, across = mechanism.joints[bar.start]
-        if not all(map(checks.has_known_values, (along, across, bar.length))):
-            continue
-        if np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length):
+    for bar, slider, away in _on_arms(mechanism):
+        are_known = checks.has_known_values(away) and checks.has_known_values(bar.length)
+        if are_known and np.any(abs(away - bar.length) <= 1e-9 * bar.length):
             angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
             rate = np.abs(mechanism.place(angle).travels[slider].first)
             if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
@@ -134,11 +128,12 @@ def _still(mechanism):
 
 
 def _on_arms(mechanism):
-    """Bars from a joint on a link that turns about a fixed pivot to a slider, each with that slider."""
+    """Bars from a joint on a link that turns about a fixed pivot to a slider, with that and the joint's arm, m."""
     for bar in mechanism.bars:
         arm, slider = (mechanism.joints[end].link for end in (bar.start, bar.end))
         if slider in mechanism.guides and arm != FRAME and mechanism.joints[mechanism.references[arm]].link == FRAME:
-            yield bar, slider
+            _, along, across = mechanism.joints[bar.start]
+            yield bar, slider, abs(along) if present(across) is None else sqrt(along * along + across * across)
 
 
 def _inertia(bar, link, crank):
@@ -146,9 +141,9 @@ def _inertia(bar, link, crank):
     if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
-    if _any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
+    if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
-    elif bar.link not in crank.links and _any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
+    elif bar.link not in crank.links and np.any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
         # the inertia of a crank may include the drive
         times = inertia / np.where(unit > 0, unit, np.inf)
         worst = np.argmax(times)
@@ -213,9 +208,5 @@ def _whole(number):
     return abs(number - round(number)) < 1e-9
 
 
-def _any(condition):
-    return condition if isinstance(condition, bool) else bool(np.any(condition))
-
-
 def _most(values):
-    return values if isinstance(values, float) else float(np.max(values))
+    return float(np.max(values))

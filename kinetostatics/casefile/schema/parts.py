@@ -9,9 +9,8 @@ from pydantic import BeforeValidator
 
 from ...machine.cams.cam_roller import CamRoller
 from ...machine.crank import Pin
-from ...machine.groups.dyad import Dyad
 from ...machine.groups.lever import CylinderGroup, LeverGroup
-from ...machine.groups.rocker import RockerGroup
+from ...machine.groups.rocker import Dyad, RockerGroup
 from ...machine.groups.slider import SliderGroup
 from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide

@@ -42,11 +42,16 @@ class Branch:
     """Kinds of change points, in messages."""
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
-    sizes: ClassVar[Any]
-    """Lengths that decide on change points, besides the radius of the pin and the length of `start`."""
-    change_kinds: ClassVar[Any]
-    """``change_kinds(radius, distance, *sizes)``: masks of designs by kind of change points; the first one counts."""
     offset = 0.0
+
+    @property
+    def sizes(self):
+        """Lengths that decide on change points, besides the radius of the pin and the length of `start`."""
+        return ()
+
+    def change_kinds(self, radius, distance, *sizes):
+        """Masks of designs by kind of change points, the first of which counts, from lengths in m."""
+        return {}
 
     @property
     def start(self: Any):
@@ -106,7 +111,7 @@ class Branch:
         x, y = rotate_back((x, y), direction)
         if direction is not None:
             y = np.where(abs(y) <= equality(x), 0.0, y)
-        masks = self.change_kinds(radius, np.sqrt(x * x + y * y), *sizes)
+        masks: dict = self.change_kinds(radius, np.sqrt(x * x + y * y), *sizes)
         kind = np.select(list(masks.values()), list(masks), "")
         facing = np.where(x >= 0, 0, np.where(y >= 0, 1, -1))
         problems = []

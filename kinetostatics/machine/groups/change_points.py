@@ -118,13 +118,8 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     elif side < 0 and kind != PARALLEL:
         # a folded kite: B stays on O, the coupler on the crank, the rocker on the ground
         back = (-pivot[0] / d, -pivot[1] / d)
-        found = (
-            (subtract_vectors(None, placement.ray), 1.0, None),
-            (back, None, None),
-            1.0,
-            1.0,
-            cross(back, placement.ray),
-        )
+        crank = subtract_vectors(None, placement.ray), 1.0, None
+        found = crank, (back, None, None), 1.0, 1.0, cross(back, placement.ray)
     else:
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
@@ -149,19 +144,9 @@ def slid(placement, on, coupler_length, guide, passage, side):
         return side * a * along, ratio, None, (float(side), offset_from_zero(along, MIN_DISTANCE)), 1.0
     half = _half(placement.angle, (y, -x), 1.0, facing)
     constant = compensated_sum(b, e if kind == NEAR else -e, -a, minus(None, slack))
-    passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
-    square, size = constant + 2.0 * a * other * other, 2.0 * b
-    height = clamped_sqrt(square, size)
-    divided = guarded_divisor(height, MIN_ROOT * sqrt(size))
-    reach = side * sqrt(2.0 * a)
-    bend = 0.5 * reach * constant / (divided * divided * divided) * passed
-    return (
-        reach * passed * height,
-        -reach * other / divided,
-        -bend if kind == FAR else bend,
-        (reach / b * divided, offset_from_zero(passed, MIN_DISTANCE)),
-        square / size,
-    )
+    height, closure, rate, bend, factor, passed = _swung(kind, half, 0.5 * a, 2.0 * b, constant, side)
+    reach = side * sqrt(2.0 * a) * passed * height
+    return reach, -2.0 * rate, -2.0 * bend, (factor, offset_from_zero(passed, MIN_DISTANCE)), closure
 
 
 def slotted(placement, on, pivot, offset, passage, side):
@@ -222,18 +207,18 @@ def _mirrored(half, kind, a, d, m, side):
     return coupler, rocker, square / (n * n), 2.0 * side, sine * cosine
 
 
-def _swung(kind, half, a, d, size, constant, side):
-    """Root of the factor that is no whole square, and what follows from it.
+def _swung(kind, half, spread, size, constant, side):
+    """Root of the factor that is no whole square, constant + 4 spread (sine or cosine)^2, and what follows from it.
 
     That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
-    its divisor.
+    its divisor. The spread of a four-bar is a d, of a slider, whose pivot is far away, a / 2.
     """
     cosine, sine, _ = half
     passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
-    square = constant + 4.0 * a * d * other * other
+    square = constant + 4.0 * spread * other * other
     height = clamped_sqrt(square, size)
     divided = guarded_divisor(height, MIN_ROOT * sqrt(size))
-    reach = sqrt(a * d)
+    reach = sqrt(spread)
     rate = side * reach * other / divided
     bend = 0.5 * side * reach * constant / (divided * divided * divided) * passed
     return height, square / size, rate, bend if kind == FAR else -bend, side * reach / (0.25 * size) * divided, passed
@@ -243,7 +228,7 @@ def _single(half, kind, a, b, h, d, constant, m, side):
     """One change point, with A clear of O2."""
     cosine, sine, frame = half
     n, gap, both = d + a, b - h, b + h
-    height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
+    height, closure, rate, bend, factor, passed = _swung(kind, half, a * d, 4.0 * b * h, constant, side)
     x, y = m * cosine, n * sine
     square = x * x + y * y
     if kind == NEAR:  # with A almost on O2 links turn fast
@@ -269,7 +254,7 @@ def _single(half, kind, a, b, h, d, constant, m, side):
 
 def _meeting(half, a, b, h, d, constant, side):
     """Deltoid of equal crank and ground: A meets O2, but B goes on."""
-    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, constant, side)
+    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a * d, 4.0 * b * h, constant, side)
     x, y = side * height, (d + a) * half.sine
     coupler = rotate((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
     rocker = rotate((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend

@@ -132,9 +132,7 @@ class RPRGroup(checks.Checked, Branch, Group):
         return Declaration(
             joints={self.pivot_name: Point(FRAME, *self.pivot)},
             slots=(Slot(self.LEVER, self.on, self.BLOCK if self.is_rod else "", self.offset),),
-            inner=(Turning(self.BLOCK, self.on),),
-            pairs=(Turning(self.LEVER, self.pivot_name), pair),
-            lengths=(*self.pivot, self.offset),
+            pairs=(Turning(self.BLOCK, self.on), Turning(self.LEVER, self.pivot_name), pair),
         )
 
     def sliding(self, name, placement):

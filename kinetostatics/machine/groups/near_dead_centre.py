@@ -28,7 +28,6 @@ by the sign of q. It is used where the coupler leans little and is not much long
 batch use the same formulas, so a design may change in its last bits with its batch.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -92,25 +91,11 @@ TERMS = {
 
 
 class PivotFromPin(NamedTuple):
-    """Line from a pin of the crank to a pivot.
+    """Line `d` from a pin of the crank to a pivot, and its squared length.
 
-    Attributes
-    ----------
-    radius, ground : float or array
-        From O to the pin and to the pivot.
-    slack, rest : float or array or None
-        Rests that rounding took off these.
-    gap : float or array
-        Distance of the pivot from O less that of the pin.
-    turn : array
-        Sine of the crank angle from the direction of the pivot, in units of `reach`.
-    near_by, far_off : array
-        Squared distances of the crank ray from that direction and from its opposite, in units of the square of `reach`.
-    reach : float or array
-    d : vector
-        From the pin to the pivot.
-    square : array
-        Square of that distance.
+    `radius` and `ground` go from O to pin and pivot; `slack` and `rest` are what rounding took off these, `gap` is
+    their difference. From the direction of the pivot, as a vector of length `reach`, `turn` is its cross product with
+    the crank ray, `near_by` and `far_off` are squared distances of its tip and its opposite from the ray's tip.
     """
 
     radius: Any
@@ -252,29 +237,17 @@ def slotted(placement, on, pivot, offset, assembly):
     return direction, ratio, slope, reach, (divided, None), near / (square + a * a)
 
 
-def has_small_clearance(throw, offset, length):
+def has_small_clearance(throw, offset, size):
     """Whether a length, or the distance of a pivot, more or less an offset, is nearly the radius of a pin of the crank.
 
     In any design of a batch.
     """
-    if isinstance(length, tuple):
-        x, y = length
-        if type(x) is type(y) is float:
-            length = math.hypot(x, y)
-        elif not all(map(checks.has_known_values, length)):
-            return False
-        else:
-            length = np.hypot(x, y)
-    radius = throw.at[0] if throw.ahead else None
-    if type(radius) is type(offset) is type(length) is float:
-        unit = CLOSE_SHARE * (length + radius)
-        return abs(abs(length + offset) - radius) < unit or abs(abs(length - offset) - radius) < unit
-    if not all(map(checks.has_known_values, (*throw.at, offset, length))):
+    parts = size if isinstance(size, tuple) else (size,)
+    if not all(map(checks.has_known_values, (*throw.at, offset, *parts))):
         return False
-    radius, offset, length = map(np.asarray, (throw.polar[0], offset, length))
-    far, near = abs(length + offset) - radius, abs(length - offset) - radius
-    unit = CLOSE_SHARE * (length + radius)
-    return bool(np.any((abs(far) < unit) | (abs(near) < unit)))
+    radius, away = throw.polar[0], length(size) if isinstance(size, tuple) else size
+    unit = CLOSE_SHARE * (away + radius)
+    return bool(np.any((abs(abs(away + offset) - radius) < unit) | (abs(abs(away - offset) - radius) < unit)))
 
 
 def shortfall(length, sine, cosine):

@@ -1,4 +1,4 @@
-"""Rocker group (RRR): coupler from a pin to a rocker about a fixed pivot, in either assembly.
+"""RRR groups: coupler from a pin to a rocker about a fixed pivot, in either assembly; dyad between two moving joints.
 
 With d the vector from joint A to the pivot O2, a = |d|, coupler length c and rocker length h, joint B stands from A at
 (a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
@@ -6,6 +6,8 @@ that of the triangle A B O2 (Heron). The sine of the transmission angle, which d
 area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
 
 On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
+
+Seen from its second joint a dyad is a rocker group whose pivot stands still.
 """
 
 from dataclasses import dataclass, field
@@ -28,7 +30,7 @@ from ...numbers.planar import (
 )
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
-from ..links import Joint, Link, LinkMotion, Turning, joint_at, link_between
+from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
 from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS, divide
@@ -126,8 +128,72 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     return subtract_vectors(pin, coupler_load.force), pin, pivot
 
 
+class TwoJoints:
+    """Rule of the two joints that a dyad hangs on."""
+
+    rule = checks.Name()
+
+    def quick(self, value):
+        named = type(value) is tuple and len(value) == 2 and all(self.rule.quick(name) is name for name in value)
+        return value if named and value[0] != value[1] else checks.UNDECIDED
+
+    def check(self, value, field=""):
+        if not isinstance(value, tuple | list) or len(value) != 2:
+            return value, f"{field} must be the names of two joints, got {checks.shown(value)}"
+        found = [self.rule.check(name, f"{field} {place}") for place, name in enumerate(value, 1)]
+        problem = found[0][1] or found[1][1]
+        if problem is None and value[0] == value[1]:
+            problem = f"{field} must name two different joints, got {value[0]!r} twice"
+        return tuple(name for name, _ in found), problem
+
+
+def relative(first, second, length1, length2, assembly):
+    """Both links for two moving joints, by the motion of the first one as seen from the second (kernel)."""
+    passing = (subtract_vectors(first.first, second.first), subtract_vectors(first.second, second.second))
+    seen = place(Joint(first.position, *passing), length1, length2, second.position, assembly)
+    pin = Joint(
+        seen.pin.position, add_vectors(seen.pin.first, second.first), add_vectors(seen.pin.second, second.second)
+    )
+    return seen._replace(coupler=seen.coupler._replace(joint=first), rocker=seen.rocker._replace(joint=second), pin=pin)
+
+
+class RRRGroup(checks.Checked, Group):
+    """Two links that meet at the joint `pin`, the ends of their bars."""
+
+    pin: str
+    LENGTHS: ClassVar[str]
+    """Their lengths in the requirement."""
+
+    def _enter(self, placement, motion):
+        self.enter(placement, motion, {self.pin: motion.pin})
+
+    def follow(self, placement, joints):
+        """Place both links at known joints."""
+        first, second = self.bars
+        for name, point in self.joints.items():
+            if point.link == FRAME:
+                placement.joints[name] = Joint(point[1:], None, None)
+        ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
+        self._enter(placement, between(*ends, first.length, second.length))
+
+    def closure(self, placement):
+        """Squared sine of the angle between the links."""
+        return self.placed(placement).closure
+
+    def requirement(self, placement):
+        first, second = self.bars
+        low, high = np.min(abs(first.length - second.length)), np.max(first.length + second.length)
+        apart = separation(placement, first.start, second.start)
+        lengths = self.LENGTHS.format(first.link, second.link)
+        return f"{apart} lie between the difference and the sum of {lengths}, {low:.6g} and {high:.6g} m"
+
+    def _forces(self, placement, loads):
+        lengths = (bar.length for bar in self.declaration.bars)
+        return resolve(self.placed(placement), *lengths, *self.of_links(loads))
+
+
 @dataclass(frozen=True, eq=False)
-class RockerGroup(checks.Checked, Branch, Group):
+class RockerGroup(Branch, RRRGroup):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -180,6 +246,7 @@ class RockerGroup(checks.Checked, Branch, Group):
     """Axis of the toggle that it makes with a slider."""
 
     LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
+    LENGTHS = "coupler and rocker lengths"
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
     KINDS: ClassVar = {
@@ -209,9 +276,11 @@ class RockerGroup(checks.Checked, Branch, Group):
                 Bar(self.on, self.pin, "coupler", self.coupler_length),
                 Bar(self.pivot_name, self.pin, "rocker", self.rocker_length),
             ),
-            inner=(Turning("coupler", self.on),),
-            pairs=(Turning("rocker", self.pin, "coupler"), Turning("rocker", self.pivot_name)),
-            lengths=(self.coupler_length, self.rocker_length, *self.pivot),
+            pairs=(
+                Turning("coupler", self.on),
+                Turning("rocker", self.pin, "coupler"),
+                Turning("rocker", self.pivot_name),
+            ),
         )
 
     @property
@@ -250,23 +319,103 @@ class RockerGroup(checks.Checked, Branch, Group):
             rocker = (p, *rocker[1:])
         return self._enter(placement, joined(joint, *given[1:], coupler, rocker, *rest))
 
-    def follow(self, placement, joints):
-        """Place coupler and rocker at known joints."""
-        ends = placement.joints[self.on], Joint(self.pivot, None, None), joints[self.pin]
-        self._enter(placement, between(*ends, self.coupler_length, self.rocker_length))
-
     def _enter(self, placement, motion):
-        self.enter(placement, motion, {self.pin: motion.pin})
+        super()._enter(placement, motion)
         swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.courses[self.pin] = Course(swing=swing)
 
-    def requirement(self, placement):
-        low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
-        return (
-            f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
-            f"rocker lengths, {np.min(low):.6g} and {np.max(high):.6g} m"
+    def resolve(self, placement, loads, along) -> Resolved:
+        return self.resolved(self._forces(placement, loads))
+
+
+@dataclass(frozen=True, eq=False)
+class Dyad(RRRGroup):
+    """Two links from the joints `on` to a joint `pin` that they share, as between two arms of a Watt chain.
+
+    Parameters
+    ----------
+    length1, length2 : float or array
+        From the first and from the second joint to the pin, m.
+    on : (str, str)
+        Names of the joints it hangs on, which may both move.
+    pin : str
+        Name of the joint it adds.
+    assembly : +1 or -1
+        +1: the pin to the left of the direction from the first joint to the second.
+    dyad1, dyad2 : Link
+        Reference joints are those they hang on, directions run from there to the pin.
+    label : str
+        Appended to the names of links and forces of a second dyad in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or the same joint twice.
+
+    Notes
+    -----
+    Reactions, vectors in N: "dyad1_B" on the first link from what carries B (the name of the joint it hangs on),
+    "dyad2_C" on the second likewise, and `pin`, of the first link on the second.
+
+    Examples
+    --------
+    Two cranks of one shaft, and a rod on each:
+
+    >>> import kinetostatics as ks
+    >>> parts = ks.Pin(on="crank", at=(0.0, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"))
+    >>> s = ks.solve(ks.Mechanism("rigid triangle", ks.Crank(0.1), parts), 0.0, crank_speed=10.0)
+    >>> bool(abs(s.rate("dyad1") - 10.0) < 1e-12)
+    True
+    """
+
+    length1: Any
+    length2: Any
+    on: Any = ("B", "C")
+    pin: str = "D"
+    assembly: int = 1
+    dyad1: Link = Link()
+    dyad2: Link = Link()
+    label: str = ""
+
+    LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
+    LENGTHS = "the lengths of {} and {}"
+    TRUSTED = is_rigid_triangle = True
+    PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
+    RULES = checks.Rules(
+        "dyad",
+        length1=checks.Number("m", low=0.0, strict=True),
+        length2=checks.Number("m", low=0.0, strict=True),
+        on=TwoJoints(),
+        assembly=checks.Sign(),
+        **rules_of_parts(("dyad1", "dyad2"), "pin"),
+    )
+
+    @property
+    def hangs_on(self):
+        return self.on
+
+    @property
+    def names(self):
+        return [*super().names, *self.on]
+
+    @property
+    def references(self):
+        return dict(zip(self.links, self.on, strict=True))
+
+    @property
+    def declaration(self):
+        first, second = self.on
+        return Declaration(
+            joints={self.pin: Point("dyad2", self.length2)},
+            bars=(Bar(first, self.pin, "dyad1", self.length1), Bar(second, self.pin, "dyad2", self.length2)),
+            pairs=(Turning("dyad1", first), Turning("dyad2", second), Turning("dyad2", self.pin, "dyad1")),
         )
 
+    def place(self, placement):
+        first, second = (placement.joints[name] for name in self.on)
+        self._enter(placement, relative(first, second, self.length1, self.length2, self.assembly))
+
     def resolve(self, placement, loads, along) -> Resolved:
-        lengths = self.coupler_length, self.rocker_length
-        return self.resolved(resolve(self.placed(placement), *lengths, *self.of_links(loads)))
+        first, pin, second = self._forces(placement, loads)
+        demands = {name: Wrench(force, None) for name, force in zip(self.on, (first, second), strict=True)}
+        return self.resolved((first, second, pin), demands=demands)

@@ -186,12 +186,11 @@ class SliderGroup(checks.Checked, Branch, Group):
             joints={self.pin: Point("slider")},
             bars=(Bar(self.on, self.pin, "coupler", self.coupler_length),),
             guides={"slider": self.guide},
-            inner=(Turning("coupler", self.on),),
             pairs=(
+                Turning("coupler", self.on),
                 Turning("slider", self.pin, "coupler"),
                 Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
             ),
-            lengths=(self.coupler_length, self.guide.guide_offset),
         )
 
     def sliding(self, name, placement):

@@ -156,12 +156,11 @@ class YokeGroup(checks.Checked, Group):
             joints={self.pin: Point("slider")},
             guides={"slider": self.guide},
             slots=(Slot("slider", self.on, angle=self.slot_angle),),
-            inner=(Turning("block", self.on),),
             pairs=(
+                Turning("block", self.on),
                 Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
                 Sliding("block", self.on, "slider", "slot_force", "slot_moment"),
             ),
-            lengths=(self.guide.guide_offset,),
         )
 
     def sliding(self, name, placement):

@@ -18,9 +18,8 @@ from ....machine.followers.swinging import SwingingFollower
 from ....machine.followers.translating import GuidedFollower
 from ....machine.group import FRAME, TRAVELS
 from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parse_passage
-from ....machine.groups.dyad import Dyad
 from ....machine.groups.lever import CylinderGroup, LeverGroup
-from ....machine.groups.rocker import RockerGroup
+from ....machine.groups.rocker import Dyad, RockerGroup
 from ....machine.groups.slider import SliderGroup
 from ....machine.groups.yoke import YokeGroup
 from ....machine.laws.laws import Cosine
