@@ -69,8 +69,7 @@ class Circle(Cam):
     PATHS: ClassVar = {"pitch_radius": "radius"}
 
     def __init__(self, radius, centre=(0.0, 0.0)):
-        object.__setattr__(self, "pitch_radius", radius)
-        object.__setattr__(self, "centre", centre)
+        vars(self).update(pitch_radius=radius, centre=centre)
         self.__post_init__()
 
     def __post_init__(self):
@@ -81,7 +80,7 @@ class Circle(Cam):
         else:
             smallest = self.smallest_radius
             is_close = checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
-        object.__setattr__(self, "is_close", is_close)  # O lies close to the circle, in any design
+        vars(self).update(is_close=is_close)  # O lies close to the circle, in any design
 
     def _outside_problems(self):
         """Problem of designs with O outside the circle, or on it."""

@@ -154,14 +154,18 @@ class Profile:
     @cached_property
     def smallest_curvature_radius(self):
         """Smallest radius of convex parts of the working curve, a `Peak`, m; None if no part is convex."""
-        sharpest = highest(self._surface_curvature)
-        return Peak(1.0 / sharpest.value, sharpest.angle) if sharpest.value > 0 else None
+        return self._tightest(1.0)
 
     @cached_property
     def smallest_hollow(self):
         """Radius of the tightest hollow of the working curve, a `Peak`, m, negative; None if there is no hollow."""
-        deepest = lowest(self._surface_curvature)
-        return Peak(1.0 / deepest.value, deepest.angle) if deepest.value < 0 else None
+        return self._tightest(-1.0)
+
+    def _tightest(self, sign):
+        """Smallest radius of the parts of the working curve with a curvature of this sign, a `Peak`; None without."""
+        side = SIDE_SIGNS[self.side]
+        peak = highest(lambda angle: sign * surface_curvature(curvature(self.cam, angle), self.roller_radius, side))
+        return Peak(sign / peak.value, peak.angle) if peak.value > 0 else None
 
     @cached_property
     def largest_roller_radius(self):
@@ -175,10 +179,8 @@ class Profile:
             "pressure_angle": (pressure_angle, "rad", POSITIVE),
             "curvature_radius": (curvature_radius, "m", POSITIVE),
         }
-        given = checks.single_numbers(
-            "exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None}
-        )
-        pressure_angle, curvature_radius = map(given.get, limits)
+        given = {name: limit for name, limit in limits.items() if limit[0] is not None}
+        pressure_angle, curvature_radius = map(checks.single_numbers("exceeded", **given).get, limits)
         found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
         if pressure_angle is not None and peak.value > pressure_angle:
             found.append(
@@ -191,9 +193,6 @@ class Profile:
                 f"{np.degrees(sharpest.angle):.6g} deg, less than {curvature_radius:.6g}"
             )
         return tuple(found)
-
-    def _surface_curvature(self, angle):
-        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDE_SIGNS[self.side])
 
 
 def curvature(cam, angle):

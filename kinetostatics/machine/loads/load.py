@@ -122,18 +122,19 @@ class Load(checks.Checked, Batched):
 
         Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
         """
-        value = self.value_now
+        value, here = self.value_now, 0.0
         if isinstance(value, Table):
-            known, here = value.largest, 0.0
+            largest = value.largest
             with suppress(ParameterError):
                 here = value(motion)
         elif value is None or callable(value):
             return 1.0
         else:
             known = np.asarray(value, dtype=float)
-            fits = known.ndim == 0 or any(item is self for item in motion.loads)
-            known, here = known.flat[np.argmax(np.abs(known))], known if fits else 0.0
-        return np.where(here == 0, -1.0 if known < 0 else 1.0, np.sign(here))
+            largest = known.flat[np.argmax(np.abs(known))]
+            if known.ndim == 0 or any(item is self for item in motion.loads):
+                here = known
+        return np.where(here == 0, -1.0 if largest < 0 else 1.0, np.sign(here))
 
 
 def has_no_user_code(item):
