@@ -147,19 +147,9 @@ def value_of(item):
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
 
 
-def depends_on_sense(item):
-    """Whether a load declares that it depends on the sense of rotation of the crank."""
-    return getattr(value_of(item), "by_sense", False)
-
-
 def refusals(motion):
     """Sentences on the crank angles of a motion at which loads have no value."""
-    return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]
-
-
-def may_refuse(item):
-    """Whether a load has no value for some motions."""
-    return isinstance(item, Load) and item.REFUSES
+    return [text for item in motion.loads if getattr(item, "REFUSES", False) for text in item.refusals(motion)]
 
 
 def value_rule(unit):

@@ -27,6 +27,9 @@ TERMS = {
 """Symbol and meaning of lines of the kernels in hand calculations."""
 
 
+LINK_RULES = {"on": checks.Name(), "against": checks.Optional(checks.Name())}
+
+
 class Couple(Load):
     """A couple on the link `on` against another, or the frame."""
 
@@ -98,7 +101,7 @@ class Torque(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "torque", "value", ("value",)
-    RULES = checks.Rules("torque", value=value_rule("N*m"), on=checks.Name(), against=checks.Optional(checks.Name()))
+    RULES = checks.Rules("torque", value=value_rule("N*m"), **LINK_RULES)
 
     def couple(self, motion):
         """Couple on the link, N m."""
@@ -151,8 +154,7 @@ class TorsionSpring(Couple):
         free_angle=checks.Number(
             "rad", usual=checks.PlausibleRange(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
         ),
-        on=checks.Name(),
-        against=checks.Optional(checks.Name()),
+        **LINK_RULES,
         moment=checks.Number("N*m"),
     )
 
@@ -261,12 +263,7 @@ class TorsionDamper(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, SIGN, DISSIPATES = "torsion_damper", "ring", True
-    RULES = checks.Rules(
-        "torsion damper",
-        coefficient=checks.Number("N*m*s/rad", low=0.0),
-        on=checks.Name(),
-        against=checks.Optional(checks.Name()),
-    )
+    RULES = checks.Rules("torsion damper", coefficient=checks.Number("N*m*s/rad", low=0.0), **LINK_RULES)
 
     def couple(self, motion):
         """Couple on the link, N m."""
