@@ -175,22 +175,19 @@ class Profile:
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
         """Sentences on exceeded limits of the pressure angle, rad, and of the smallest convex radius, m."""
-        limits = {
-            "pressure_angle": (pressure_angle, "rad", POSITIVE),
-            "curvature_radius": (curvature_radius, "m", POSITIVE),
-        }
-        given = {name: limit for name, limit in limits.items() if limit[0] is not None}
-        pressure_angle, curvature_radius = map(checks.single_numbers("exceeded", **given).get, limits)
-        found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
-        if pressure_angle is not None and peak.value > pressure_angle:
+        limits = {"pressure_angle": (pressure_angle, "rad"), "curvature_radius": (curvature_radius, "m")}
+        given = {name: (*limit, POSITIVE) for name, limit in limits.items() if limit[0] is not None}
+        steepest, sharpest = map(checks.single_numbers("exceeded", **given).get, limits)
+        peak, bend, found = self.largest_pressure_angle, self.smallest_curvature_radius, []
+        if steepest is not None and peak.value > steepest:
             found.append(
                 f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at crank angle "
-                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(pressure_angle):.6g}"
+                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(steepest):.6g}"
             )
-        if curvature_radius is not None and sharpest is not None and sharpest.value < curvature_radius:
+        if sharpest is not None and bend is not None and bend.value < sharpest:
             found.append(
-                f"the working curve is as sharp as {sharpest.value:.6g} m at crank angle "
-                f"{np.degrees(sharpest.angle):.6g} deg, less than {curvature_radius:.6g}"
+                f"the working curve is as sharp as {bend.value:.6g} m at crank angle {np.degrees(bend.angle):.6g} deg, "
+                f"less than {sharpest:.6g}"
             )
         return tuple(found)
 

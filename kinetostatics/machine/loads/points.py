@@ -336,9 +336,8 @@ class PointForce(PointLoad):
         with np.errstate(invalid="ignore"):
             unit = apart / np.hypot(*apart)
         yield Symbol("line", first, second)
-        sense = self.sense(motion)
-        yield Symbol("force", first, direction=unit, sense=sense)
-        yield Symbol("force", second, direction=-unit, sense=sense)
+        for place, direction in ((first, unit), (second, -unit)):
+            yield Symbol("force", place, direction=direction, sense=self.sense(motion))
 
 
 @dataclass(frozen=True, eq=False)

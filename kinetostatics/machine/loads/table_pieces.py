@@ -99,12 +99,11 @@ def angle_problem(angle, value, period):
         return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
     step, span = np.diff(angle), angle[-1] - angle[0]
     if repeats_first_row(angle, period):
-        unequal = abs(value[-1] - value[0]) > 1e-9 * np.max(np.abs(value))
+        if abs(value[-1] - value[0]) <= 1e-9 * np.max(np.abs(value)):
+            return None
         return (
             f"the value must end as it began, a period of {_degrees(period)} before, but is {value[0]:.9g} at "
             f"{_degrees(angle[0])} and {value[-1]:.9g} at {_degrees(angle[-1])}; leave one of these rows out"
-            if unequal
-            else None
         )
     if span > period:
         turns = math.ceil(span / TURN - 1e-9)
@@ -245,16 +244,9 @@ SAMPLE_OFFSET = 1e-3
 def stops_and_crossings(motion, slider, levels):
     """Crank angles at which a slider stops, (designs, E), and passes levels, (designs, K), in its period, rad.
 
-    Rows end with NaN where a design has fewer than another. Between two stops a slider passes each level once, so stops
-    come first and no crossing near a stop is missed.
-
-    Parameters
-    ----------
-    motion : Motion
-        Its crank angles have no effect.
-    slider : str
-    levels : array (R,)
-        Coordinates along its guide, rising, m.
+    `levels` are coordinates along its guide, rising, m; the crank angles of `motion` have no effect. Rows end with NaN
+    where a design has fewer than another. Between two stops a slider passes each level once, so stops come first and no
+    crossing near a stop is missed.
     """
     turns = motion.mechanism.turns
 
