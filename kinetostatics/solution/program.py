@@ -13,7 +13,7 @@ from ..engines.jax_backend import Backend
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
 from ..errors import ParameterError
-from ..machine.loads import depends_on_sense, has_no_user_code, may_refuse, refusals
+from ..machine.loads import has_no_user_code, refusals, value_of
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
@@ -74,7 +74,7 @@ class Program:
             scene = _solve_friction(scene)
         scene = keep_numbers(scene, places, kept)
         state = scene.dynamics(np.zeros(1))
-        self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
+        self._fields, self._refuses = dict(vars(state)), any(getattr(item, "REFUSES", False) for item in scene.loads)
         self._program, self._leaves = program_of(state, quantities)
         self._friction: Any = program_of(state, FRICTION_CHECKS)[0] if scene.friction.acting else None
         self._numbers = {}
@@ -260,7 +260,7 @@ class Program:
         self._require_known((path,))
         place, _ = self._numbers[path]
         if path == ("crank_speed" if self.scene.sense is None else "sense") and any(
-            map(depends_on_sense, self.scene.loads)
+            getattr(value_of(item), "by_sense", False) for item in self.scene.loads
         ):
             return True
         return self._program.recording.parameters[place] in set(needed(self._program.outputs))

@@ -183,14 +183,6 @@ class Spiral(Cam):
         return r, 0.3 * r, 0.09 * r
 
 
-class Round(Cam):
-    """A circle about O."""
-
-    def polar(self, angle, ray):
-        """Radius, and its derivatives."""
-        return 2.0 + 0.0 * angle, 0.0 * angle, 0.0 * angle
-
-
 class Line(Cam):
     """The straight line x = 1."""
 
@@ -206,7 +198,7 @@ def test_spiral_has_its_known_angle_and_curvature():
 
 
 def test_circle_and_line_have_their_curvature():
-    assert Round().curvature_radius([0.0, 1.0]).tolist() == [2.0, 2.0]
+    assert ks.cams.Circle(2.0).curvature_radius([0.0, 1.0]).tolist() == [2.0, 2.0]
     assert abs(1.0 / Line().curvature_radius(0.4)) < 1e-14
 
 

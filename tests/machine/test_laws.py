@@ -9,7 +9,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.laws import curves
 from kinetostatics.machine.laws.law import Law, breakpoints_of
 
 laws = ks.laws
@@ -125,15 +124,13 @@ def test_laws_are_silent_and_leave_plain_arrays():
 # What a law of motion is
 
 
-SEGMENT_MAKERS = ks.laws.joined(
-    ks.laws.cycloidal(1.7, 2.3, 2.0), ks.laws.dwell(2.3, 0.5), ks.laws.cycloidal(2.3, 1.7, 2 * np.pi - 2.5)
-)
+LAW = rise_dwell_return()
 
 
 def test_a_law_comes_later_by_a_phase():
-    assert_allclose(SEGMENT_MAKERS.shifted(0.4)(1.3), SEGMENT_MAKERS(0.9), rtol=0, atol=1e-15)
-    assert_allclose(SEGMENT_MAKERS.shifted(0.4).knots, np.add(SEGMENT_MAKERS.knots, 0.4))
-    assert_allclose(SEGMENT_MAKERS.shifted(0.4).shifted(-0.4)(1.3), SEGMENT_MAKERS(1.3), rtol=1e-14)
+    assert_allclose(LAW.shifted(0.4)(1.3), LAW(0.9), rtol=0, atol=1e-15)
+    assert_allclose(LAW.shifted(0.4).knots, np.add(LAW.knots, 0.4))
+    assert_allclose(LAW.shifted(0.4).shifted(-0.4)(1.3), LAW(1.3), rtol=1e-14)
 
 
 def test_what_is_only_called_has_no_knots_and_no_error():
@@ -169,15 +166,7 @@ def test_knots_mark_jumps_of_acceleration_or_jerk():
 # Segments of a turn
 
 
-CURVES = {
-    "harmonic": laws.harmonic,
-    "cycloidal": laws.cycloidal,
-    "modified sine": laws.modified_sine,
-    "modified trapezoid": laws.modified_trapezoid,
-    "3-4-5": laws.polynomial,
-    "4-5-6-7": lambda *args: laws.polynomial(*args, powers="4-5-6-7"),
-    "powers of one's own": lambda *args: laws.polynomial(*args, powers=[3, 5, 8]),
-}
+CURVES = SEGMENTS | {"powers of one's own": lambda *args: laws.polynomial(*args, powers=[3, 5, 8])}
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -214,14 +203,7 @@ def test_angle_beyond_a_segment_is_refused():
 
 # Rises from 0 to 1
 
-RISES = {
-    "harmonic": curves.HARMONIC,
-    "cycloidal": curves.CYCLOIDAL,
-    "modified sine": curves.MODIFIED_SINE,
-    "modified trapezoid": curves.MODIFIED_TRAPEZOID,
-    "3-4-5": curves.Powers((3, 4, 5)),
-    "4-5-6-7": curves.Powers((4, 5, 6, 7)),
-}
+RISES = {name: segment(0.0, 1.0, 1.0).rise for name, segment in SEGMENTS.items()}
 PUBLISHED = {
     "harmonic": (1.5708, 4.9348, 15.503),
     "cycloidal": (2.0, 6.2832, 39.478),
@@ -302,10 +284,6 @@ def test_the_end_of_a_rise_is_as_exact_as_its_start(name):
 )
 def test_pieces_meet_where_the_textbooks_say(name, breaks):
     assert RISES[name].breaks == breaks
-
-
-def test_rest_does_not_move():
-    assert not np.any(curves.Rest()(np.linspace(0.0, 1.0, 5)))
 
 
 @pytest.mark.parametrize("name", RISES)

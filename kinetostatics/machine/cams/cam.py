@@ -171,7 +171,7 @@ class Cam:
 
 
 RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
-"""Crank angles among which the smallest radius is sought, rad."""
+"""Crank angles among which the smallest radius and the sharpest curvature of a cam are sought, rad."""
 
 
 @dataclass(frozen=True, eq=False)

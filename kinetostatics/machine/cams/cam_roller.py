@@ -7,7 +7,7 @@ acts across the ray. Equilibrium of the block gives both forces. The crank bears
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -19,26 +19,9 @@ from ..crank import ray
 from ..group import FRAME, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
+from .cam import RADIUS_ANGLES
 from .roller import LineContact, Roller, relative_radius
 
-CURVATURE_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
-"""Crank angles at which the sharpest curvature of a cam is sought, rad."""
-RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-"""Crank angles at which the smallest radius of a user's own cam is sought, rad."""
-OUTPUTS = {
-    "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
-    "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
-}
-JOINTS = {"A": Point("block")}
-CURVES = {"A": "pitch curve of the cam"}
-PAIRS = {
-    "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
-    "cam": Rolling("block", "A", "cam_force"),
-}
-MOTIONS = {
-    "pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows"),
-    "cam_radius": Output("m", False, "of the pitch curve, from O to the roller centre"),
-}
 TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
@@ -50,18 +33,6 @@ TERMS = {
     "resolve.outward": ("N", "force on the block along the ray"),
 }
 """Symbol and meaning of lines of the kernels in hand calculations."""
-
-
-class RollerForces(NamedTuple):
-    """Forces of a cam roller, N.
-
-    `cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle; `on_crank`:
-    wrench about O that the crank supplies to the block.
-    """
-
-    cam: Any
-    slot: Any
-    on_crank: Wrench
 
 
 def place(ray, radius, slope, curvature):
@@ -84,7 +55,7 @@ def departure(ray, slope, curvature):
 
 
 def resolve(ray, radius, slope, load):
-    """Cam and slot force on the block (kernel).
+    """Cam force on the roller, slot force on the block, N, and the wrench about O that the crank supplies (kernel).
 
     `load` is the wrench about A on the block, from its own loads and the groups that it carries.
     """
@@ -94,7 +65,7 @@ def resolve(ray, radius, slope, load):
     cam = outward * sqrt(1.0 + lean * lean)
     slot = -(cross(ray, force) + outward * lean)
     on_crank = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, load.moment))
-    return RollerForces(cam, slot, on_crank)
+    return cam, slot, on_crank
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,13 +111,22 @@ class CamRoller(checks.Checked, Group):
     LINKS: ClassVar = {"block": "joint"}
     joint = "A"
     hangs_on = ("O",)
-    joints = JOINTS
+    joints: ClassVar = {"A": Point("block")}
     slots = (Slot("crank", "A"),)
     led = (CamDriven("block", "A", FRAME, "cam_force"),)
-    curves = CURVES
-    outputs = OUTPUTS
-    motions = MOTIONS
-    pairs = PAIRS
+    curves: ClassVar = {"A": "pitch curve of the cam"}
+    outputs: ClassVar = {
+        "cam_force": Output("N", text="cam on roller along the normal, positive toward the inside of the pitch curve"),
+        "slot_force": Output("N", text="slotted crank on block across the ray, positive with growing crank angle"),
+    }
+    motions: ClassVar = {
+        "pressure_angle": Output("rad", text="of the cam pair, atan(r'/r), positive where the radius grows"),
+        "cam_radius": Output("m", text="of the pitch curve, from O to the roller centre"),
+    }
+    pairs: ClassVar = {
+        "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
+        "cam": Rolling("block", "A", "cam_force"),
+    }
 
     @property
     def lengths(self):
@@ -160,13 +140,13 @@ class CamRoller(checks.Checked, Group):
     def reaches(self):
         """Smallest radius of the pitch curve, m; on a grid if the cam has no `smallest_radius`."""
         found = getattr(self.cam, "smallest_radius", None)
-        return (np.min(self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))[0]) if found is None else found,)
+        return (np.min(self.cam.polar(RADIUS_ANGLES[::30], ray(RADIUS_ANGLES[::30]))[0]) if found is None else found,)
 
     @cached_property
     def tightest(self):
         """Smallest radius of curvature of the pitch curve, on a grid, m; None if it is not plain numbers."""
         with np.errstate(divide="ignore"):
-            curved = abs(1.0 / polar_curvature(*self.cam.polar(CURVATURE_ANGLES, ray(CURVATURE_ANGLES))))
+            curved = abs(1.0 / polar_curvature(*self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
@@ -208,9 +188,9 @@ class CamRoller(checks.Checked, Group):
 
     def resolve(self, placement, loads, along) -> Resolved:
         radius, slope, _ = placement.details["cam"]
-        found = resolve(placement.ray, radius, slope, loads["block"])
-        forces = {"cam_force": found.cam, "slot_force": found.slot, "slot_moment": minus(None, loads["block"].moment)}
-        return Resolved({}, forces, {"crank": found.on_crank})
+        cam, slot, on_crank = resolve(placement.ray, radius, slope, loads["block"])
+        forces = {"cam_force": cam, "slot_force": slot, "slot_moment": minus(None, loads["block"].moment)}
+        return Resolved({}, forces, {"crank": on_crank})
 
     def follow(self, placement, joints):
         """Place the block at joints computed in another way."""

@@ -4,7 +4,6 @@ A cam is the pitch curve of the roller centre in polar form about O: r(phi) and 
 splines are smooth and keep their digits all round the turn.
 """
 
-import math
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -69,30 +68,25 @@ class Circle(Cam):
     PATHS: ClassVar = {"pitch_radius": "radius"}
 
     def __init__(self, radius, centre=(0.0, 0.0)):
-        object.__setattr__(self, "pitch_radius", radius)
-        object.__setattr__(self, "centre", centre)
+        vars(self).update(pitch_radius=radius, centre=centre)
         self.__post_init__()
 
     def __post_init__(self):
         self.RULES.admit(self)
-        (x, y), radius = self.centre, self.pitch_radius
-        if type(x) is type(y) is type(radius) is float:
-            is_close = radius - math.hypot(x, y) < CLOSE_SHARE * radius
-        else:
-            smallest = self.smallest_radius
-            is_close = checks.has_known_values(smallest) and bool(np.any(smallest < CLOSE_SHARE * radius))
-        object.__setattr__(self, "is_close", is_close)  # O lies close to the circle, in any design
+        least = self.smallest_radius
+        is_close = checks.has_known_values(least) and bool(np.any(least < CLOSE_SHARE * self.pitch_radius))
+        vars(self).update(is_close=is_close)  # O lies close to the circle, in any design
 
     def _outside_problems(self):
         """Problem of designs with O outside the circle, or on it."""
         (x, y), radius = self.centre, self.pitch_radius
         distance = sqrt(x * x + y * y)
-        if checks.has_known_values(distance - radius) and np.any(distance >= radius):
-            text = (
+        if checks.has_known_values(distance - radius) and np.any(outside := distance >= radius):
+            yield checks.Problem(
                 f"O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O and its radius "
-                f"{np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
+                f"{np.min(radius):.6g} m; bring the centre nearer or enlarge the radius",
+                outside,
             )
-            yield checks.Problem(text, distance >= radius)
 
     RULES = checks.Rules(
         "circle cam",
@@ -195,12 +189,9 @@ class CosineLaw(checks.Checked, Cam):
     def _origin_problems(self):
         """Problem of designs whose slider would run over O."""
         mean, amplitude = self.mean, self.amplitude
-        if checks.has_known_values(mean - amplitude) and np.any(mean <= amplitude):
-            text = (
-                f"mean must exceed the amplitude, or the slider would run over O; got mean {mean} m and amplitude "
-                f"{amplitude} m"
-            )
-            yield checks.Problem(text, mean <= amplitude)
+        if checks.has_known_values(mean - amplitude) and np.any(over := mean <= amplitude):
+            got = f"got mean {mean} m and amplitude {amplitude} m"
+            yield checks.Problem(f"mean must exceed the amplitude, or the slider would run over O; {got}", over)
 
     RULES = checks.Rules(
         "cosine-law cam",

@@ -45,20 +45,11 @@ class SingularPosition(NamedTuple):
     length: float
 
 
-class RayDistance(NamedTuple):
-    """Distance d of the slider from the crank ray, and three derivatives by the crank angle, m."""
-
-    value: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
-    third: np.ndarray
-
-
 def ray_distance(law, offset, phi):
-    """Distance of the slider from the crank ray, d = x sin(phi) - e cos(phi), and its derivatives."""
+    """Distance of the slider from the crank ray, d = x sin(phi) - e cos(phi), and three derivatives by phi, m."""
     x, v, a, j = law(phi)
     s, c = np.sin(phi), np.cos(phi)
-    return RayDistance(
+    return (
         x * s - offset * c,
         v * s + x * c + offset * s,
         (a - x) * s + 2.0 * v * c + offset * c,
@@ -131,14 +122,13 @@ class LawCam(Cam):
         along = x * c + e * s, (v + e) * c - x * s, (a - x) * c - (2.0 * v + e) * s
         # the signed reach w and two derivatives: from d, and near a singular angle from q
         d, first, second, _ = ray_distance(self.law, self.guide_offset, phi)
-        one, other = self.far, self.near
-        square = (one.length - d) * (other.length + d)
-        sign = np.where((phi < one.angle) & (phi > other.angle), 1.0, -1.0)
+        square = (self.far.length - d) * (self.near.length + d)
+        sign = np.where((phi < self.far.angle) & (phi > self.near.angle), 1.0, -1.0)
         with np.errstate(all="ignore"):  # values at the singular angles are replaced below
             w = sign * np.sqrt(np.maximum(square, 0.0))
             slope = -d * first / w
             found = [w, slope, -(first * first + d * second + slope * slope) / w]
-        for turning, side in ((one, 1.0), (other, -1.0)):
+        for turning, side in ((self.far, 1.0), (self.near, -1.0)):
             h = np.mod(phi - turning.angle + np.pi, TURN) - np.pi
             here = np.abs(h) < SINGULAR_REACH
             if np.any(here):
@@ -162,9 +152,9 @@ class LawCam(Cam):
         slope = -side * (span * sloped - curved) / span**3
         bend = -side * (3.0 * curved - 2.0 * span * sloped) / span**3  # h q''
         if np.any(middle):
-            at = ray_distance(self.law, self.guide_offset, np.array(turning.angle))
-            q, slope = np.where(middle, -side * at.second / 2, q), np.where(middle, -side * at.third / 6, slope)
-            bend = np.where(middle, 0.0, bend)
+            _, _, second_here, third_here = ray_distance(self.law, self.guide_offset, np.array(turning.angle))
+            limits = -side * second_here / 2, -side * third_here / 6, 0.0
+            q, slope, bend = (np.where(middle, *pair) for pair in zip(limits, (q, slope, bend), strict=True))
         p = self.coupler_length + side * d
         root = np.sqrt(q * p)
         product = slope * p + q * side * first  # (q p)'
@@ -190,8 +180,8 @@ class LawCam(Cam):
         """Integrals of d'', u d'', u d''' and u^2 d''' from `start` to `stop`, distances u from a singular angle."""
         width = (stop - start)[..., None]
         u = start[..., None] + width * GAUSS_POINTS
-        found = ray_distance(self.law, self.guide_offset, turning.angle + u)
-        second, third = found.second * GAUSS_WEIGHTS * width, found.third * GAUSS_WEIGHTS * width
+        _, _, second, third = ray_distance(self.law, self.guide_offset, turning.angle + u)
+        second, third = second * GAUSS_WEIGHTS * width, third * GAUSS_WEIGHTS * width
         return np.sum([second, u * second, u * third, u * u * third], axis=-1)
 
 
@@ -264,18 +254,17 @@ def singular_positions(law, offset):
     from scipy.optimize import brentq
 
     def slope(angle):
-        return float(ray_distance(law, offset, np.array(angle)).first)
+        return float(ray_distance(law, offset, np.array(angle))[1])
 
     grid = np.unique(np.concatenate([SEARCH_ANGLES, np.mod(np.array(getattr(law, "knots", ())) + np.pi, TURN) - np.pi]))
-    values, found = ray_distance(law, offset, grid).value, []
+    values, found = ray_distance(law, offset, grid)[0], []
     for side in (1.0, -1.0):
         place = int(np.argmax(side * values))
         angle, low, high = grid[place], grid[place - 1], grid[(place + 1) % grid.size]
         low, high = (low - TURN if low > angle else low), (high + TURN if high < angle else high)
         if slope(low) * slope(high) < 0:
             angle = brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
-        length = float(side * ray_distance(law, offset, np.array(angle)).value)
-        found.append(SingularPosition(float(angle), length))
+        found.append(SingularPosition(float(angle), float(side * ray_distance(law, offset, np.array(angle))[0])))
     return found
 
 
@@ -310,10 +299,13 @@ def _cam_problems(cam):
     radius = cam.radius(SEARCH_ANGLES + cam.guide_angle)[0]
     position = cam.law(SEARCH_ANGLES)[0]
     ahead = np.array(position - radius * np.cos(SEARCH_ANGLES))
-    worst = int(np.argmin(radius))
+    worst, nearest = int(np.argmin(radius)), int(np.argmin(ahead))
+
+    def at(place):
+        return f"at {np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide"
+
     if not np.all(np.isfinite(radius)):
-        place = int(np.argmax(~np.isfinite(radius)))
-        yield f"the law has no cam at {np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide"
+        yield f"the law has no cam {at(np.argmax(~np.isfinite(radius)))}"
     elif radius[worst] <= 0:
         # the slider must be farthest where the crank is along the guide
         farthest = SEARCH_ANGLES[int(np.argmax(position))]
@@ -326,14 +318,9 @@ def _cam_problems(cam):
                 f"the slider must be farthest near 0 deg from the guide, but is so at "
                 f"{np.degrees(farthest) % 360:.4g}: take law.shifted({-float(farthest)!r})"
             )
+        yield f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m {at(worst)}; {remedy}"
+    elif ahead[nearest] <= 0:
         yield (
-            f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
-            f"{np.degrees(SEARCH_ANGLES[worst]) % 360:.4g} deg from the guide; {remedy}"
-        )
-    elif np.min(ahead) <= 0:
-        place = int(np.argmin(ahead))
-        yield (
-            f"the slider must stay ahead of the roller along the guide, but is {-ahead[place]:.6g} m behind it at "
-            f"{np.degrees(SEARCH_ANGLES[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn "
-            "the guide"
+            f"the slider must stay ahead of the roller along the guide, but is {-ahead[nearest]:.6g} m behind it "
+            f"{at(nearest)}; move the law farther from O, or turn the guide"
         )

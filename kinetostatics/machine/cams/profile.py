@@ -154,14 +154,18 @@ class Profile:
     @cached_property
     def smallest_curvature_radius(self):
         """Smallest radius of convex parts of the working curve, a `Peak`, m; None if no part is convex."""
-        sharpest = highest(self._surface_curvature)
-        return Peak(1.0 / sharpest.value, sharpest.angle) if sharpest.value > 0 else None
+        return self._tightest(1.0)
 
     @cached_property
     def smallest_hollow(self):
         """Radius of the tightest hollow of the working curve, a `Peak`, m, negative; None if there is no hollow."""
-        deepest = lowest(self._surface_curvature)
-        return Peak(1.0 / deepest.value, deepest.angle) if deepest.value < 0 else None
+        return self._tightest(-1.0)
+
+    def _tightest(self, sign):
+        """Smallest radius of the parts of the working curve with a curvature of this sign, a `Peak`; None without."""
+        side = SIDE_SIGNS[self.side]
+        peak = highest(lambda angle: sign * surface_curvature(curvature(self.cam, angle), self.roller_radius, side))
+        return Peak(sign / peak.value, peak.angle) if peak.value > 0 else None
 
     @cached_property
     def largest_roller_radius(self):
@@ -171,29 +175,21 @@ class Profile:
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
         """Sentences on exceeded limits of the pressure angle, rad, and of the smallest convex radius, m."""
-        limits = {
-            "pressure_angle": (pressure_angle, "rad", POSITIVE),
-            "curvature_radius": (curvature_radius, "m", POSITIVE),
-        }
-        given = checks.single_numbers(
-            "exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None}
-        )
-        pressure_angle, curvature_radius = map(given.get, limits)
-        found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
-        if pressure_angle is not None and peak.value > pressure_angle:
+        limits = {"pressure_angle": (pressure_angle, "rad"), "curvature_radius": (curvature_radius, "m")}
+        given = {name: (*limit, POSITIVE) for name, limit in limits.items() if limit[0] is not None}
+        steepest, sharpest = map(checks.single_numbers("exceeded", **given).get, limits)
+        peak, bend, found = self.largest_pressure_angle, self.smallest_curvature_radius, []
+        if steepest is not None and peak.value > steepest:
             found.append(
                 f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at crank angle "
-                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(pressure_angle):.6g}"
+                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(steepest):.6g}"
             )
-        if curvature_radius is not None and sharpest is not None and sharpest.value < curvature_radius:
+        if sharpest is not None and bend is not None and bend.value < sharpest:
             found.append(
-                f"the working curve is as sharp as {sharpest.value:.6g} m at crank angle "
-                f"{np.degrees(sharpest.angle):.6g} deg, less than {curvature_radius:.6g}"
+                f"the working curve is as sharp as {bend.value:.6g} m at crank angle {np.degrees(bend.angle):.6g} deg, "
+                f"less than {sharpest:.6g}"
             )
         return tuple(found)
-
-    def _surface_curvature(self, angle):
-        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDE_SIGNS[self.side])
 
 
 def curvature(cam, angle):

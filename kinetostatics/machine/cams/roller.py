@@ -76,11 +76,8 @@ class PressedBody(checks.Checked):
         """Problem of designs with a Poisson's ratio above 0.5: the volume would grow under pressure."""
         for name in ("poissons_ratio", "cam_poissons_ratio"):
             ratio = getattr(self, name)
-            if (
-                ratio is not None
-                and checks.has_known_values(ratio)
-                and np.any(over := np.asarray(ratio) > MAX_POISSONS_RATIO)
-            ):
+            over = ratio is not None and checks.has_known_values(ratio) and np.asarray(ratio) > MAX_POISSONS_RATIO
+            if np.any(over):
                 yield checks.Problem(f"{name} must be at most {MAX_POISSONS_RATIO:g}, got {np.max(ratio):.6g}", over)
 
     @cached_property

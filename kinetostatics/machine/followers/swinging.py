@@ -50,14 +50,6 @@ class SwingingMotion(NamedTuple):
     lever: Any
 
 
-class SwingingForces(NamedTuple):
-    """`contact`: cam on roller, outward positive; `pivot`: ground on arm; `on_arm`: of the crank."""
-
-    contact: Any
-    pivot: Any
-    on_arm: Wrench
-
-
 def place(swing, pivot, arm_length, side):
     """Arm at its angle from the line of centres with two derivatives (kernel)."""
     angle, first, second = swing
@@ -81,15 +73,16 @@ def _met(arm, roller, lever):
 
 
 def resolve(motion, arm_length, load):
-    """Forces on the arm (kernel); `load` is the wrench of all others about the pivot."""
+    """Force of the cam on the roller, of the ground on the arm, and wrench of the crank on the arm (kernel).
+
+    `load` is the wrench of all others about the pivot.
+    """
     couple = number_or_zero(load.moment)
     force = couple / (arm_length * motion.lever)
     pressed = scale_vector(force, motion.across)
-    return SwingingForces(
-        contact=force * length(motion.across),
-        pivot=subtract_vectors(subtract_vectors(None, pressed), load.force),
-        on_arm=Wrench(pressed, -couple * motion.arm.ratio),
-    )
+    contact = force * length(motion.across)
+    pivot = subtract_vectors(subtract_vectors(None, pressed), load.force)
+    return contact, pivot, Wrench(pressed, -couple * motion.arm.ratio)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,5 +214,5 @@ class SwingingFollower(follower.Follower):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(self.placed(placement), self.arm_length, *self.of_links(loads))
-        return self.resolved((found.pivot,), (found.contact,), {"crank": found.on_arm})
+        contact, pivot, on_arm = resolve(self.placed(placement), self.arm_length, *self.of_links(loads))
+        return self.resolved((pivot,), (contact,), {"crank": on_arm})

@@ -14,7 +14,7 @@ stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7)
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -40,15 +40,6 @@ GUIDED_RULES = {
     "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
     "follower": checks.InstanceOf(Link, "a Link"),
 }
-
-
-class FollowerForces(NamedTuple):
-    """`contact`: cam on follower, outward positive; `guide_*`: ground on follower; `on_follower`: of the crank."""
-
-    contact: Any
-    guide_force: Any
-    guide_moment: Any
-    on_follower: Wrench
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,26 +90,24 @@ class GuidedFollower(Follower):
 
     def resolve(self, placement, loads, along) -> Resolved:
         guide, (load,), (push,) = self.guide.line, self.of_links(loads), self.of_links(along)
-        found = type(self).forces(placement.travels[self.moved], guide, load, push)
-        on_follower = rotate((0.0, found.guide_force), guide.direction)
-        scalars = found.contact, found.guide_force, found.guide_moment
-        return self.resolved((on_follower,), scalars, {"crank": found.on_follower})
+        *scalars, on_follower = type(self).forces(placement.travels[self.moved], guide, load, push)
+        of_guide = rotate((0.0, scalars[1]), guide.direction)
+        return self.resolved((of_guide,), scalars, {"crank": on_follower})
 
 
 def roller_forces(travel, guide, load, push):
-    """Forces on the follower (kernel).
+    """Forces of cam and ground on the follower, moment of the ground, and wrench of the crank (kernel).
 
     `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about P.
     """
     along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
     pushed = -plus(along, push)
     lean = plus(guide.offset, travel.first) / travel.position
-    return FollowerForces(
-        contact=pushed * sqrt(1.0 + lean * lean),
-        guide_force=-(aside + pushed * lean),
-        guide_moment=number_or_zero(minus(None, load.moment)),
-        on_follower=Wrench(rotate((pushed, pushed * lean), guide.direction), pushed * travel.first),
-    )
+    contact = pushed * sqrt(1.0 + lean * lean)
+    guide_force = -(aside + pushed * lean)
+    guide_moment = number_or_zero(minus(None, load.moment))
+    on_follower = Wrench(rotate((pushed, pushed * lean), guide.direction), pushed * travel.first)
+    return contact, guide_force, guide_moment, on_follower
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,19 +198,14 @@ class RollerFollower(GuidedFollower):
 
 
 def flat_forces(travel, guide, load, push):
-    """Forces on the follower (kernel).
-
-    `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about its pin.
-    """
+    """The same for a flat face (kernel)."""
     along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
     pushed = -plus(along, push)
     lever = plus(guide.offset, travel.first)  # of the contact, right of the pin
-    return FollowerForces(
-        contact=pushed,
-        guide_force=-aside,
-        guide_moment=minus(minus(None, load.moment), lever * pushed),
-        on_follower=Wrench(rotate((pushed, 0.0), guide.direction), pushed * travel.first),
-    )
+    guide_force = -aside
+    guide_moment = minus(minus(None, load.moment), lever * pushed)
+    on_follower = Wrench(rotate((pushed, 0.0), guide.direction), pushed * travel.first)
+    return pushed, guide_force, guide_moment, on_follower
 
 
 @dataclass(frozen=True, eq=False)

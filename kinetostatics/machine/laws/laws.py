@@ -329,14 +329,10 @@ def joined(*segments, smooth="acceleration"):
     """
     if len(segments) == 1 and isinstance(segments[0], list | tuple):
         segments = tuple(segments[0])
-    wrong = [
-        f"segment {n} must be made by ks.laws, got {checks.shown(part)}"
-        for n, part in enumerate(segments, 1)
-        if not isinstance(part, Segment)
-    ]
+    others = ((n, part) for n, part in enumerate(segments, 1) if not isinstance(part, Segment))
     checks.require(
         "joined",
-        *wrong,
+        *(f"segment {n} must be made by ks.laws, got {checks.shown(part)}" for n, part in others),
         checks.choice("smooth", smooth, ("velocity", "acceleration")),
         None if segments else "no segments",
     )
@@ -347,18 +343,13 @@ def joined(*segments, smooth="acceleration"):
             f"joined: segments must fill a turn of {TURN:.9g} rad, but take {total:.9g} ({np.degrees(total):.6g} deg); "
             f"{remedy}"
         )
-    largest = [
-        max(float(np.max(np.abs(part))) for part in parts)
-        for parts in zip(*(segment.at(np.linspace(0.0, segment.angle, 65)) for segment in segments), strict=True)
-    ]
-    kinds = list(JUMPS)[: 3 if smooth == "acceleration" else 2]
-    angle, jumps = 0.0, []
-    for number, (one, other) in enumerate(pairwise((*segments, segments[0])), 1):
-        angle += one.angle
-        before, after = one.at(np.array(one.angle)), other.at(np.array(0.0))
-        for kind, here, there, size in zip(kinds, before, after, largest, strict=False):
-            if abs(there - here) > JUMP_TOLERANCE * size:
-                unit, remedy = JUMPS[kind]
+    motions = np.array([segment.at(np.linspace(0.0, segment.angle, 65)) for segment in segments])
+    largest, angle, jumps = np.abs(motions).max(axis=(0, 2)), 0.0, []
+    for number, segment in enumerate(segments, 1):
+        angle += segment.angle
+        before, after = motions[number - 1, :, -1], motions[number % len(segments), :, 0]
+        for (kind, (unit, remedy)), here, there, size in zip(JUMPS.items(), before, after, largest, strict=False):
+            if abs(there - here) > JUMP_TOLERANCE * size and (kind, smooth) != ("acceleration", "velocity"):
                 jumps.append(
                     f"the {kind} jumps at {np.degrees(angle):.6g} deg, from {here:.9g} to {there:.9g} {unit}, behind "
                     f"segment {number} of {len(segments)}{remedy}"

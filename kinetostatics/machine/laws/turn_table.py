@@ -116,16 +116,16 @@ class TurnTable:
         From the root mean square distance of the values from polynomials through `reach` neighbours on both sides, with
         the reach that gives the smallest; scaled to the standard deviation of independent noise in every value.
         """
-        angle, size, found = self.angle, self.angle.size, []
+        angle, values, size, found = self.angle, self.values, self.angle.size, []
         for reach in range(2, min(7, (size + 1) // 2)):
-            steps = [step for step in range(-reach, reach + 1) if step]
-            places = {step: np.arange(size) + step for step in steps}
-            ahead = {step: angle[place % size] + 2 * np.pi * (place // size) - angle for step, place in places.items()}
-            rest, gain = self.values.copy(), np.ones(size)
-            for step in steps:
-                weight = math.prod(ahead[other] / (ahead[other] - ahead[step]) for other in steps if other != step)
-                rest -= weight * self.values[places[step] % size]
-                gain += weight * weight
+            turns, place = np.divmod(np.arange(size) + np.delete(np.arange(-reach, reach + 1), reach)[:, None], size)
+            ahead = angle[place] + 2 * np.pi * turns - angle
+            others = [np.delete(ahead, step, axis=0) for step in range(2 * reach)]
+            weights = np.array(
+                [np.prod(other / (other - own), axis=0) for other, own in zip(others, ahead, strict=True)]
+            )
+            rest = np.subtract.reduce([values, *(weights * values[place])])
+            gain = np.add.reduce([np.ones(size), *(weights * weights)])
             found.append(float(np.sqrt(np.mean(rest * rest / gain))))
         return min(found)
 

@@ -8,12 +8,10 @@ May import errors, numbers and the modules of `machine` that describe links and 
 from .gravity import Gravity
 from .load import (
     Load,
-    depends_on_sense,
     has_no_user_code,
     has_significant_kinks,
     kink_sources,
     kinks_of,
-    may_refuse,
     period_on,
     refusals,
     significant_kinks,

@@ -122,18 +122,19 @@ class Load(checks.Checked, Batched):
 
         Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
         """
-        value = self.value_now
+        value, here = self.value_now, 0.0
         if isinstance(value, Table):
-            known, here = value.largest, 0.0
+            largest = value.largest
             with suppress(ParameterError):
                 here = value(motion)
         elif value is None or callable(value):
             return 1.0
         else:
             known = np.asarray(value, dtype=float)
-            fits = known.ndim == 0 or any(item is self for item in motion.loads)
-            known, here = known.flat[np.argmax(np.abs(known))], known if fits else 0.0
-        return np.where(here == 0, -1.0 if known < 0 else 1.0, np.sign(here))
+            largest = known.flat[np.argmax(np.abs(known))]
+            if known.ndim == 0 or any(item is self for item in motion.loads):
+                here = known
+        return np.where(here == 0, -1.0 if largest < 0 else 1.0, np.sign(here))
 
 
 def has_no_user_code(item):
@@ -146,19 +147,9 @@ def value_of(item):
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
 
 
-def depends_on_sense(item):
-    """Whether a load declares that it depends on the sense of rotation of the crank."""
-    return getattr(value_of(item), "by_sense", False)
-
-
 def refusals(motion):
     """Sentences on the crank angles of a motion at which loads have no value."""
-    return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]
-
-
-def may_refuse(item):
-    """Whether a load has no value for some motions."""
-    return isinstance(item, Load) and item.REFUSES
+    return [text for item in motion.loads if getattr(item, "REFUSES", False) for text in item.refusals(motion)]
 
 
 def value_rule(unit):

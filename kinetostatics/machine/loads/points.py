@@ -29,69 +29,66 @@ from ..group import FRAME, Point
 from ..links import Wrench, arm, present
 from .load import Load, Symbol, value_rule
 
-COORDINATE = checks.Number("m")
 PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
+NAME = checks.Name()
+ON_LINK, FIXED = checks.Pair("m", parts=("along", "across")), checks.Pair("m")
+"""Rules of the two numbers of a place on a link, and of a fixed point."""
 
 
 class PlaceRule:
     """Rule of a point; the value is a name, (link, along, across) or (x, y), m."""
 
     def quick(self, value):
-        if type(value) is str and value and value.isprintable():
-            return value
-        if type(value) is tuple and len(value) in (2, 3) and (len(value) == 3) == (type(value[0]) is str):
-            numbers = [COORDINATE.quick(part) for part in value[-2:]]
-            return checks.UNDECIDED if checks.UNDECIDED in numbers else (*value[:-2], *numbers)
-        return checks.UNDECIDED
+        if type(value) is not tuple:
+            return NAME.quick(value)
+        named = value[:1] if len(value) == 3 and type(value[0]) is str else ()
+        numbers = FIXED.quick(value[len(named) :])
+        return numbers if numbers is checks.UNDECIDED else named + numbers
 
     def check(self, value, field=""):
         if isinstance(value, str):
-            return checks.Name().check(value, field)
+            return NAME.check(value, field)
         wrong = f"{field} must be {PLACE_FORMS}, got {checks.shown(value)}"
         try:
-            parts = list(value)
+            parts = tuple(value)
         except TypeError:
             return value, wrong
-        names = [str(part) for part in parts[:1] if isinstance(part, str)]
-        numbers = parts[len(names) :]
-        if names and len(numbers) == 1:
-            numbers = [*numbers, 0.0]
+        named = tuple(str(part) for part in parts[:1] if isinstance(part, str))
+        numbers = (*parts[1:], 0.0)[:2] if named and len(parts) == 2 else parts[len(named) :]
         if len(numbers) != 2 or any(isinstance(part, str) for part in numbers):
             return value, wrong
-        of = ("along", "across") if names else ("x", "y")
-        found = [COORDINATE.check(part, f"{field} {name}") for part, name in zip(numbers, of, strict=True)]
-        return (*names, *(part for part, _ in found)), found[0][1] or found[1][1]
+        numbers, problem = (ON_LINK if named else FIXED).check(numbers, field)
+        return named + numbers, problem
 
     def numbers(self, value):
-        """Name, place and rule of each number of a point, for parameter paths."""
-        if isinstance(value, str):
-            return
-        names = ("along", "across") if isinstance(value[0], str) else ("x", "y")
-        for place, name in enumerate(names, len(value) - 2):
-            yield name, (place,), COORDINATE
+        """Name, steps and rule of each number of a point, for parameter paths."""
+        if not isinstance(value, str):
+            named = isinstance(value[0], str)
+            for name, (place,), rule in (ON_LINK if named else FIXED).numbers(value):
+                yield name, (place + named,), rule
 
 
 class PlacePairRule:
     """Rule of a pair of points."""
 
-    rule = PlaceRule()
-
     def quick(self, value):
         if type(value) is not tuple or len(value) != 2:
             return checks.UNDECIDED
-        found = tuple(self.rule.quick(part) for part in value)
+        found = tuple(map(PLACE_RULE.quick, value))
         return checks.UNDECIDED if checks.UNDECIDED in found else found
 
     def check(self, value, field=""):
         if not isinstance(value, tuple | list) or len(value) != 2:
             return value, f"{field} must be a pair of points, each {PLACE_FORMS}, got {checks.shown(value)}"
-        found = [self.rule.check(part, f"{field} {number}") for number, part in enumerate(value, 1)]
-        return tuple(part for part, _ in found), "; ".join(problem for _, problem in found if problem) or None
+        points, problems = zip(
+            *(PLACE_RULE.check(part, f"{field} {n}") for n, part in enumerate(value, 1)), strict=True
+        )
+        return points, "; ".join(filter(None, problems)) or None
 
     def numbers(self, value):
-        """Name, place and rule of each number of both points, for parameter paths."""
+        """Name, steps and rule of each number of both points, for parameter paths."""
         for number, part in enumerate(value):
-            for name, steps, rule in self.rule.numbers(part):
+            for name, steps, rule in PLACE_RULE.numbers(part):
                 yield f"{number + 1}.{name}", (number, *steps), rule
 
 
@@ -339,9 +336,8 @@ class PointForce(PointLoad):
         with np.errstate(invalid="ignore"):
             unit = apart / np.hypot(*apart)
         yield Symbol("line", first, second)
-        sense = self.sense(motion)
-        yield Symbol("force", first, direction=unit, sense=sense)
-        yield Symbol("force", second, direction=-unit, sense=sense)
+        for place, direction in ((first, unit), (second, -unit)):
+            yield Symbol("force", place, direction=direction, sense=self.sense(motion))
 
 
 @dataclass(frozen=True, eq=False)
@@ -459,10 +455,8 @@ class PointDamper(PointLoad):
         if first.first is None and second.first is None:
             return None
         positions = [vector_or_zero(spot.position) for spot in (first, second)]
-        slope, d = (
-            vector_or_zero(subtract_vectors(first.first, second.first)),
-            vector_or_zero(subtract_vectors(*positions)),
-        )
+        slope = vector_or_zero(subtract_vectors(first.first, second.first))
+        d = vector_or_zero(subtract_vectors(*positions))
         square = dot(slope, slope)
         near = MEETING_SQUARE * (sum(dot(part, part) for part in positions) + square)
         share = near / (near + dot(d, d) + MIN_SQUARE)

@@ -102,15 +102,11 @@ class Spring(SliderLoad):
         >>> spring.stiffness  # N/m
         673350.0
         """
-        given = {"mass": mass, "crank_speed": crank_speed}
         rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
-        mass, crank_speed = checks.check_values("balancing spring", rules, given).values()
-        still = (
-            f"the {name} is 0"
-            for name, value in (("mass", mass), ("crank speed", crank_speed))
-            if checks.has_known_values(value) and np.any(np.equal(value, 0.0))
-        )
-        if problem := " and ".join(still):
+        found = checks.check_values("balancing spring", rules, {"mass": mass, "crank_speed": crank_speed})
+        mass, crank_speed = found.values()
+        zero = (name for name, value in found.items() if checks.has_known_values(value) and np.any(value == 0.0))
+        if problem := " and ".join(f"the {name.replace('_', ' ')} is 0" for name in zero):
             raise ParameterError(
                 f"balancing spring: {problem}, so there is no inertia force to balance and the stiffness would be 0; "
                 "give the values that it is to balance, or the stiffness itself"
@@ -191,7 +187,7 @@ class ProcessForce(SliderLoad):
 
     def __post_init__(self):
         if self.period is None:
-            object.__setattr__(self, "period", getattr(self.force, "period", TURN))
+            vars(self).update(period=getattr(self.force, "period", TURN))
         super().__post_init__()
 
     def _period_problems(self):

@@ -10,7 +10,7 @@ x is the crank angle, rad, or the travel, m; y is in the unit of the load, N or 
 import math
 import re
 from bisect import bisect_left
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -99,12 +99,11 @@ def angle_problem(angle, value, period):
         return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
     step, span = np.diff(angle), angle[-1] - angle[0]
     if repeats_first_row(angle, period):
-        unequal = abs(value[-1] - value[0]) > 1e-9 * np.max(np.abs(value))
+        if abs(value[-1] - value[0]) <= 1e-9 * np.max(np.abs(value)):
+            return None
         return (
             f"the value must end as it began, a period of {_degrees(period)} before, but is {value[0]:.9g} at "
             f"{_degrees(angle[0])} and {value[-1]:.9g} at {_degrees(angle[-1])}; leave one of these rows out"
-            if unequal
-            else None
         )
     if span > period:
         turns = math.ceil(span / TURN - 1e-9)
@@ -201,13 +200,16 @@ class Curve(NamedTuple):
 
     def stretch_ends(self, first, last):
         """Rows between two others that part the curve into smooth stretches, each as long as possible."""
+
+        def breaks(end):
+            return not self._is_smooth(self.x[row], self.x[end])
+
         found, row = [], first
         while row < last:
             count = 2
-            while row + count <= last and not self._breaks(row, row + count):
+            while row + count <= last and not breaks(row + count):
                 count *= 2
             ends = range(row + count // 2 + 1, min(row + count, last + 1))
-            breaks = partial(self._breaks, row)
             row = ends.start - 1 + bisect_left(ends, True, key=breaks)
             found.append(row)
         return found[:-1]
@@ -217,10 +219,6 @@ class Curve(NamedTuple):
         x = self.x
         found = [row for row in rows if not self._is_smooth(max(x[0], x[row] - reach), min(x[row] + reach, x[-1]))]
         return np.array(found, dtype=int)
-
-    def _breaks(self, row, end):
-        """Whether the curve is not smooth from one row to another."""
-        return not self._is_smooth(self.x[row], self.x[end])
 
     def _is_smooth(self, low, high):
         """Whether a polynomial approximates every stroke between two places, at the rows and between them."""
@@ -246,16 +244,9 @@ SAMPLE_OFFSET = 1e-3
 def stops_and_crossings(motion, slider, levels):
     """Crank angles at which a slider stops, (designs, E), and passes levels, (designs, K), in its period, rad.
 
-    Rows end with NaN where a design has fewer than another. Between two stops a slider passes each level once, so stops
-    come first and no crossing near a stop is missed.
-
-    Parameters
-    ----------
-    motion : Motion
-        Its crank angles have no effect.
-    slider : str
-    levels : array (R,)
-        Coordinates along its guide, rising, m.
+    `levels` are coordinates along its guide, rising, m; the crank angles of `motion` have no effect. Rows end with NaN
+    where a design has fewer than another. Between two stops a slider passes each level once, so stops come first and no
+    crossing near a stop is missed.
     """
     turns = motion.mechanism.turns
 
@@ -373,16 +364,15 @@ def kink_bounds(table, motion):
     """
     near = 1e-6 * float(table.x[-1] - table.x[0])
     place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
-    steepest = max(float(np.max(np.abs(np.diff(y) / np.diff(table.x)))) for y in table.strokes)
-    change, distance = 2.0 * steepest, _row_distance(table.x, place)
-    jump = 0.0
+    steepest = np.max(np.abs(np.diff(table.strokes) / np.diff(table.x)))
+    distance, jump = _row_distance(table.x, place), 0.0
     if table.back is not None:
         x, y = table.x, table.y - table.back
         jump = np.max(np.abs(y))
         if np.min(np.diff(x)) >= 2.0 * near:  # no more than one row is so near
             row = np.clip(np.searchsorted(x, place - near), 0, x.size - 1)
-            beside = np.where(np.abs(x[row] - place) <= 2.0 * near, np.abs(y[row]), 0.0)
-            ends = [np.abs(np.interp(end, x, y)) for end in (place - near, place + near)]
-            jump = np.maximum(beside, np.maximum(*ends)) + 8 * UNIT_ROUNDOFF * jump
-    standing = np.abs(rate) <= near
-    return np.where(distance <= near, change, 0.0), np.where(standing, jump, 0.0), near, distance
+            beside = np.where(np.abs(x[row] - place) <= 2.0 * near, y[row], 0.0)
+            ends = (np.interp(end, x, y) for end in (place - near, place + near))
+            jump = np.abs([beside, *ends]).max(axis=0) + 8 * UNIT_ROUNDOFF * jump
+    change = np.where(distance <= near, 2.0 * steepest, 0.0)
+    return change, np.where(np.abs(rate) <= near, jump, 0.0), near, distance

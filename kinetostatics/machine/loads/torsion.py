@@ -27,6 +27,9 @@ TERMS = {
 """Symbol and meaning of lines of the kernels in hand calculations."""
 
 
+LINK_RULES = {"on": checks.Name(), "against": checks.Optional(checks.Name())}
+
+
 class Couple(Load):
     """A couple on the link `on` against another, or the frame."""
 
@@ -98,7 +101,7 @@ class Torque(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "torque", "value", ("value",)
-    RULES = checks.Rules("torque", value=value_rule("N*m"), on=checks.Name(), against=checks.Optional(checks.Name()))
+    RULES = checks.Rules("torque", value=value_rule("N*m"), **LINK_RULES)
 
     def couple(self, motion):
         """Couple on the link, N m."""
@@ -151,8 +154,7 @@ class TorsionSpring(Couple):
         free_angle=checks.Number(
             "rad", usual=checks.PlausibleRange(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
         ),
-        on=checks.Name(),
-        against=checks.Optional(checks.Name()),
+        **LINK_RULES,
         moment=checks.Number("N*m"),
     )
 
@@ -201,21 +203,11 @@ class TorsionSpring(Couple):
         passing[..., -1] |= turning & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        if turning.any():
-            advice = "it makes full turns"
-        else:  # a free angle from which the first refused design stays within half a turn
+        advice = "it makes full turns"
+        if not turning.any():
             design = np.argmax(passing.any(axis=-1).ravel())
-            here = angle.reshape(-1, angle.shape[-1])[design]
-            given = np.broadcast_to(self.free_angle, (*angle.shape[:-1], 1)).ravel()[design]
-            shifts = np.radians(np.arange(-180.0, 180.0, 5.0))
-            moved = here - shifts[:, None]
-            moved -= TURN * np.round(moved / TURN)
-            clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
-            reach = np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf)
-            free = given + shifts[np.argmin(reach)]
-            advice = f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
-            if not clear.any():
-                advice = "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
+            free_angle = np.broadcast_to(self.free_angle, (*angle.shape[:-1], 1)).ravel()[design]
+            advice = _free_angle_advice(angle.reshape(-1, angle.shape[-1])[design], free_angle)
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
         yield checks.Problem(
@@ -223,6 +215,18 @@ class TorsionSpring(Couple):
             f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {advice}",
             passing,
         )
+
+
+def _free_angle_advice(angle, free_angle):
+    """Advice on a free angle from which a design stays within half a turn; `angle` is its angle from the given one."""
+    shifts = np.radians(np.arange(-180.0, 180.0, 5.0))
+    moved = angle - shifts[:, None]
+    moved -= TURN * np.round(moved / TURN)
+    clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
+    if not clear.any():
+        return "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
+    free = free_angle + shifts[np.argmin(np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf))]
+    return f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
 
 
 _REFUSALS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
@@ -259,12 +263,7 @@ class TorsionDamper(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, SIGN, DISSIPATES = "torsion_damper", "ring", True
-    RULES = checks.Rules(
-        "torsion damper",
-        coefficient=checks.Number("N*m*s/rad", low=0.0),
-        on=checks.Name(),
-        against=checks.Optional(checks.Name()),
-    )
+    RULES = checks.Rules("torsion damper", coefficient=checks.Number("N*m*s/rad", low=0.0), **LINK_RULES)
 
     def couple(self, motion):
         """Couple on the link, N m."""

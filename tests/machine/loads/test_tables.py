@@ -76,19 +76,6 @@ def test_any_load_takes_a_table(over):
         assert len(ks.extremes(s, "balancing_torque"))
 
 
-def test_change_point_branch_has_kinks_in_both_turns():
-    """The slider is ahead of O in one turn and behind it in the other, where the coupler stands across the guide."""
-    made = ks.crank_slider(0.1, 0.15, guide_offset=0.05, assembly="open")
-    table = ks.Table([-0.3, 0.01, 0.3], [0.0, 50.0, 0.0], over="travel")
-    s = ks.solve(made, 0.3, crank_speed=1.0, loads=ks.ProcessForce(table))
-    fine = np.linspace(0.0, 4 * np.pi, 40001)
-    passed = fine[1:][np.diff(np.sign(s.at(fine).slider_position - 0.01)) != 0]
-    assert made.turns == 2
-    assert passed[-1] > 2 * np.pi
-    for angle in passed:
-        assert np.abs(s.sampled.kinks - angle).min() < 1e-3
-
-
 def test_a_four_stroke_table_gives_a_force_its_period():
     table = ks.Table(np.radians([0, 180, 360, 540]), [0.0, 5.0, 0.0, 0.0], period=4 * np.pi)
     s = ks.solve(six_bar(), [1.0], crank_speed=9.0, loads=ks.Force(table, at="B"))
