@@ -20,7 +20,7 @@ from ..machine.loads import period_of, refusals
 from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
-from ..mechanics.motion import Motion
+from ..mechanics.motion import Motion, SceneParts
 from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
@@ -488,21 +488,9 @@ class Solution(Certainty, Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        return construct_unchecked(
-            Dynamics,
-            mechanism=self.mechanism,
-            crank_angle=self.crank_angle,
-            crank_speed=self.crank_speed,
-            crank_acceleration=self.crank_acceleration,
-            loads=self.loads,
-            friction=self.friction,
-            sense=self.sense,
-            apart=self.apart,
-            loads_are_given=self.loads_are_given,
-            kind=self.kind,
-            shape=self.shape,
-            way=getattr(self.engine, "way", None),
-        )
+        names = (*SceneParts._fields, "crank_angle", "apart", "loads_are_given", "kind", "shape")
+        known = {name: getattr(self, name) for name in names}
+        return construct_unchecked(Dynamics, **known, way=getattr(self.engine, "way", None))
 
     placement = _member("placement")
 

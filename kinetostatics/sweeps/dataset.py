@@ -40,17 +40,11 @@ class ChunkResults:
 
     def keep(self, number, found):
         """Store the results of a chunk, with its designs."""
-        self._put(number, pd.concat([self.rows(number), found], axis=1))
+        self._kept[number] = pd.concat([self.rows(number), found], axis=1)
 
     def table(self):
         """All rows, in the order of the designs."""
-        return pd.concat([self._get(number) for number in self.numbers])
-
-    def _put(self, number, whole):
-        self._kept[number] = whole
-
-    def _get(self, number):
-        return self._kept[number]
+        return pd.concat([self._kept[number] for number in self.numbers])
 
 
 class Dataset(ChunkResults):
@@ -91,6 +85,31 @@ class Dataset(ChunkResults):
     def holds(self, number):
         return self._path(number) in self._sound
 
+    def keep(self, number, found):
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        whole = pd.concat([self.rows(number), found], axis=1)
+        path, told = self._path(number), {METADATA_KEY: json.dumps(self._signature(number, whole))}
+        try:
+            table = pa.Table.from_pandas(whole)
+            with write_atomically(path) as temporary:
+                parquet.write_table(table.replace_schema_metadata({**table.schema.metadata, **told}), temporary)
+        except (OSError, pa.ArrowException) as error:
+            raise KinetostaticsError(
+                f"sweep: {path} cannot be written: {error}; what is done is kept, and the same call goes on from there"
+            ) from error
+
+    def table(self):
+        parts = []
+        for number in self.numbers:
+            try:
+                parts.append(self._read(number))
+            except _DamagedPartError as error:
+                path = self._path(number)
+                raise KinetostaticsError(f"sweep: {path} was changed while the sweep ran: {error}") from error
+        return pd.concat(parts)
+
     def _claim(self, identity):
         """Write the manifest, or raise `ParameterError` if the folder contains another sweep or other files."""
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -113,26 +132,6 @@ class Dataset(ChunkResults):
 
     def _path(self, number):
         return self._folder / f"part-{number:06d}.parquet"
-
-    def _put(self, number, whole):
-        import pyarrow as pa
-        from pyarrow import parquet
-
-        path, told = self._path(number), {METADATA_KEY: json.dumps(self._signature(number, whole))}
-        try:
-            table = pa.Table.from_pandas(whole)
-            with write_atomically(path) as temporary:
-                parquet.write_table(table.replace_schema_metadata({**table.schema.metadata, **told}), temporary)
-        except (OSError, pa.ArrowException) as error:
-            raise KinetostaticsError(
-                f"sweep: {path} cannot be written: {error}; what is done is kept, and the same call goes on from there"
-            ) from error
-
-    def _get(self, number):
-        try:
-            return self._read(number)
-        except _DamagedPartError as error:
-            raise KinetostaticsError(f"sweep: {self._path(number)} was changed while the sweep ran: {error}") from error
 
     def _problem(self, path):
         """Why a file is not an undamaged part of this sweep, or None."""

@@ -156,13 +156,13 @@ def test_one_warning_names_some_of_many(folder, expected):
 
 def test_a_part_changed_during_the_sweep_is_reported(folder, monkeypatch):
     part(folder, 2).unlink()
-    put = Dataset._put
+    put = Dataset.keep
 
     def disturbed(self, number, whole):
         put(self, number, whole)
         part(folder, 0).write_bytes(b"")
 
-    monkeypatch.setattr(Dataset, "_put", disturbed)
+    monkeypatch.setattr(Dataset, "keep", disturbed)
     with pytest.raises(KinetostaticsError, match=r"part-000000.parquet was changed while the sweep ran"):
         sweep(folder)
 

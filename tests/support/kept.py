@@ -129,11 +129,9 @@ def bounds(scene):
     import flint
 
     solution = scene.solve(bounded_angles(scene))
-    found = {}
+    found = {f"bounds/{name} {way}": bound for name, way, _, bound in bounded_values(scene)}
     for name in ("balancing_torque", *solution.reactions):
         read = _read(solution, name)
-        for way, tight in (("plain", False), ("tight", True)):
-            found[f"bounds/{name} {way}"] = np.reshape(solution.error_bound(name, tight=tight), read.shape)
         with flint.ctx.workprec(300):
             exact = ks.precision.enclosure(solution, name).exact
             high = np.array([[float(value) for value in row] for row in exact])

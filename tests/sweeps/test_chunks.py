@@ -185,6 +185,20 @@ def test_as_many_designs_as_angles_is_no_batch():
     assert flat["largest O [N]"].to_numpy() == pytest.approx(column["largest O [N]"].to_numpy(), rel=1e-12)
 
 
+def numbers(found, row, kinds, name):
+    """Reductions of a quantity in a row of a table."""
+    return (found.loc[row, next(column for column in found if column.startswith(f"{kind} {name} "))] for kind in kinds)
+
+
+def assert_true_ends(scene, names, lengths, **options):
+    """Smallest and largest values of the last crank length, the scene's own, are those of `extremes`."""
+    outputs = [f"{end} {name}" for name in names for end in ("smallest", "largest")]
+    found = sweep(scene, pd.DataFrame({"crank_length": lengths}), outputs, **options)
+    truth = [end for name in names for end in ks.extremes(scene.solve(36), name).range]
+    np.testing.assert_allclose(found.iloc[-1, 1:-1].to_numpy(dtype=float), truth, rtol=1e-6)
+
+
+KINDS = ("largest", "mean_absolute", "rms")
 OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
 
 
@@ -201,10 +215,7 @@ def test_no_spike_of_a_table_is_missed(seed, angles):
         own = scene.varied({"crank_length": length})
         for name in names:
             (low, high), means = spikes.ends(own, name), spikes.means(own, name)
-            largest, smallest, extent, *others = (
-                found.loc[row, next(column for column in found if column.startswith(f"{kind} {name} "))]
-                for kind in OF_SPIKES
-            )
+            largest, smallest, extent, *others = numbers(found, row, OF_SPIKES, name)
             size = max(abs(low), abs(high))
             assert largest == pytest.approx(high, abs=1e-7 * size)
             assert low - 2e-3 * size < smallest <= low + 1e-7 * size  # few angles stand where a reaction is least
@@ -247,17 +258,14 @@ def of_smooth_curve(count, around=True):
 def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
     monkeypatch.setattr(chunk, "PiecewiseTurns", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
-    outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
+    outputs = [f"{kind} {name}" for name in names for kind in KINDS]
     found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles)
     assert found[FAILED].tolist() == ["", ""]
     for name in names:
-        largest, *others = (found.loc[1, next(c for c in found if c.startswith(f"{kind} {name} "))] for kind in KINDS)
+        largest, *others = numbers(found, 1, KINDS, name)
         low, high = spikes.ends(scene, name)
         assert largest == pytest.approx(high, abs=1e-5 * max(high, -low))
         assert others == pytest.approx(spikes.means(scene, name), rel=2e-5)
-
-
-KINDS = ("largest", "mean_absolute", "rms")
 
 
 def test_unresolved_rows_are_taken_one_by_one():
@@ -275,12 +283,7 @@ def test_jumps_of_friction_are_seen_from_both_sides(angles):
     friction = {"guide": ks.GuideFriction(0.15), "B": ks.PinFriction(0.1, 0.02)}
     saw = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
     scene = ks.Scene(saw, 20.0, loads=[ks.Gravity()], friction=friction)
-    names = ("balancing_torque", "B", "guide_force")
-    outputs = [f"{kind} {name}" for name in names for kind in ("largest", "smallest")]
-    found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles).iloc[1, 1:-1]
-    at = scene.solve(36)
-    truth = [end for name in names for end in reversed(ks.extremes(at, name).range)]
-    np.testing.assert_allclose(found.to_numpy(dtype=float), truth, rtol=1e-6)
+    assert_true_ends(scene, ("balancing_torque", "B", "guide_force"), [0.04, 0.05], angles=angles)
 
 
 @pytest.mark.slow
@@ -293,11 +296,7 @@ def test_dead_centre_jumps_make_no_peaks(angle, back, rubs):
     table = ks.Table([0.1, 0.3], [300.0, -200.0], over="travel", back=[-100.0, 500.0] if back else None)
     friction = {"guide": ks.GuideFriction(0.2), "O": ks.PinFriction(0.1, 0.01)} if rubs else {}
     scene = ks.Scene(pump, 30.0, loads=[ks.ProcessForce(table)], friction=friction)
-    outputs = [f"{end} {name}" for name in ("O", "B", "balancing_torque") for end in ("smallest", "largest")]
-    found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.043, 0.05]}), outputs)
-    at = scene.solve(36)
-    truth = [end for name in ("O", "B", "balancing_torque") for end in ks.extremes(at, name).range]
-    np.testing.assert_allclose(found.iloc[2, 1:-1].to_numpy(dtype=float), truth, rtol=1e-6)
+    assert_true_ends(scene, ("O", "B", "balancing_torque"), [0.04, 0.043, 0.05])
 
 
 def test_a_slider_that_leaves_its_table_is_still_told():

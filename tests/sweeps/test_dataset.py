@@ -102,18 +102,18 @@ def test_a_killed_process_leaves_a_folder_that_goes_on(tmp_path, expected):
 
 def test_stopped_worker_sweep_goes_on(tmp_path, expected, monkeypatch):
     """By an error while results come in."""
-    put = dataset.Dataset._put
+    put = dataset.Dataset.keep
 
     def full(self, number, rows):
         if number == 3:
             raise OSError("disk full")
         put(self, number, rows)
 
-    monkeypatch.setattr(dataset.Dataset, "_put", full)
+    monkeypatch.setattr(dataset.Dataset, "keep", full)
     with ThreadPoolExecutor(2) as executor:
         with pytest.raises(OSError, match="disk full"):
             sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=tmp_path, executor=executor)
-        monkeypatch.setattr(dataset.Dataset, "_put", put)
+        monkeypatch.setattr(dataset.Dataset, "keep", put)
         assert_equal(sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=tmp_path, executor=executor), expected)
 
 
