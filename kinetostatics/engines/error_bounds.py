@@ -130,10 +130,7 @@ class ErrorBounds:
     def of(self, outputs):
         """A bound for each output, not negative; infinite or NaN where there is none.
 
-        Raises
-        ------
-        NotGivenError
-            Code of the user's rounds in an unknown way, or terms of second order may be too large.
+        `NotGivenError` if code of the user's rounds in an unknown way, or terms of second order may be too large.
         """
         self.look_at(outputs)
         return tuple(map(self._whole, outputs))

@@ -43,13 +43,7 @@ def _jax():
 
 
 def device_of(platform=None):
-    """The first device of JAX, an accelerator if there is one, or the first of a platform.
-
-    Raises
-    ------
-    ParameterError
-        JAX finds no device of the platform; the message lists the platforms it finds.
-    """
+    """The first device of JAX, an accelerator if there is one, or of a platform; `ParameterError` if it finds none."""
     jax = _jax()
     if platform is None:
         return jax.devices()[0]
@@ -96,15 +90,9 @@ class DeviceProgram:
 
 
 class Given(NamedTuple):
-    """Inputs of the operations at each crank angle: arrays of one dtype, and numbers that NumPy converts to it.
+    """Inputs of the operations at each crank angle: arrays (..., N) of one dtype, and numbers that NumPy converts to it.
 
-    Attributes
-    ----------
-    angle, sine, cosine : array (..., N)
-    parameters : list of number or array (..., 1)
-    rows : list of number or array (..., N)
-    shape : tuple of int
-        Shape of the results, without the axis of outputs.
+    Parameters may be arrays (..., 1), rows of tables (..., N); `shape` is that of an output.
     """
 
     angle: Any
@@ -118,10 +106,7 @@ class Given(NamedTuple):
 class MixedPrecision:
     """A program split into values fixed by the design and operations at each crank angle.
 
-    Attributes
-    ----------
-    at_angles : Program
-        Its parameters are the values fixed by the design; it has no other constants.
+    The parameters of the program `at_angles` are the values fixed by the design; it has no other constants.
     """
 
     def __init__(self, program):
@@ -218,12 +203,7 @@ class Backend:
     def bounds(self, program, state, leaves, tight=False):
         """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without one.
 
-        `tight` needs `is_own`.
-
-        Raises
-        ------
-        NotGivenError
-            The rounding of user code, or of a device, is not known.
+        `tight` needs `is_own`. `NotGivenError` if the rounding of user code, or of a device, is not known.
         """
         if self.engine == "jax" and (device := device_of(self.platform)).platform != PROVEN:
             raise NotGivenError(

@@ -33,13 +33,7 @@ BUFFER_VALUES = 2048
 
 
 class Program:
-    """A recording ready to run.
-
-    Attributes
-    ----------
-    outputs : tuple of Node or float
-    recording : Recording
-    """
+    """Outputs of a `Recording`, all of them or others of its graph, ready to run."""
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -51,10 +45,7 @@ class Program:
     def by_parameters(self, places):
         """Program of all outputs, followed by their derivatives by the parameters at some places.
 
-        Raises
-        ------
-        NotGivenError
-            An output depends on code of the user that could not be recorded.
+        `NotGivenError` if an output depends on code of the user that could not be recorded.
         """
         if places not in self._slopes:
             recording = self.recording
@@ -70,12 +61,8 @@ class Program:
     def bounded(self, tight=False):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
-        Tight ones may be so where the others are finite.
-
-        Raises
-        ------
-        NotGivenError
-            Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
+        Tight ones may be so where the others are finite. `NotGivenError` if an output depends on user code that could
+        not be recorded, or on a cam made of samples.
         """
         if tight not in self._bounded:
             of_recording = self.recording.graph, self.recording.inputs
@@ -134,17 +121,9 @@ class Program:
         return run(angle, leaves.numbers, self.rows(state, leaves), shape)
 
     def by_numpy(self, angle, numbers, rows, shape, turn=None):
-        """Outputs (outputs, *shape) in the dtype of the crank angles.
+        """Outputs (outputs, *shape), in the dtype of the crank angles (..., N).
 
-        Parameters
-        ----------
-        angle : array (..., N)
-        numbers : sequence of number or array (..., 1)
-        rows : sequence of number or array (..., N)
-            Rows of tables.
-        shape : tuple of int
-        turn : pair of array (..., N), optional
-            Sine and cosine of the crank angles.
+        Numbers may be arrays (..., 1), rows of tables (..., N); `turn` has sine and cosine of the crank angles, if known.
         """
         if not shape:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
@@ -236,20 +215,9 @@ _memory = threading.local()
 def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
     """Program of some quantities for the structure of a `Dynamics`, and the leaves of that `Dynamics`.
 
-    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen.
-
-    Parameters
-    ----------
-    state : Dynamics
-    quantities, sizes
-        As in `record.record`.
-    lasting : bool
-        Refuse scenes that must be recorded at every call.
-
-    Raises
-    ------
-    NotGivenError
-        A group or load of the user's own cannot be recorded.
+    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen, which
+    `lasting` refuses. `quantities` and `sizes` as in `record.record`. `NotGivenError` if a group or load of the user's
+    own cannot be recorded.
     """
     structure, leaves = state.apart
     if not leaves.lasting or state.way is not None:

@@ -330,14 +330,7 @@ class LeafIndex(int):
 
 
 class StructureCache:
-    """A structure, as `flatten` returns it, and cached results that hold for all its items.
-
-    Attributes
-    ----------
-    structure : tuple
-    known : dict
-        Results by the function that computes them.
-    """
+    """A structure, as `flatten` returns it, and cached results that hold for all its items, by question."""
 
     def __init__(self, structure):
         self.structure, self.known = structure, {}
