@@ -135,7 +135,7 @@ def load_module(text, keep=False) -> ModuleType:
 
 
 def _kept(text):
-    """The module with machine code from its folder, compiled and written there if missing; `OSError` if it cannot be."""
+    """The module with machine code from its folder, compiled and written there if missing; or an `OSError`."""
     from numba import config
 
     if vars(config)["CACHE_DIR"]:

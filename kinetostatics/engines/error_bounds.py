@@ -484,7 +484,12 @@ def _moved_apart(parts, unit):
     return None
 
 
-# Tight bounds
+# Bounds of outputs
+
+
+def running_bounds(graph, inputs, outputs, arithmetic=OWN):
+    """A bound for each output, as `ErrorBounds.of`."""
+    return ErrorBounds(graph, inputs, arithmetic).of(outputs)
 
 
 def tight_bounds(graph, inputs, outputs, arithmetic=OWN):

@@ -19,7 +19,7 @@ from ..numbers.parameter_tree import FLOATS, Leaves
 from . import numba_backend
 from .codegen import ARRAYS, BY_DESIGN, PLAIN, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients
-from .error_bounds import ErrorBounds, tight_bounds
+from .error_bounds import OWN, running_bounds, tight_bounds
 from .graph import needed, operations
 from .numba_backend import keep_for_same_angles, load_compiled, numba_available
 from .record import Recorder, record
@@ -38,37 +38,41 @@ class Program:
     def __init__(self, recording, outputs=None):
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
-        self._slopes: dict[tuple[int, ...], Program] = {}
-        self._bounded: dict[bool, Program] = {}
+        self._kept: dict[Any, Any] = {}
         self._computed, self._operations = 0.0, operations(self.outputs)
+
+    def kept(self, key, make) -> Any:
+        """Result of ``make()``, computed once for a key."""
+        if key not in self._kept:
+            self._kept[key] = make()
+        return self._kept[key]
 
     def by_parameters(self, places):
         """Program of all outputs, followed by their derivatives by the parameters at some places.
 
         `NotGivenError` if an output depends on code of the user that could not be recorded.
         """
-        if places not in self._slopes:
-            recording = self.recording
-            if self.unrecorded:
-                raise NotGivenError(
-                    f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
-                    "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
-                )
-            rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
-            self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
-        return self._slopes[places]
+        if self.unrecorded:
+            raise NotGivenError(
+                f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
+                "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
+            )
+        parameters = [self.recording.parameters[place] for place in places]
+        return self.kept(places, lambda: self._with(*gradients(self.recording.graph, self.outputs, parameters)))
 
-    def bounded(self, tight=False):
+    def _with(self, *more):
+        """Program of all outputs, followed by others."""
+        return Program(self.recording, (*self.outputs, *(part for row in more for part in row)))
+
+    def bounded(self, tight=False, arithmetic=OWN):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
         Tight ones may be so where the others are finite. `NotGivenError` if an output depends on user code that could
         not be recorded, or on a cam made of samples.
         """
-        if tight not in self._bounded:
-            of_recording = self.recording.graph, self.recording.inputs
-            bounds = tight_bounds(*of_recording, self.outputs) if tight else ErrorBounds(*of_recording).of(self.outputs)
-            self._bounded[tight] = Program(self.recording, (*self.outputs, *bounds))
-        return self._bounded[tight]
+        bounds = tight_bounds if tight else running_bounds
+        inputs = self.recording.graph, self.recording.inputs, self.outputs, arithmetic
+        return self.kept((tight, arithmetic), lambda: self._with(bounds(*inputs)))
 
     @cached_property
     def unrecorded(self):
@@ -123,7 +127,7 @@ class Program:
     def by_numpy(self, angle, numbers, rows, shape, turn=None):
         """Outputs (outputs, *shape), in the dtype of the crank angles (..., N).
 
-        Numbers may be arrays (..., 1), rows of tables (..., N); `turn` has sine and cosine of the crank angles, if known.
+        Numbers may be arrays (..., 1), rows of tables (..., N); `turn` has known sines and cosines of the crank angles.
         """
         if not shape:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
