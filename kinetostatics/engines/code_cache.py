@@ -33,10 +33,7 @@ class UntrustedError(OSError):
 def programs_folder() -> Path:
     """Folder of kept programs: KINETOSTATICS_CACHE, else the user's cache folder; created if missing.
 
-    Raises
-    ------
-    OSError
-        There is none, it cannot be created, or other users may write to it.
+    `OSError` if there is none, it cannot be created, or other users may write to it.
     """
     given = os.environ.get("KINETOSTATICS_CACHE")
     try:
@@ -77,13 +74,7 @@ def require_private(path):
 
 
 def is_intact(entry) -> bool:
-    """Whether the files of a program's folder have the kept checksums.
-
-    Raises
-    ------
-    UntrustedError
-        Other users may write to it, or to one of its files.
-    """
+    """Whether the files of a program's folder have the kept checksums; `UntrustedError` if others may write to one."""
     files = _files(entry)
     if any(path.is_symlink() or not (path.is_file() or path.is_dir()) for path in (entry, *files)):
         return False
@@ -128,16 +119,10 @@ def _checksums(entry):
 
 
 def load_module(text, keep=False) -> ModuleType:
-    """Module of a source text.
+    """Module of a source text, in which `KEEP` is whether machine code is kept: ``njit(signature, cache=KEEP)``.
 
-    Parameters
-    ----------
-    text : str
-        It may use `KEEP`, whether machine code is kept: ``njit(signature, cache=KEEP)``. Only functions with a
-        signature are kept, because they are compiled while the module is loaded.
-    keep : bool
-        Read machine code from disk and write it there. If that fails, the module is compiled in memory, with a
-        `CacheWarning` once.
+    Only functions with a signature are kept, because they are compiled while the module is loaded. `keep` reads machine
+    code from disk and writes it there; if that fails, the module is compiled in memory, with a `CacheWarning` once.
     """
     with deferred():  # LLVM calls back into Python, where an interruption is lost
         if keep:
@@ -150,13 +135,7 @@ def load_module(text, keep=False) -> ModuleType:
 
 
 def _kept(text):
-    """The module with machine code from its folder; compiled and written there if missing.
-
-    Raises
-    ------
-    OSError
-        It can be neither read nor written.
-    """
+    """The module with machine code from its folder, compiled and written there if missing; or an `OSError`."""
     from numba import config
 
     if vars(config)["CACHE_DIR"]:

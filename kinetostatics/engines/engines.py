@@ -77,10 +77,7 @@ class Recorded:
     def with_bounds(self, state, names, tight=False):
         """Values by name, and by name bounds on their rounding errors, infinite or NaN where there is none.
 
-        Raises
-        ------
-        NotGivenError
-            The kernels cannot be recorded, or code of the user's rounds in a way that is not known.
+        `NotGivenError` if the kernels cannot be recorded, or code of the user's rounds in an unknown way.
         """
         if not is_plain(state.crank_angle):
             return KERNELS.with_bounds(state, names, tight)

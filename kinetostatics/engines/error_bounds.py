@@ -130,10 +130,7 @@ class ErrorBounds:
     def of(self, outputs):
         """A bound for each output, not negative; infinite or NaN where there is none.
 
-        Raises
-        ------
-        NotGivenError
-            Code of the user's rounds in an unknown way, or terms of second order may be too large.
+        `NotGivenError` if code of the user's rounds in an unknown way, or terms of second order may be too large.
         """
         self.look_at(outputs)
         return tuple(map(self._whole, outputs))
@@ -487,7 +484,12 @@ def _moved_apart(parts, unit):
     return None
 
 
-# Tight bounds
+# Bounds of outputs
+
+
+def running_bounds(graph, inputs, outputs, arithmetic=OWN):
+    """A bound for each output, as `ErrorBounds.of`."""
+    return ErrorBounds(graph, inputs, arithmetic).of(outputs)
 
 
 def tight_bounds(graph, inputs, outputs, arithmetic=OWN):

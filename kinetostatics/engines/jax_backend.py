@@ -5,10 +5,9 @@ rows of tables are computed in double and rounded once; the operations at each c
 asked for. So a crank angle may be a million turns, and masses may nearly cancel.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.lazy import cached_property
 from . import numba_backend
 from .codegen import BY_DESIGN, PLAIN, array_functions, compile_line, line_source, loop_source
-from .error_bounds import CAP, PRECISIONS, ErrorBounds, where_known, with_bounds
+from .error_bounds import CAP, PRECISIONS, where_known, with_bounds
 from .graph import parted
 from .numba_backend import load_compiled
 from .program import Program, numpy_sines
@@ -43,13 +42,7 @@ def _jax():
 
 
 def device_of(platform=None):
-    """The first device of JAX, an accelerator if there is one, or the first of a platform.
-
-    Raises
-    ------
-    ParameterError
-        JAX finds no device of the platform; the message lists the platforms it finds.
-    """
+    """The first device of JAX, an accelerator if there is one, or of a platform; `ParameterError` if it finds none."""
     jax = _jax()
     if platform is None:
         return jax.devices()[0]
@@ -67,7 +60,7 @@ def device_name(device):
 
 
 class DeviceProgram:
-    """A `MixedPrecision` run by JAX on a device, compiled once for each shape."""
+    """A `MixedPrecision` run by JAX on a device, compiled once for each dtype and shape."""
 
     def __init__(self, split, device):
         jax = _jax()
@@ -89,22 +82,16 @@ class DeviceProgram:
             # one array of all: a transfer for each would take longer than computing
             inputs = (np.array(np.broadcast_arrays(*parts), dtype) for parts in (given.parameters, given.rows))
             arrays = *given[:3], *inputs
-            key = given.shape, *(part.shape for part in arrays)
+            key = dtype, given.shape, *(part.shape for part in arrays)
             if key not in self._compiled:
                 self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
             return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
 
 
 class Given(NamedTuple):
-    """Inputs of the operations at each crank angle: arrays of one dtype, and numbers that NumPy converts to it.
+    """Inputs of the operations at each crank angle: arrays (..., N) of a dtype, and numbers that NumPy converts to it.
 
-    Attributes
-    ----------
-    angle, sine, cosine : array (..., N)
-    parameters : list of number or array (..., 1)
-    rows : list of number or array (..., N)
-    shape : tuple of int
-        Shape of the results, without the axis of outputs.
+    Parameters may be arrays (..., 1), rows of tables (..., N); `shape` is that of an output.
     """
 
     angle: Any
@@ -118,10 +105,7 @@ class Given(NamedTuple):
 class MixedPrecision:
     """A program split into values fixed by the design and operations at each crank angle.
 
-    Attributes
-    ----------
-    at_angles : Program
-        Its parameters are the values fixed by the design; it has no other constants.
+    The parameters of the program `at_angles` are the values fixed by the design; it has no other constants.
     """
 
     def __init__(self, program):
@@ -165,9 +149,6 @@ class MixedPrecision:
         return load_compiled(loop_source(self.at_angles.outputs, fuse=False, kind="float32")).loop
 
 
-_splits: WeakKeyDictionary[Program, MixedPrecision] = WeakKeyDictionary()
-
-
 @dataclass(frozen=True)
 class Backend:
     """An engine with its precision and device.
@@ -183,11 +164,6 @@ class Backend:
     engine: str
     precision: str = "double"
     platform: str | None = None
-    _on_device: Any = field(default_factory=WeakKeyDictionary, compare=False, repr=False)
-    _bounded: Any = field(default_factory=WeakKeyDictionary, compare=False, repr=False)
-
-    def __reduce__(self):
-        return Backend, (self.engine, self.precision, self.platform)
 
     @property
     def device(self):
@@ -203,14 +179,11 @@ class Backend:
         """Outputs (outputs, *shape) of a `Dynamics` with its leaves."""
         if self.is_own:
             return program.run(state, leaves, self.engine == "compiled")
-        if program not in _splits:
-            _splits[program] = MixedPrecision(program)
-        split = _splits[program]
+        split = program.kept("split", lambda: MixedPrecision(program))
         given = split.given(state, leaves, PRECISIONS[self.precision].dtype)
         if self.engine == "jax":
-            if program not in self._on_device:
-                self._on_device[program] = DeviceProgram(split, device_of(self.platform))
-            rows = self._on_device[program].run(given)
+            device = device_of(self.platform)
+            rows = program.kept(("jax", device), lambda: DeviceProgram(split, device)).run(given)
         else:
             rows = split.by_loop(given) if self.engine == "compiled" else split.by_numpy(given)
         return rows if state.shape else rows[:, 0]
@@ -218,12 +191,7 @@ class Backend:
     def bounds(self, program, state, leaves, tight=False):
         """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without one.
 
-        `tight` needs `is_own`.
-
-        Raises
-        ------
-        NotGivenError
-            The rounding of user code, or of a device, is not known.
+        `tight` needs `is_own`. `NotGivenError` if the rounding of user code, or of a device, is not known.
         """
         if self.engine == "jax" and (device := device_of(self.platform)).platform != PROVEN:
             raise NotGivenError(
@@ -234,10 +202,7 @@ class Backend:
         if self.is_own:
             values, found = with_bounds(program, state, leaves, compiled, tight)
         else:
-            if program not in self._bounded:
-                recording = program.recording
-                bounds = ErrorBounds(recording.graph, recording.inputs, PRECISIONS[self.precision])
-                self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
-            values, found = np.split(self._bounded[program].run(state, leaves, compiled), 2)
+            bounded = program.bounded(arithmetic=PRECISIONS[self.precision])
+            values, found = np.split(bounded.run(state, leaves, compiled), 2)
         small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
         return where_known(values, found if small else np.nan)

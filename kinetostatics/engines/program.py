@@ -19,7 +19,7 @@ from ..numbers.parameter_tree import FLOATS, Leaves
 from . import numba_backend
 from .codegen import ARRAYS, BY_DESIGN, PLAIN, buffered_source, compile_line, line_source, loop_source
 from .derivatives import gradients
-from .error_bounds import ErrorBounds, tight_bounds
+from .error_bounds import OWN, running_bounds, tight_bounds
 from .graph import needed, operations
 from .numba_backend import keep_for_same_angles, load_compiled, numba_available
 from .record import Recorder, record
@@ -33,55 +33,46 @@ BUFFER_VALUES = 2048
 
 
 class Program:
-    """A recording ready to run.
-
-    Attributes
-    ----------
-    outputs : tuple of Node or float
-    recording : Recording
-    """
+    """Outputs of a `Recording`, all of them or others of its graph, ready to run."""
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
-        self._slopes: dict[tuple[int, ...], Program] = {}
-        self._bounded: dict[bool, Program] = {}
+        self._kept: dict[Any, Any] = {}
         self._computed, self._operations = 0.0, operations(self.outputs)
+
+    def kept(self, key, make) -> Any:
+        """Result of ``make()``, computed once for a key."""
+        if key not in self._kept:
+            self._kept[key] = make()
+        return self._kept[key]
 
     def by_parameters(self, places):
         """Program of all outputs, followed by their derivatives by the parameters at some places.
 
-        Raises
-        ------
-        NotGivenError
-            An output depends on code of the user that could not be recorded.
+        `NotGivenError` if an output depends on code of the user that could not be recorded.
         """
-        if places not in self._slopes:
-            recording = self.recording
-            if self.unrecorded:
-                raise NotGivenError(
-                    f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
-                    "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
-                )
-            rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
-            self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
-        return self._slopes[places]
+        if self.unrecorded:
+            raise NotGivenError(
+                f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
+                "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
+            )
+        parameters = [self.recording.parameters[place] for place in places]
+        return self.kept(places, lambda: self._with(*gradients(self.recording.graph, self.outputs, parameters)))
 
-    def bounded(self, tight=False):
+    def _with(self, *more):
+        """Program of all outputs, followed by others."""
+        return Program(self.recording, (*self.outputs, *(part for row in more for part in row)))
+
+    def bounded(self, tight=False, arithmetic=OWN):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
-        Tight ones may be so where the others are finite.
-
-        Raises
-        ------
-        NotGivenError
-            Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
+        Tight ones may be so where the others are finite. `NotGivenError` if an output depends on user code that could
+        not be recorded, or on a cam made of samples.
         """
-        if tight not in self._bounded:
-            of_recording = self.recording.graph, self.recording.inputs
-            bounds = tight_bounds(*of_recording, self.outputs) if tight else ErrorBounds(*of_recording).of(self.outputs)
-            self._bounded[tight] = Program(self.recording, (*self.outputs, *bounds))
-        return self._bounded[tight]
+        bounds = tight_bounds if tight else running_bounds
+        inputs = self.recording.graph, self.recording.inputs, self.outputs, arithmetic
+        return self.kept((tight, arithmetic), lambda: self._with(bounds(*inputs)))
 
     @cached_property
     def unrecorded(self):
@@ -134,17 +125,9 @@ class Program:
         return run(angle, leaves.numbers, self.rows(state, leaves), shape)
 
     def by_numpy(self, angle, numbers, rows, shape, turn=None):
-        """Outputs (outputs, *shape) in the dtype of the crank angles.
+        """Outputs (outputs, *shape), in the dtype of the crank angles (..., N).
 
-        Parameters
-        ----------
-        angle : array (..., N)
-        numbers : sequence of number or array (..., 1)
-        rows : sequence of number or array (..., N)
-            Rows of tables.
-        shape : tuple of int
-        turn : pair of array (..., N), optional
-            Sine and cosine of the crank angles.
+        Numbers may be arrays (..., 1), rows of tables (..., N); `turn` has known sines and cosines of the crank angles.
         """
         if not shape:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
@@ -236,20 +219,9 @@ _memory = threading.local()
 def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
     """Program of some quantities for the structure of a `Dynamics`, and the leaves of that `Dynamics`.
 
-    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen.
-
-    Parameters
-    ----------
-    state : Dynamics
-    quantities, sizes
-        As in `record.record`.
-    lasting : bool
-        Refuse scenes that must be recorded at every call.
-
-    Raises
-    ------
-    NotGivenError
-        A group or load of the user's own cannot be recorded.
+    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen, which
+    `lasting` refuses. `quantities` and `sizes` as in `record.record`. `NotGivenError` if a group or load of the user's
+    own cannot be recorded.
     """
     structure, leaves = state.apart
     if not leaves.lasting or state.way is not None:

@@ -46,15 +46,9 @@ def shared_loop(program, numbers, angle, tables, count):
 
 
 def split_common(outputs, varied, first=0):
-    """Shared nodes, and outputs in a graph that reads them as rows of tables.
+    """Shared nodes, and outputs in a graph that reads them as rows of tables, the first of them row `first`.
 
-    Parameters
-    ----------
-    outputs : sequence of Node or float
-    varied : set of int
-        Places of the parameters that vary.
-    first : int
-        Number of the first of these rows.
+    `varied` is the set of places of the parameters that vary.
     """
     nodes = needed(outputs)
     sums = fused_sums(nodes)

@@ -22,13 +22,7 @@ _NUMBER = re.compile(NUMBER)
 
 
 def find_on_disk(path) -> Path:
-    """Path of a file, also where its name on disk has another Unicode form ("ä" as one character or as two).
-
-    Raises
-    ------
-    OSError, ValueError
-        The path cannot be looked for.
-    """
+    """Path of a file, also where its name on disk has another Unicode form ("ä" as one character or as two)."""
     path = Path(path)
     if path.name.isascii() or path.exists() or not path.parent.is_dir():
         return path
@@ -37,13 +31,7 @@ def find_on_disk(path) -> Path:
 
 
 def read_text(path, largest):
-    """Text of a regular file in UTF-8 of at most `largest` bytes.
-
-    Raises
-    ------
-    CaseError
-        It is a pipe, device or folder, larger, or no text.
-    """
+    """Text of a regular file in UTF-8 of at most `largest` bytes; `CaseError` for all others."""
     try:
         path = find_on_disk(path)
         found = path.stat()

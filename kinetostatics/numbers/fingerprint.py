@@ -172,27 +172,14 @@ class _Digests:
             return [str(whole.dtype), str(whole.shape), *held]
         if type(item).__module__.startswith("pandas.") and hasattr(item, "to_numpy"):
             return self._all([item.to_numpy(), *map(np.asarray, getattr(item, "axes", ()))])
-        if isinstance(item, list | tuple):
-            return self._all(item)
         if isinstance(item, set | frozenset):
             return sorted(self._all(item))
-        if isinstance(item, dict):
-            return self._all([part for pair in item.items() for part in pair])
-        if isinstance(item, CodeType):
-            return self._all(getattr(item, name) for name in CODE_ATTRIBUTES)
-        if isinstance(item, partial):
-            return self._all([item.func, item.args, dict(sorted(item.keywords.items()))])
-        if isinstance(item, property):
-            return self._all([item.fget, item.fset, item.fdel])
-        if isinstance(item, MethodType):
-            return self._all([item.__func__, item.__self__])
-        if isinstance(item, FunctionType):
-            return self._all(_function_parts(item))
         if isinstance(item, ModuleType | BuiltinFunctionType | np.ufunc):
             return [_versioned_name(item)]
         if isinstance(item, type):
             return [_versioned_name(item), *self._all(_class_attributes(item))]
-        return self._all(_object_parts(item))
+        parts = next((parts for kind, parts in _PARTS.items() if isinstance(item, kind)), _object_parts)
+        return self._all(parts(item))
 
     def _all(self, items):
         return [self.digest(item) for item in items]
@@ -271,3 +258,16 @@ def _object_parts(item):
 def _slots(kind):
     slots = vars(kind).get("__slots__", ())
     return [slots] if isinstance(slots, str) else slots
+
+
+_PARTS = {
+    list: list,
+    tuple: list,
+    dict: lambda item: [part for pair in item.items() for part in pair],
+    CodeType: lambda item: [getattr(item, name) for name in CODE_ATTRIBUTES],
+    partial: lambda item: [item.func, item.args, dict(sorted(item.keywords.items()))],
+    property: lambda item: [item.fget, item.fset, item.fdel],
+    MethodType: lambda item: [item.__func__, item.__self__],
+    FunctionType: _function_parts,
+}
+"""Function of an object that returns what distinguishes it from others of its type, by type."""

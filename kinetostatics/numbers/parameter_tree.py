@@ -9,9 +9,9 @@ structure share.
 """
 
 import itertools
-import threading
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
+from functools import lru_cache
 from types import FunctionType
 from typing import Any
 
@@ -104,16 +104,12 @@ def unflatten(structure, number: Callable[[], Any], table: Callable[[], Any], pa
     if type(structure) is not tuple:
         return structure
     kind: Any = structure[0].item if isinstance(structure[0], Opaque) else structure[0]
-    parts = structure[1:]
-    made = [unflatten(item, number, table, part) for item in parts]
+    made = [unflatten(item, number, table, part) for item in structure[1:]]
     if kind is tuple:
         return tuple(made)
-    return _filled(kind, made) if is_dataclass(kind) else kind(*made)
-
-
-def _filled(kind: Any, values):
-    """Item of a dataclass with these values in the order of its fields, without checks."""
-    return construct_unchecked(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
+    if is_dataclass(kind):
+        return construct_unchecked(kind, **dict(zip((field.name for field in fields(kind)), made, strict=True)))
+    return kind(*made)
 
 
 class Opaque:
@@ -334,19 +330,10 @@ class LeafIndex(int):
 
 
 class StructureCache:
-    """A structure, as `flatten` returns it, and cached results that hold for all its items.
-
-    Attributes
-    ----------
-    structure : tuple
-    known : dict
-        Results by the function that computes them.
-    used : int
-        Count of look-ups at its last use.
-    """
+    """A structure, as `flatten` returns it, and cached results that hold for all its items, by question."""
 
     def __init__(self, structure):
-        self.structure, self.known, self.used = structure, {}, 0
+        self.structure, self.known = structure, {}
 
     def __reduce__(self):
         return StructureCache, (self.structure,)
@@ -364,33 +351,15 @@ class StructureCache:
         return self.known[question]
 
 
-_caches: dict[Any, StructureCache] = {}
-_lock = threading.Lock()
-_uses = itertools.count()
-
-
+@lru_cache(MAX_STRUCTURES)
 def structure_cache(structure) -> StructureCache:
     """Cache of a structure."""
-    found = _caches.get(structure) or _new_cache(structure)
-    found.used = next(_uses)
-    return found
-
-
-def _new_cache(structure):
-    """New cache of a structure, or the one that another thread has just added."""
-    with _lock:
-        found = _caches.setdefault(structure, StructureCache(structure))
-        found.used = next(_uses)
-        while len(_caches) > MAX_STRUCTURES:
-            idle = min((kind for kind in _caches.values() if kind is not found), key=lambda kind: kind.used)
-            del _caches[idle.structure]
-    return found
+    return StructureCache(structure)
 
 
 def forget():
     """Drop all cached structures."""
-    with _lock:
-        _caches.clear()
+    structure_cache.cache_clear()
 
 
 def come_from_one_class(kind, name, *others):

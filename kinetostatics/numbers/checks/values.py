@@ -26,10 +26,7 @@ class DimensionError(Exception):
 def to_plain(value, unit):
     """Quantities, also in lists and object arrays, as numbers in a unit; other values unchanged.
 
-    Raises
-    ------
-    DimensionError
-        It measures something else.
+    `DimensionError` if one measures something else.
     """
     pint = sys.modules.get("pint")
     if pint is None or isinstance(value, int | float | np.floating) or not hasattr(pint, "Quantity"):
