@@ -78,6 +78,7 @@ class Wrench(NamedTuple):
         return Wrench(add_vectors(self.force, other.force), plus(self.moment, other.moment))
 
     def times(self, factor):
+        """The wrench of a unit force, by the size of the force."""
         return Wrench(scale_vector(factor, self.force), product(factor, self.moment))
 
 

@@ -141,13 +141,25 @@ class Stiffened(ks.Spring):
         return 2.0 * super().spring_rate(motion)
 
 
-@every("own, plain", [
-    ([Preloaded(2e5, 1.9)], [ks.Spring(2e5, 1.9), ks.ProcessForce(1000.0)]),
-    ([Preloaded(2e5, 1.9), ks.Spring(4e5, 2.1)], [ks.Spring(2e5, 1.9), ks.ProcessForce(1000.0), ks.Spring(4e5, 2.1)]),
-    ([Stiffened(2e5, 1.9)], [ks.Spring(4e5, 1.9)]),
+class Softened(ks.Spring):
+    """A spring of a user's with a rate of its own, which is not parted."""
+
+    def spring_rate(self, motion):
+        """Half as large."""
+        return 0.5 * super().spring_rate(motion)
+
+
+STIFF, PRELOAD = ks.Spring(4e5, 2.1), ks.ProcessForce(1000.0)
+
+
+@every("machine, own, plain", [
+    ("crank", [Preloaded(2e5, 1.9)], [ks.Spring(2e5, 1.9), PRELOAD]),
+    ("crank", [Preloaded(2e5, 1.9), STIFF], [ks.Spring(2e5, 1.9), PRELOAD, STIFF]),
+    ("crank", [Stiffened(2e5, 1.9)], [ks.Spring(4e5, 1.9)]),
+    ("harmonic", [Softened(2e5, 2.0, cubic=1.2e7)], [ks.Spring(1e5, 2.0, cubic=6e6)]),
 ])  # fmt: skip
-def test_a_spring_of_the_user_s_pushes_as_it_says(own, plain):
-    one, other = (ks.Scene(MACHINES["crank"], SPEED, 0.0, loads).solve(TURN) for loads in (own, plain))
+def test_a_spring_of_the_user_s_pushes_as_it_says(machine, own, plain):
+    one, other = (ks.Scene(MACHINES[machine], SPEED, 0.0, loads).solve(TURN) for loads in (own, plain))
     for name in ("B", "O"):
         np.testing.assert_allclose(
             one.reaction(name), other.reaction(name), rtol=0.0, atol=1e-13 * other.largest_force_term
@@ -173,23 +185,6 @@ def test_a_stiffening_spring_leaves_the_exact_force(guide, flint):
     s = ks.Scene(saw(cam, 2.012, guide), SPEED, 0.0, [ks.Spring(1e4, 2.0, cubic=1.2e7)]).solve(360)
     errors = differences(NUMPY.values(s.dynamics, ("B",))["B"], components(on_arb(flint.arb, s), "B"))
     assert np.max(np.hypot(*errors)) < 4e-16 * np.max(np.abs(s.dynamics.pushes["slider"]))
-
-
-class Softened(ks.Spring):
-    """A spring of a user's with a rate of its own, which is not parted."""
-
-    def spring_rate(self, motion):
-        """Half as large."""
-        return 0.5 * super().spring_rate(motion)
-
-
-def test_a_user_s_stiffening_spring_keeps_its_rate():
-    machine = saw(*CAMS["harmonic"])
-    own, plain = (
-        ks.Scene(machine, SPEED, 0.0, [spring]).solve(TURN)
-        for spring in (Softened(2e5, 2.0, cubic=1.2e7), ks.Spring(1e5, 2.0, cubic=6e6))
-    )
-    np.testing.assert_allclose(own.reaction("B"), plain.reaction("B"), rtol=0.0, atol=1e-13 * own.largest_force_term)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")

@@ -143,6 +143,14 @@ def cam_numbers(group, angle):
     return values
 
 
+def dot(a, b):
+    return (a.conjugate() * b).real
+
+
+def cross(a, b):
+    return (a.conjugate() * b).imag
+
+
 class LoadForces:
     """Loads of a `solution` as forces at points and couples on links, in one posture; derived classes give the posture.
 
@@ -194,7 +202,7 @@ class LoadForces:
         for item in self.solution.loads:
             if hasattr(item, "push"):
                 place, along, *_ = self.at(item.on)
-                yield item.on, self.push(item, (place * along.conjugate()).real) * along, place, 0.0
+                yield item.on, self.push(item, dot(along, place)) * along, place, 0.0
             elif not isinstance(item, Gravity):
                 yield from self.of(item)
 
@@ -238,7 +246,7 @@ class LoadForces:
             unit = self.where(distance > 0, apart, opening)
             size = abs(unit)
             unit = unit / self.where(size > 0, size, 1.0)
-            return -self.number(item.coefficient) * (unit.conjugate() * opening).real * unit
+            return -self.number(item.coefficient) * dot(unit, opening) * unit
         unit = apart / self.where(distance > 0, distance, 1.0)
         if isinstance(item, PointForce):
             return self.value(item) * unit
@@ -305,7 +313,7 @@ class FrictionForces:
         if friction.half_length is not None:
             edges = abs(forces[pair.couple]) / self._number(friction.half_length)
             press = self._acting.where(edges > press, edges, press)
-        sliding = (way.conjugate() * (self._moving(pair.link, place) - self._moving(pair.against, place))).real
+        sliding = dot(way, self._moving(pair.link, place) - self._moving(pair.against, place))
         force = -self._number(friction.mu) * press * self._sign(sliding) * way
         return [(pair.link, force, place, 0.0), (pair.against, -force, place, 0.0)]
 
@@ -317,7 +325,7 @@ class FrictionForces:
         reach = mu * self._number(friction.pin_radius)
         pressed = forces[pair.force]
         side = self._sign(pressed)
-        turning = -side * (way.conjugate() * moving).real / radius - self._acting.at(pair.link)[-1]
+        turning = -side * dot(way, moving) / radius - self._acting.at(pair.link)[-1]
         couple = reach * abs(pressed) / (1 - (reach / radius) ** 2) ** 0.5 * self._sign(turning)
         return [(pair.link, couple / (side * radius) * way, place, couple)]
 

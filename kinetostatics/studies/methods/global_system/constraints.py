@@ -21,7 +21,7 @@ from ....machine.group import FRAME, RATES, TRAVELS
 from ....machine.loads import Gravity
 from ....numbers.lazy import cached_property
 from ....numbers.planar import left
-from ..structures import FrictionForces, LoadForces, structure
+from ..structures import FrictionForces, LoadForces, cross, dot, structure
 
 MAX_FOOT_ITERATIONS = 30
 
@@ -60,14 +60,14 @@ class ContactEquation(NamedTuple):
         centre, first, second = self.curve(apart, turned)
         tangent = first / np.abs(first)
         normal = 1j * tangent
-        curvature = -(np.conj(first) * second).imag / np.abs(first) ** 3
+        curvature = -cross(first, second) / np.abs(first) ** 3
         rest = -(own**2) * arm - 2j * turning * speed - turning**2 * apart
-        bending = curvature * _dot(tangent, speed - 1j * turning * apart) ** 2
+        bending = curvature * dot(tangent, speed - 1j * turning * apart) ** 2
         out = normal * ray
-        parts = [(self.link, out, _dot(normal, 1j * arm))]
+        parts = [(self.link, out, dot(normal, 1j * arm))]
         if self.base is not None:
-            parts.append((self.base, -out, _dot(normal, -1j * apart)))
-        return CurvedTerms(_dot(normal, apart - centre), parts, _dot(normal, rest) + bending)
+            parts.append((self.base, -out, dot(normal, -1j * apart)))
+        return CurvedTerms(dot(normal, apart - centre), parts, dot(normal, rest) + bending)
 
 
 def fixed_pitch_curve(cam, place, turned):
@@ -82,7 +82,7 @@ def turning_pitch_curve(disk, place, turned):
     for _ in range(MAX_FOOT_ITERATIONS):
         centre, first, second = disk.curve(turned)
         off = place - centre
-        turned = turned - _dot(off, first) / (_dot(off, second) - np.abs(first) ** 2)
+        turned = turned - dot(off, first) / (dot(off, second) - np.abs(first) ** 2)
     return disk.curve(turned)
 
 
@@ -104,10 +104,6 @@ class FlatFollowerEquation(NamedTuple):
         second = 2.0 * own * aside.imag - own**2 * height.real - law.acceleration * (turning - own) ** 2
         parts = (self.link, axis, height.imag + law.velocity), (self.crank, -axis, -law.velocity)
         return CurvedTerms(height.real - law.position, parts, second)
-
-
-def _dot(a, b):
-    return (np.conj(a) * b).real
 
 
 POSITION, RATE, ACCELERATION, FORCE = range(4)
@@ -330,36 +326,35 @@ class Configuration:
         arm = model.centre * self.axes
         gravity = sum(complex(*item.vector) for item in solution.loads if isinstance(item, Gravity))
         force = model.mass * (self.plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
-        moment = model.inertia * turning_up + (arm.conj() * force).imag
-        self._take(_LoadForces(self, rates, solution).effects(), force, moment)
-        return np.concatenate([force.real, force.imag, moment], axis=-1)
+        moment = model.inertia * turning_up + cross(arm, force)
+        own = np.concatenate([force.real, force.imag, moment], axis=-1)
+        return own - self._generalised(_LoadForces(self, rates, solution).effects())
 
-    def _take(self, effects, force, moment):
-        """Subtract effects of loads from forces and moments at the reference joints."""
+    def _generalised(self, effects):
+        """Forces and moments at the reference joints, (..., 3k), of effects of loads or friction."""
+        joints = self.plane(self.q)
+        force, moment = np.zeros_like(joints), np.zeros(joints.shape)
         for name, applied, at, couple in effects:
             if name in self.model.names:
                 link = self.model.names.index(name)
-                force[..., link] -= applied
-                moment[..., link] -= couple + (np.conj(at - self.plane(self.q)[..., link]) * applied).imag
+                force[..., link] += applied
+                moment[..., link] += couple + cross(at - joints[..., link], applied)
+        return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def forces(self, rates, demand, solution):
         """Complex reactions, scalar forces and the drive torque that balance a demand, with friction."""
         readings = {name: part for name, (order, part) in self.model.readings.items() if order == FORCE}
 
         def solve(effects):
-            force, moment = np.zeros((2, *demand.shape[:-1], self.model.size), complex)
-            self._take(effects, force, moment)
-            more = np.concatenate([force.real, force.imag, moment.real], axis=-1)
-            return self.solve(demand + more, transposed=True)
+            return self.solve(demand - self._generalised(effects), transposed=True)
 
         def named(multipliers):
             parts = {name: part @ multipliers.T for name, part in readings.items()}
             return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
 
         friction = FrictionForces(_LoadForces(self, rates, solution))
-        found = named(
-            friction.converge(solve, named, lambda multipliers: np.abs(multipliers).max(), FRICTION_TOLERANCE)
-        )
+        multipliers = friction.converge(solve, named, lambda found: np.abs(found).max(), FRICTION_TOLERANCE)
+        found = named(multipliers)
         return found | {name: found[name] + force for name, force in friction.along(found).items() if name in found}
 
     def body(self, link, rates=None):

@@ -105,17 +105,10 @@ def relative_errors(found, reference: Enclosure):
     True
     """
     flint = require_library("flint")
-
-    def difference(value, exact):
-        if isinstance(value, flint.arb):
-            return float(value - exact)
-        return float(flint.arb(float(value)) - exact) if np.isfinite(value) else abs(float(value))
-
+    difference = np.frompyfunc(lambda value, exact: float(flint.arb(value) - exact), 2, 1)
     with flint.ctx.workprec(reference.bits):
-        parts = [
-            np.array([difference(*pair) for pair in zip(np.broadcast_to(values, exact.shape), exact, strict=True)])
-            for values, exact in zip(found, reference.exact, strict=True)
-        ]
+        pairs = zip(found, reference.exact, strict=True)
+        parts = [np.asarray(difference(values, exact), dtype=float) for values, exact in pairs]
     errors = magnitude(parts)
     return errors / reference.largest if reference.largest else np.where(errors > 0, np.inf, errors)
 

@@ -112,10 +112,10 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
             run = on_arb(flint.arb, solution)
             closing = _certainly_closes(run, solution)
             values = _evaluate_on_arb(quantity, lambda run=run: components(run, quantity))
-            values = [np.array([flint.arb(value) for value in part], dtype=object) for part in values]
-            exact = tuple(np.array([value.mid() for value in part], dtype=object) for part in values)
+            values = [np.frompyfunc(flint.arb, 1, 1)(part) for part in values]
+            exact = tuple(np.frompyfunc(flint.arb.mid, 1, 1)(part) for part in values)
             middle = tuple(part.astype(float) for part in exact)
-            radii = magnitude([np.array([float(value.rad()) for value in part]) for part in values])
+            radii = magnitude([np.frompyfunc(flint.arb.rad, 1, 1)(part).astype(float) for part in values])
         radii = np.where(closing & np.isfinite(magnitude(middle)), radii, np.inf)
         found = Enclosure(middle, exact, float(radii.max()), bits)
         if all(value.is_zero() for part in values for value in part):

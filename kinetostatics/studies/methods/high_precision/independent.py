@@ -27,7 +27,7 @@ from ....machine.loads import Gravity, Load
 from ....mechanics.quantities import RATES
 from ....numbers import checks
 from ..method import require_moving
-from ..structures import FrictionForces, LoadForces
+from ..structures import FrictionForces, LoadForces, cross, dot
 from .enclosures import on_arb, require_library, require_one_design
 
 
@@ -189,14 +189,6 @@ class Posture:
 
 def left(a):
     return a * 1j
-
-
-def dot(a, b):
-    return (a.conjugate() * b).real
-
-
-def cross(a, b):
-    return (a.conjugate() * b).imag
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):

@@ -19,7 +19,7 @@ from ....errors import NotGivenError
 from ....machine.group import FRAME
 from ....machine.loads import Gravity, ProcessForce, Spring
 from ..method import Method, require_frictionless, require_one_design, with_numeric_side
-from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, structure
+from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, cross, structure
 from .motion import PHI, SPEED, TORQUE, Motion, N, left, linear, planar, rate
 
 MAX_EQUATIONS_TOGETHER = 3
@@ -211,7 +211,7 @@ class AppliedLoads(LoadForces):
         for item in self.others:
             for link, force, at, couple in self.of(item):
                 if link in self.places:
-                    turning = couple + np.imag(np.conj(at - self.at(link)[0]) * force)
+                    turning = couple + cross(at - self.at(link)[0], force)
                     for part, amount in zip(LOAD_PARTS, (np.real(force), np.imag(force), turning), strict=True):
                         add(f"{link}_load_{part}", amount)
         return found
@@ -327,8 +327,4 @@ def all_forces(solution):
     return named
 
 
-def _prepare(solution, quantity, setting=None):
-    return evaluation(solution, (quantity,))
-
-
-METHODS = (Method("SymPy Kane, lambdified", _prepare),)
+METHODS = (Method("SymPy Kane, lambdified", lambda solution, quantity, setting: evaluation(solution, (quantity,))),)
