@@ -7,9 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cycle.extremes import extrema
 from ..cycle.reductions import Output
-from ..drive.flywheel_sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
@@ -23,8 +21,6 @@ ANGLES = 720
 """Crank angles over the period."""
 MIN_ANGLES = 12
 """Fewest crank angles of a curve."""
-EXTREME_REDUCTIONS = ("largest", "smallest", "largest_absolute", "range")
-"""Reductions checked at true extremes."""
 MISSED = 1e3 * LIMIT_TOLERANCE
 """Excess over a limit, relative to its size, that counts as missed by a search."""
 MAX_TIGHTENINGS = 4
@@ -266,31 +262,25 @@ def _failure_text(problem, goal, limits, best, count):
 
 def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
     """The design with limits kept at true extremes: tighten them by the excess between samples and search again."""
-    drawn = list(limits)
+    drawn, scales = list(limits), np.array([limit.scale for limit in limits])
+    equal = np.array([limit.relation == "=" for limit in limits], dtype=bool)
     for left in reversed(range(MAX_TIGHTENINGS + 1)):
-        over, failure = np.zeros(len(limits)), None  # of the design over limits at true extremes
-        scene = scene_of(problem.scene(best.values))
+        over, failure = np.zeros(len(limits)), None
         for place, limit in enumerate(limits):
             try:
-                of_spread = callable(limit.output)
-                excess = excess_over(problem, limit, best.values)[0][0] if of_spread else true_excess(limit, scene)
-                over[place] = excess
+                over[place] = _true_excess_of(problem, limit, best.values)
             except KinetostaticsError as error:
                 failure = error
-        if failure is None and all(
-            part <= LIMIT_TOLERANCE * limit.scale / 2 for part, limit in zip(over, limits, strict=True)
-        ):
+        missed = np.where(equal, np.abs(over), over) / scales
+        worst = missed.max(initial=0.0)
+        if failure is None and worst <= LIMIT_TOLERANCE / 2:
             return best
-        if not left or not any(part > 0 for part in over):
+        if not left or worst == 0.0:
             break
-        for place in np.flatnonzero(over > 0).tolist():
-            limit = drawn[place]
-            side = 1.0 if limit.relation == "<=" else -1.0
-            if limit.relation == "=":
-                side = np.sign(true_extreme(limit.output, scene) - limit.value)
-            drawn[place] = replace(limit, value=limit.value - side * 1.01 * over[place])
+        for place in np.flatnonzero(missed > 0.0).tolist():
+            side = -1.0 if drawn[place].relation == ">=" else 1.0
+            drawn[place] = replace(drawn[place], value=drawn[place].value - side * 1.01 * over[place])
         best = search_from(problem, goal, drawn, best.values, rounds=2)
-    worst = max((part / limit.scale for part, limit in zip(over, limits, strict=True)), default=0.0)
     if failure is None and worst <= LIMIT_TOLERANCE:
         return best
     why = f"limits hold there, but are missed by {worst:.2g} of their size between; give more angles"
@@ -301,19 +291,14 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
     )
 
 
+def _true_excess_of(problem, limit, values):
+    """`true_excess` of a design; of an output over a spread or a ratio, at the crank angles of the search."""
+    if callable(limit.output) or limit.output.ratio:
+        return excess_over(problem, limit, values)[0][0]
+    return true_excess(limit, scene_of(problem.scene(values)))
+
+
 def true_excess(limit, scene):
-    """Excess of a scene over a limit at true extremes; not positive if it is kept."""
-    excess = true_extreme(limit.output, scene) - limit.value
-    return abs(excess) if limit.relation == "=" else -excess if limit.relation == ">=" else excess
-
-
-def true_extreme(output, scene):
-    """Value of an output of a scene, with true extremes."""
-    if (output.reduction, output.quantity, output.ratio) == ("swing", "balancing_torque", False) and scene.crank_speed:
-        return flywheel(scene, 1.0).energy
-    if output.ratio or output.reduction not in EXTREME_REDUCTIONS:
-        return true_value(output, scene)
-    low, high = extrema(scene.solve(12), output.quantity).range
-    if output.reduction == "range":
-        return high - low
-    return {"largest": high, "smallest": low, "largest_absolute": max(high, -low)}[output.reduction]
+    """Excess of a scene over a limit at true extremes, not positive if it is kept; of an equality the difference."""
+    excess = true_value(limit.output, scene) - limit.value
+    return -excess if limit.relation == ">=" else excess

@@ -14,7 +14,7 @@ from . import measures
 from .constraints import Constraint, parse_output
 from .problem import compared_value
 from .robust import quantile
-from .search import excess_over, minimises_peak
+from .search import excess_over, is_peak
 
 DISTANCE_TOLERANCE = 1e-9
 """Relative distance to the shaft that counts as rounding."""
@@ -203,7 +203,7 @@ def active_prices(problem, goal, limits, values):
     output, sign = goal
     if callable(output):
         slopes = sign * output(values)[1][:, None]
-    elif not minimises_peak(goal):
+    elif not is_peak(output, sign):
         slopes = sign * problem.output(output, values)[1][:, None]
     else:  # a column for each of equal peaks, the highest first
         heights, slopes = measures.bounded(output.reduction, problem.curve(output, values))

@@ -225,7 +225,7 @@ class SampledOutput:
                 *pair, above = self._trimmed(numbers, changes)
             else:
                 pair, above = self._curves(numbers, changes), self._above(numbers)
-            curves = [measures.Curve(*parts, self.turns) for parts in zip(*pair, strict=True)]
+            curves = [measures.Curve(values, slopes, self.turns) for values, slopes in zip(*pair, strict=True)]
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             value, row = measures.reduced(self.output.reduction, curve)

@@ -181,10 +181,8 @@ def excesses_over(problem, limits, values):
 
 def excess_over(problem, limit, values):
     """Excess of a design over a limit (parts,), not positive if it is kept, and derivatives (n, parts)."""
-    output, relation = limit.output, limit.relation
-    sign = -1.0 if relation == ">=" else 1.0
-    bounded = not callable(output) and output.reduction in measures.SIDES and not output.ratio and relation != "="
-    if bounded and (relation == "<=") == (output.reduction != "smallest"):
+    output, sign = limit.output, -1.0 if limit.relation == ">=" else 1.0
+    if limit.relation != "=" and is_peak(output, sign):
         found, slopes = measures.bounded(output.reduction, problem.curve(output, values))
         return found - sign * limit.value, slopes
     found, slopes = problem.output(output, values)
@@ -196,7 +194,7 @@ class _ScaledProblem:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised = minimises_peak(goal)
+        self.raised = is_peak(*goal)  # bounded by an extra unknown
         self._last: tuple[Any, Any] = None, None
         first = self.reached(start)
         self.unit = abs(first) or 1.0
@@ -278,8 +276,8 @@ class _ScaledProblem:
         return np.nan_to_num(-excess, nan=-INFEASIBLE_GOAL), np.nan_to_num(rows), equal
 
 
-def minimises_peak(goal):
-    """Whether the goal is a largest value to minimise, bounded by an extra unknown."""
-    if callable(goal.output) or goal.output.ratio:
+def is_peak(output, sign):
+    """Whether an output times a sign is a largest value over the period, which its parts bound one by one."""
+    if callable(output) or output.ratio:
         return False
-    return goal.output.reduction in measures.SIDES and (goal.sign > 0) == (goal.output.reduction != "smallest")
+    return output.reduction in measures.SIDES and (sign > 0) == (output.reduction != "smallest")
