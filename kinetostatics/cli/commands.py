@@ -12,15 +12,7 @@ from pathlib import Path
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
 from . import output
-from .output import (
-    print_columns,
-    print_error,
-    print_folded,
-    print_table,
-    require_writable,
-    variant_words,
-    write_table,
-)
+from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """Attribute of an explanation to write, by the ending of its file."""

@@ -59,12 +59,7 @@ def _formats(words):
 
 def _csv(table):
     return _option(
-        "--csv",
-        "FILE",
-        f"{table}, as CSV to FILE, or in place of tables without one",
-        _text,
-        nargs="?",
-        const=STDOUT,
+        "--csv", "FILE", f"{table}, as CSV to FILE, or in place of tables without one", _text, nargs="?", const=STDOUT
     )
 
 
