@@ -12,16 +12,7 @@ from pathlib import Path
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
 from . import output
-from .output import (
-    print_columns,
-    print_error,
-    print_folded,
-    print_table,
-    require_writable,
-    stack_variants,
-    variant_words,
-    write_table,
-)
+from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """Attribute of an explanation to write, by the ending of its file."""
@@ -38,17 +29,18 @@ def list_cases(options):
         {"name": name, "title": case["title"], "variants": list(case["variants"]), "path": str(path)}
         for name, (case, path) in raw.items()
     ]
-    if output.wants_json(options):
-        output.print_json("list", cases=cases)
-    elif output.wants_csv(options):
-        import pandas as pd
 
-        table = pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases])
-        output.write_csv(options, table)
-    else:
+    def words():
         breadth = max(map(len, raw)) + 2
         for case in cases:
             print_folded(f"{case['name']:{breadth}}{case['title']} ({', '.join(case['variants'])})", breadth)
+
+    def table():
+        import pandas as pd
+
+        return pd.DataFrame(cases).assign(variants=[" ".join(case["variants"]) for case in cases])
+
+    output.deliver(options, lambda: {"cases": cases}, words, table)
 
 
 def new(options):
@@ -72,40 +64,43 @@ def new(options):
 
 
 def run(options):
-    from ..casefile.case import load_case
-    from ..cycle.extremes import SHOWN, extremes_by_name
-    from ..cycle.losses import lose
-    from ..solution.tables import largest_with_uncertainty
     from . import sweep_commands
 
-    case = load_case(options.case)
-    require_writable(case, "--csv", options.csv, (".csv",))
+    case = output.read_case(options)
     names = list(case.variants) if options.variant is None else [options.variant]
     given = sweep_commands.standard_uncertainties(case, names, options.uncertain or ())
     solutions = {name: case.solve(name, options.angles) for name in output.progress(options, names, "solving")}
-    if output.wants_json(options):
-        found = {}
-        for name, solution in solutions.items():
-            rows = extremes_by_name(solution).items()
-            extremes = {
-                key: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
-                for key, row in rows
-            }
-            found[name] = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
-            found[name]["extremes"] = extremes
-            if lose(solution):
-                lost = solution.losses
-                powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
-                found[name]["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
-            if given[name]:
-                largest = output.rows_by_name(largest_with_uncertainty(solution, given[name]))
-                found[name]["uncertainty"] = {"inputs": given[name], "largest": largest}
-        output.print_json("run", case=output.case_header(case), angles=options.angles, variants=found)
-    elif not output.quiet(options):
-        _print_extremes(case, solutions, given, options)
-    if options.csv:
-        table = stack_variants({name: solution.frame() for name, solution in solutions.items()})
-        output.write_csv(options, table)
+    output.deliver(
+        options,
+        lambda: {
+            "angles": options.angles,
+            "variants": {name: _extremes(solution, given[name]) for name, solution in solutions.items()},
+        },
+        lambda: _print_extremes(case, solutions, given, options),
+        lambda: output.stacked({name: solution.frame() for name, solution in solutions.items()}, "variant"),
+        case,
+    )
+
+
+def _extremes(solution, given):
+    """Results of a variant for ``--json``."""
+    from ..cycle.extremes import SHOWN, extremes_by_name
+    from ..cycle.losses import lose
+    from ..solution.uncertainty_table import largest_with_uncertainty
+
+    found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
+    found["extremes"] = {
+        name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
+        for name, row in extremes_by_name(solution).items()
+    }
+    if lose(solution):
+        lost = solution.losses
+        powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
+        found["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
+    if given:
+        largest = output.rows_by_name(largest_with_uncertainty(solution, given))
+        found["uncertainty"] = {"inputs": given, "largest": largest}
+    return found
 
 
 def _print_extremes(case, solutions, given, options):
@@ -161,9 +156,7 @@ def plot(options):
         return output.progress(options, names, "drawing")
 
     paths = draw_case(load_case(options.case), options.out, options.format, options.only, progress)
-    if output.wants_json(options):
-        output.print_json("plot", files=paths)
-    output.announce(options, *paths)
+    output.deliver(options, lambda: {"files": paths}, lambda: print(*paths, sep="\n"))
 
 
 def precision(options):
@@ -187,9 +180,15 @@ def precision(options):
     table = pd.read_csv(paths[0])
     groups = table.groupby(["variant", "quantity"], sort=False)
     fronts = {names: study.front(part) for names, part in groups}
-    if output.wants_json(options):
-        output.print_json("precision", case=output.case_header(case), best=pd.concat(fronts.values()), files=paths)
-        return
+    output.deliver(
+        options,
+        lambda: {"best": pd.concat(fronts.values()), "files": paths},
+        lambda: _print_precision(case, table, fronts, paths),
+        case=case,
+    )
+
+
+def _print_precision(case, table, fronts, paths):
     print_folded(f"{case.title}\n\nno other method is both faster and nearer than these; errors by the largest value:")
     for (variant, _), front in fronts.items():
         print_folded(f"\n{variant}: {front['label'].iloc[0]}\n")
@@ -211,9 +210,10 @@ def stability(options):
 
     paths = study.write(options.out, progress=print_error, page=stability_page)
     table = pd.read_csv(paths[1])
-    if output.wants_json(options):
-        output.print_json("stability", places=table, files=paths)
-        return
+    output.deliver(options, lambda: {"places": table, "files": paths}, lambda: _print_stability(table, paths))
+
+
+def _print_stability(table, paths):
     print_folded(
         f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n"
     )
@@ -242,13 +242,11 @@ def report(options):
 
 
 def drive(options):
-    from ..casefile.case import load_case
     from ..casefile.variant import run_under_motors
     from ..drive.savings import energy_table, running_table
 
-    case = load_case(options.case)
+    case = output.read_case(options)
     checks.require("--out", files.folder_write_problem(options.out) if options.out else None)
-    require_writable(case, "--csv", options.csv, (".csv",))
     names = list(case.variants) if options.variant is None else [options.variant]
     driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
     if not driven:
@@ -265,12 +263,10 @@ def drive(options):
         from ..views.figures import draw_drive
 
         path = Path(options.out) / f"{case.path.stem}_drive.csv"
-        write_table(stack_variants({name: run.frame() for name, run in runs.items()}), str(path))
+        write_table(output.stacked({name: run.frame() for name, run in runs.items()}, "variant"), str(path))
         paths = [path, *draw_drive(case, runs, options.out)]
-    if output.wants_json(options):
-        found = {key: output.rows_by_name(table) for key, table in tables.items()}
-        output.print_json("drive", case=output.case_header(case), **found, reasons=reasons, files=paths)
-    elif not output.quiet(options):
+
+    def words():
         print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
         print_table(tables["running"].rename_axis("over the period"))
         print("\nwhere the energy of a turn goes\n")
@@ -279,25 +275,23 @@ def drive(options):
             print_folded(f"\n{name}: {reason}")
         if paths:
             print("", *(f"wrote {path}" for path in paths), sep="\n")
-    if options.csv:
-        import pandas as pd
 
-        rows = [table.rename_axis("quantity").reset_index().assign(table=name) for name, table in tables.items()]
-        whole = pd.concat(rows)
-        whole.insert(0, "table", whole.pop("table"))
-        output.write_csv(options, whole)
+    def table():
+        indexed = {name: table.rename_axis("quantity").reset_index() for name, table in tables.items()}
+        return output.stacked(indexed, "table")
+
+    found = {key: output.rows_by_name(table) for key, table in tables.items()}
+    output.deliver(options, lambda: {**found, "reasons": reasons, "files": paths}, words, table, case)
 
 
 RESIDUAL = "power residual"
 
 
 def compare(options):
-    from ..casefile.case import load_case
     from ..cycle.comparison import Comparison
     from ..views.report.tables import special_tables
 
-    case = load_case(options.case)
-    require_writable(case, "--csv", options.csv, (".csv",))
+    case = output.read_case(options)
     others = [name for name in case.variants if name != case.reference]
     names = others if options.variant is None else [options.variant]
     if not names:
@@ -310,29 +304,25 @@ def compare(options):
         for name in output.progress(options, names, "comparing")
     }
     special = special_tables(case)
-    if output.wants_json(options):
-        ratios = "reference / variant; above 1 the variant has less"
-        variants = {
-            name: output.rows_by_name(_with_roles(case, name, item).drop(columns=["reference_name", "variant_name"]))
-            for name, item in found.items()
-        }
+
+    def results():
         tables = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
-        output.print_json("compare", case=output.case_header(case), ratios=ratios, variants=variants, **tables)
-    elif not output.quiet(options):
-        _print_comparison(case, found, special)
-    if options.csv:
-        import pandas as pd
+        rows = {name: output.rows_by_name(_with_roles(case, item)) for name, item in found.items()}
+        return {"ratios": "reference / variant; above 1 the variant has less", "variants": rows, **tables}
 
-        output.write_csv(options, pd.concat([_with_roles(case, *item).reset_index() for item in found.items()]))
+    def table():
+        rows = {name: _with_roles(case, item).reset_index() for name, item in found.items()}
+        whole = output.stacked(rows, "variant_name").assign(reference_name=case.reference)
+        first = ["quantity", "unit", "reference_name"]
+        return whole[[*first, *whole.columns.drop(first)]]
+
+    output.deliver(options, results, lambda: _print_comparison(case, found, special), table, case)
 
 
-def _with_roles(case, name, comparison):
+def _with_roles(case, comparison):
     """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
     table = case.with_published(comparison.frame())
-    table = table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
-    table.insert(1, "variant_name", name)
-    table.insert(1, "reference_name", case.reference)
-    return table
+    return table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
 
 
 def _print_comparison(case, found, special):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..casefile.case import load_case
 from ..casefile.designs import write_found
+from ..casefile.reading import require
 from ..design import case_text
 from ..design.pareto_front import Front
 from ..design.robust import over_spread
@@ -30,9 +31,7 @@ def design(options):
             case.path, ["has nothing to find; say what as [design.NAME], with a kind, what varies and limits"]
         )
     names = list(dict.fromkeys(options.design)) if options.design else list(case.designs)
-    wrong = [checks.choice("design", name, tuple(case.designs)) for name in names]
-    if any(wrong):
-        raise CaseError(case.path, [problem for problem in wrong if problem])
+    require(case.path, *(checks.choice("design", name, tuple(case.designs)) for name in names))
     _require_writable(case, names, options)
     if not output.quiet(options):
         print_folded(case.title)
@@ -55,24 +54,21 @@ def design(options):
     if options.out:
         written.append(write_found(options.out, case, found))
         output.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
-    if output.wants_json(options):
-        results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
-        output.print_json("design", case=output.case_header(case), found=results, files=written)
-    if options.csv:
-        import pandas as pd
+    output.deliver(
+        options,
+        lambda: {"found": {name: _as_json(case.designs[name], item) for name, item in found.items()}, "files": written},
+        table=lambda: output.stacked(dict(_tables(found)), "design"),
+        case=case,
+    )
 
-        rows = []
-        for name, item in found.items():
-            tables: dict[str, Any] = (
-                {"front": item.table}
-                if isinstance(item, Front)
-                else {"output": item.report(), "number": item.numbers()}
-            )
-            for kind, table in tables.items():
-                rows.append(table.rename_axis("name").reset_index().assign(design=name, kind=kind))
-        whole = pd.concat(rows)
-        first = ["design", "kind"]
-        output.write_csv(options, whole[[*first, *whole.columns.drop(first)]])
+
+def _tables(found):
+    """Tables of results by the name of their design, with the kind of each row."""
+    for name, item in found.items():
+        front = isinstance(item, Front)
+        tables: dict[str, Any] = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
+        indexed = {kind: table.rename_axis("name").reset_index() for kind, table in tables.items()}
+        yield name, output.stacked(indexed, "kind")
 
 
 def _as_json(item, found):

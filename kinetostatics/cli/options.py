@@ -59,12 +59,7 @@ def _formats(words):
 
 def _csv(table):
     return _option(
-        "--csv",
-        "FILE",
-        f"{table}, as CSV to FILE, or in place of tables without one",
-        _text,
-        nargs="?",
-        const=STDOUT,
+        "--csv", "FILE", f"{table}, as CSV to FILE, or in place of tables without one", _text, nargs="?", const=STDOUT
     )
 
 
@@ -210,7 +205,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
 
 
 def parser():
-    """The parser; ``options.command`` is module and function of the command."""
+    """The parser; ``options.command`` is module and function of the command, ``options.word`` its name."""
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
@@ -220,7 +215,7 @@ def parser():
     group = main.add_subparsers(required=True, metavar="COMMAND")
     for name, (function, text, *options) in COMMANDS.items():
         command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=EPILOG)
-        command.set_defaults(command=function)
+        command.set_defaults(command=function, word=name)
         for option, settings in options:
             command.add_argument(option, **settings)
     return main

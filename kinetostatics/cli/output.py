@@ -28,6 +28,15 @@ MIN_FOLDED_WIDTH = 24
 """Smallest width of a folded column of words."""
 
 
+def read_case(options):
+    """The case of a command; a file of ``--csv`` that cannot be written is refused."""
+    from ..casefile.case import load_case
+
+    case = load_case(options.case)
+    require_writable(case, "--csv", options.csv, (".csv",))
+    return case
+
+
 def require_writable(case, option, path, endings):
     """Refuse a file of an option that cannot be written, has another ending, or is an input of the case."""
     if path not in (None, STDOUT):
@@ -157,13 +166,12 @@ def _of_words(column):
     return heading in WORD_COLUMNS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
 
 
-def stack_variants(frames):
-    """Tables by variant as one, with the variant in the first column."""
+def stacked(frames, column):
+    """Tables by name as one, with the name in the first column."""
     import pandas as pd
 
-    table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
-    table.insert(0, "variant", table.pop("variant"))
-    return table
+    table = pd.concat([frame.assign(**{column: name}) for name, frame in frames.items()])
+    return table[[column, *table.columns.drop(column)]]
 
 
 def wants_json(options):
@@ -185,21 +193,18 @@ def announce(options, *lines):
         print(*lines, sep="\n")
 
 
-def print_json(command, **parts):
-    print(json.dumps(_jsonable({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
-
-
-def write_csv(options, table):
-    """Write a table to standard output or a file, as ``--csv`` says."""
+def deliver(options, results, words=None, table=None, case=None):
+    """Print results as the options ask for them: as one JSON object, as words, or as CSV; functions make each."""
+    if wants_json(options):
+        of_case = {} if case is None else {"title": case.title, "path": case.path, "reference": case.reference}
+        head = {"command": options.word, "version": __version__} | ({"case": of_case} if of_case else {})
+        print(json.dumps(_jsonable(head | results()), indent=1, allow_nan=False))
+    elif words is not None and not wants_csv(options):
+        words()
     if wants_csv(options):
-        sys.stdout.write(table.to_csv(index=False))
-    elif options.csv:
-        announce(options, "", write_table(table, options.csv))
-
-
-def case_header(case):
-    """Title, path and reference of a case."""
-    return {"title": case.title, "path": case.path, "reference": case.reference}
+        sys.stdout.write(table().to_csv(index=False))
+    elif getattr(options, "csv", None):
+        announce(options, "", write_table(table(), options.csv))
 
 
 def rows_by_name(table):

@@ -21,14 +21,12 @@ FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def sweep(options):
-    from ..casefile.case import load_case
     from ..cycle.reductions import parsed
     from ..sweeps import designs, sweeps
 
-    case = load_case(options.case)
+    case = output.read_case(options)
     folder = options.out if options.out and not Path(options.out).suffix else None
     require_writable(case, "--out", None if folder else options.out, TABLE_ENDINGS)
-    require_writable(case, "--csv", options.csv, (".csv",))
     require_writable(case, "--plot", options.plot, FIGURE_ENDINGS)
     checks.require("--out", files.folder_write_problem(folder) if folder else None)
     pairs = list(_pairs(options.vary, "cannot read", 'path=spread, "spring.stiffness=600..900 kN/m:40"'))
@@ -53,28 +51,26 @@ def sweep(options):
         folder=folder,
         progress=output.shows_progress(options),
     )
-    written: list[str | Path] = []
-    lines: list[str] = []
+    written: dict[str | Path, str] = {}
     if options.out and folder is None:
-        written.append(options.out)
-        lines.append(f"\n{write_table(found, options.out)}")
+        written[options.out] = f"\n{write_table(found, options.out)}"
     if options.plot:
         from ..views.charts import sweep_page
 
-        written.append(sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied)))
-        lines.append(str(written[-1]))
-    if output.wants_json(options):
-        failed = int((found[sweeps.FAILED] != "").sum())
+        path = sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied))
+        written[path] = str(path)
+    reasons = found[sweeps.FAILED]
+
+    def results():
         sides = dict(zip(("variant", "reference"), names, strict=True))
-        output.print_json("sweep", case=output.case_header(case), **sides, failed=failed, designs=found, files=written)
-    elif not output.quiet(options):
+        return {**sides, "failed": int((reasons != "").sum()), "designs": found, "files": list(written)}
+
+    def words():
         print_folded(f"{case.title}: {_arguments(names, wanted, options)}\n")
         _print_sweep(found, wanted, varied)
-        for line in lines:
-            print(line)
-    if options.csv:
-        output.write_csv(options, found)
-    reasons = found[sweeps.FAILED]
+        print(*written.values(), sep="\n", end="\n" * bool(written))
+
+    output.deliver(options, results, words, lambda: found, case)
     checks.require("sweep", None if (reasons == "").any() else f"all {len(found)} designs failed: {reasons.iloc[0]}")
 
 

@@ -165,12 +165,7 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
 def torque(solutions, ax=None, counted=FROM_X):
     """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a).
 
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-    ax : Axes, optional
-    counted : AngleConvention, optional
-        As for `over_turn`.
+    `solutions`, `ax` and `counted` as for `over_turn`.
 
     Examples
     --------
@@ -187,11 +182,7 @@ def torque(solutions, ax=None, counted=FROM_X):
 def cam_force(solutions, ax=None):
     """Force of the cam on the roller over the crank angle (figure 6b).
 
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-        With a cam roller.
-    ax : Axes, optional
+    `solutions`, with a cam roller, and `ax` as for `over_turn`.
 
     Examples
     --------
@@ -206,11 +197,7 @@ def cam_force(solutions, ax=None):
 def pressure_angle(solutions, ax=None):
     """Pressure angle of the cam pair over the crank angle (figure 5).
 
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-        With a cam roller.
-    ax : Axes, optional
+    `solutions`, with a cam roller, and `ax` as for `over_turn`.
 
     Examples
     --------

@@ -10,6 +10,7 @@ from matplotlib.path import Path
 from ..machine.group import FRAME
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
+from .cams import ANGLES_RULE
 from .canvas import (
     ACCENT,
     FROM_X,
@@ -27,7 +28,6 @@ from .canvas import (
 from .labels import label
 from .strokes import Shape, at_angles, strokes_by_owner, whole_turn
 
-ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 _quarters = [Path.wedge(0, 90), Path.wedge(180, 270)]
 MASS_CENTRE_PATH = Path.make_compound_path(*_quarters)
@@ -154,8 +154,9 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     for name in shape.heavy:
         for style in MASS_CENTRE:
             ax.plot(*poses.position(name)[:, 0], **style)
-    for names, point in _names_by_place(poses, shape):
-        label(ax, ", ".join(names), point, color=INK, fontsize="small")
+    places = {name: poses.position(name)[:, 0] for name in shape.mechanism.joints}
+    for names in grouped(places, lambda one, other: np.hypot(*(places[other] - places[one])) < 1e-6 * shape.size):
+        label(ax, ", ".join(names), places[names[0]], color=INK, fontsize="small")
     gaps = np.any([np.isnan(poses.position(name)[0]) for name in moving], axis=0)
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
@@ -200,13 +201,6 @@ def draw_fixed_parts(ax, solution):
 def first_moving_joint(made):
     """Name of the first moving joint, from the crank outwards; O if there is none."""
     return next((name for name, point in made.joints.items() if point.link != FRAME), "O")
-
-
-def _names_by_place(poses, shape):
-    """Names of joints with their place in the first pose; joints that coincide share an entry."""
-    places = {name: poses.position(name)[:, 0] for name in shape.mechanism.joints}
-    names = grouped(places, lambda name, other: np.hypot(*(places[other] - places[name])) < 1e-6 * shape.size)
-    return [(group, places[group[0]]) for group in names]
 
 
 def stroke_artist(ax, stroke, shade):

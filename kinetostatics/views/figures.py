@@ -326,7 +326,7 @@ def before_and_after(found):
     """
     scenes = {"before": found.before, "after": found.scene}
     solutions = {name: scene.solve(ANGLES_PER_TURN) for name, scene in scenes.items()}
-    cams = {name: cam for name, scene in scenes.items() if (cam := cam_of(scene)) is not None}
+    cams = {name: group.cam for name, scene in scenes.items() for group in scene.mechanism.led_by_ground[:1]}
     upper = ["cam", "torque", "torque after"] if cams else ["torque", "torque", "torque after"]
     rows: Any = [upper, ["radius" if cams else "mechanism", *scenes]]
     figure, parts = plt.subplot_mosaic(rows, figsize=(11.5, 6.8), layout="constrained")
@@ -346,11 +346,6 @@ def before_and_after(found):
         hodograph(solution, ax=parts[name], marks=45)
         parts[name].set_title(f"support reaction, {name}")
     return figure
-
-
-def cam_of(scene):
-    """First cam of a scene that is fixed to the frame; None without one."""
-    return next((group.cam for group in scene.mechanism.led_by_ground), None)
 
 
 def pitch_curves(cams, ax=None):

@@ -1,5 +1,6 @@
 """Reports made once for all tests of a process, and what stands in them."""
 
+import base64
 import json
 import re
 from functools import cache
@@ -9,7 +10,6 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.views.report import html
-from kinetostatics.views.report.movement import from_base64
 from kinetostatics.views.report.report import subject_of
 
 COMMAND = "kinetostatics report CASE --out report.html"
@@ -25,6 +25,11 @@ def page(case, variant=None):
     """Text of the page of a shipped case, and the data in it."""
     text = html.page(subject(case, variant))
     return text, data_of(text)
+
+
+def from_base64(text, kind="<f4"):
+    """Numbers from base64, (N,)."""
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
 
 
 def data_of(text):

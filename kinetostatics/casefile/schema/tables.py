@@ -264,7 +264,7 @@ def _sentence(model, item, place):
     if item["type"] == "missing":
         return f"{path} is missing"
     if item["type"] == "extra_forbidden":
-        allowed = _allowed(model, item["loc"][:-1])
+        allowed = [key for table in _tables_at(model, item["loc"][:-1]) for key in table.model_fields]
         return f"{path} is not a key here{checks.hint(keys[-1], allowed)} (allowed: {', '.join(allowed)})"
     if item["type"] == "kind":
         allowed = kinds(item["msg"])
@@ -288,11 +288,6 @@ def key_path(keys):
     for key in keys:
         text += f"[{key + 1}]" if isinstance(key, int) else f".{key}" if text else str(key)
     return text
-
-
-def _allowed(model, keys):
-    """Keys allowed in the table at a path of the model."""
-    return [key for table in _tables_at(model, keys) for key in table.model_fields]
 
 
 def _tables_at(model, keys):

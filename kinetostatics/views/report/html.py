@@ -193,13 +193,8 @@ def _text(name):
 
 
 BROWSERS = (
-    "chromium",
-    "chromium-browser",
-    "google-chrome-stable",
-    "google-chrome",
-    "chrome",
-    "msedge",
-    "microsoft-edge",
+    *("chromium", "chromium-browser", "google-chrome-stable", "google-chrome"),
+    *("chrome", "msedge", "microsoft-edge"),
 )
 """Browsers that print without a window, in order of preference."""
 BROWSER_TIMEOUT = 120.0

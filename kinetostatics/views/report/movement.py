@@ -29,11 +29,6 @@ def to_base64(values, kind="<f4"):
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
 
-def from_base64(text, kind="<f4"):
-    """Numbers from base64, (N,)."""
-    return np.frombuffer(base64.b64decode(text), dtype=kind)
-
-
 def movements(machines):
     """Drawings of machines by name, their common bounding box, m, and the scales of forces and torques."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}

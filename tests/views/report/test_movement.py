@@ -8,9 +8,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.report import figures
-from kinetostatics.views.report.movement import ARROW_REACH, FILLED_KINDS, MAX_ARROW, from_base64, movements, to_base64
+from kinetostatics.views.report.movement import ARROW_REACH, FILLED_KINDS, MAX_ARROW, movements, to_base64
 from kinetostatics.views.strokes import Shape
-from support.reports import near_change_points, subject
+from support.reports import from_base64, near_change_points, subject
 
 pytest.importorskip("bokeh")
 

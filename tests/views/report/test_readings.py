@@ -10,12 +10,11 @@ import kinetostatics as ks
 from kinetostatics.cycle.rounding import FLOOR
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.views.report import tables
-from kinetostatics.views.report.movement import from_base64
 from kinetostatics.views.report.report import subject_of
 from kinetostatics.views.report.tables import decimals, ratio_text, readings, table_of_frame, texts_of, with_published
 from support.case_files import shipped
 from support.every import every
-from support.reports import near_change_points, plain, series, subject
+from support.reports import from_base64, near_change_points, plain, series, subject
 
 
 def of(case):
