@@ -284,11 +284,8 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        lengths = [reach for part in self.parts for reach in part.reaches]
-        are_floats = all(type(length) is float for length in lengths)
-        shortest = min(lengths, default=math.inf) if are_floats else reduce(np.minimum, lengths, math.inf)
-        found = self.extent / shortest
-        return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
+        shortest = reduce(np.minimum, (reach for part in self.parts for reach in part.reaches), math.inf)
+        return float(np.max(np.asarray(self.extent / shortest, dtype=float)))
 
     @property
     def couplers(self):

@@ -42,7 +42,7 @@ from ...numbers.arithmetic import (
     offset_from_zero,
     sign,
 )
-from ...numbers.parameter_tree import FLOATS, Axis
+from ...numbers.parameter_tree import Axis
 from ...numbers.planar import (
     cross,
     length,
@@ -316,8 +316,7 @@ def toggle_axis(group, guide, throw):
     """
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
-    are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.has_known_values, given))
-    if not are_known or not (guide.is_level or type(guide.exact) is Axis):
+    if not all(map(checks.has_known_values, given)) or not (guide.is_level or type(guide.exact) is Axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])
