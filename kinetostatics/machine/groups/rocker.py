@@ -319,6 +319,8 @@ class RockerGroup(Branch, RRRGroup):
             rocker = (p, *rocker[1:])
         return self._enter(placement, joined(joint, *given[1:], coupler, rocker, *rest))
 
+    follow = RRRGroup.follow
+
     def _enter(self, placement, motion):
         super()._enter(placement, motion)
         swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
@@ -414,6 +416,8 @@ class Dyad(RRRGroup):
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
         self._enter(placement, relative(first, second, self.length1, self.length2, self.assembly))
+
+    follow = RRRGroup.follow
 
     def resolve(self, placement, loads, along) -> Resolved:
         first, pin, second = self._forces(placement, loads)
