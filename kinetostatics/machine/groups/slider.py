@@ -127,9 +127,8 @@ class SliderGroup(checks.Checked, Branch, Group):
         m.
     guide : Guide
     assembly : +1, -1, "open" or "crossed"
-        +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
-        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
-        keep their side where there are none.
+        +1: slider ahead of the inner joint along the guide. The words are for a group on A or another pin of the
+        crank, as for `crank_slider`.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.
