@@ -213,7 +213,8 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(),
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
         direction O -> O2 and go on through change points: of a crank as long as the pivot's distance the block passes
-        the pivot, the lever turns half as fast as the crank, and the motion closes after two turns.
+        the pivot, the lever turns half as fast as the crank, and the motion closes after two turns. Without change
+        points they keep that side.
     crank, lever, block : Link
         Mass properties; a link left out has no mass and costs nothing.
 

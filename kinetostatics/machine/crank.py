@@ -22,13 +22,6 @@ def ray(angle):
     return (cos(angle), sin(angle))
 
 
-def pin(ray, length):
-    """Joint A at the end of the crank."""
-    x, y = length * ray[0], length * ray[1]
-    minus_y = -y
-    return Joint((x, y), (minus_y, x), (-x, minus_y))
-
-
 @dataclass(frozen=True, eq=False)
 class Crank(checks.Checked, Part):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
@@ -103,7 +96,8 @@ class Crank(checks.Checked, Part):
         direction = ray(angle)
         placement = Placement(angle, direction, {"O": ORIGIN}, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
         if self.length is not None:
-            placement.joints["A"] = pin(direction, self.length)
+            x, y = self.length * direction[0], self.length * direction[1]
+            placement.joints["A"] = Joint((x, y), (-y, x), (-x, -y))
             placement.courses["A"] = Course(throw=self.throws["A"])
         return placement
 

@@ -150,15 +150,12 @@ class RollerFriction(checks.Checked, Batched):
 
     def _rolls(self):
         """Yield the problem of a roller that would slide."""
-        values = self.mu, self.pin_radius, self.roller_radius
-        if all(map(checks.has_known_values, values)) and np.any(
-            stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius
-        ):
-            yield checks.Problem(
-                f"mu times pin_radius, {np.max(np.asarray(self.mu) * self.pin_radius):.6g} m, must be less than "
-                f"roller_radius, {np.min(self.roller_radius):.6g} m: the roller would not turn",
-                stuck,
-            )
+        if all(map(checks.has_known_values, (self.mu, self.pin_radius, self.roller_radius))):
+            arm = np.asarray(self.mu) * self.pin_radius
+            text = f"mu times pin_radius, {np.max(arm):.6g} m, must be less than roller_radius, "
+            text += f"{np.min(self.roller_radius):.6g} m: the roller would not turn"
+            if np.any(stuck := arm >= self.roller_radius):
+                yield checks.Problem(text, stuck)
 
     RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN_RADIUS, roller_radius=SIZE)
 
@@ -231,7 +228,7 @@ class Frictions(Mapping, Batched):
     @property
     def acting(self):
         """Friction by joint, without zero coefficients."""
-        return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
+        return {name: friction for name, friction in self.items() if present(friction.mu) is not None}
 
     @property
     def senses(self):

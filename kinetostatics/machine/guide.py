@@ -52,15 +52,13 @@ class Guide(checks.Checked):
 
     def _unit_vector(self):
         """Yield problems of the exact direction."""
-        if self.exact is None and self.angle is not None:
-            return
-        if self.angle is None and self.exact is None:
-            yield "it needs an angle, or an exact direction; use Guide.at"
-        length = (
-            1.0 if self.exact is None or not all(map(checks.has_known_values, self.exact)) else np.hypot(*self.exact)
-        )
-        if np.any(np.abs(length - 1.0) > 1e-9):
-            yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
+        if self.exact is None:
+            if self.angle is None:
+                yield "it needs an angle, or an exact direction; use Guide.at"
+        elif all(map(checks.has_known_values, self.exact)):
+            length = np.hypot(*self.exact)
+            if np.any(np.abs(length - 1.0) > 1e-9):
+                yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
 
     RULES = checks.Rules(
         "guide",

@@ -135,11 +135,9 @@ def margin(group, placement, shape):
         words = "truth values; give numbers"
     if words is None and not _fits(np.shape(found), tuple(shape)):
         words = f"of shape {np.shape(found)}"
-    text = "a number, or an array with a value for each crank angle"
-    checks.require(
-        type(group).__name__,
-        words and f"its closure must return its margin, {text}, got {checks.shown(found)}, {words}",
-    )
+    if words:
+        text = "its closure must return its margin, a number, or an array with a value for each crank angle"
+        checks.require(type(group).__name__, f"{text}, got {checks.shown(found)}, {words}")
     return found
 
 
@@ -157,13 +155,10 @@ def require_positions(group, placement, margins):
     directions = (part for name in group.links for part in placement.links[name].direction)
     known = np.isfinite(sum(np.asarray(part, dtype=float) for part in (*joints, *directions)))
     wrong, value, angle = np.broadcast_arrays(~known & ~(margins < 0.0) | np.isnan(margins), margins, placement.angle)
-    checks.require(
-        type(group).__name__,
-        f"its closure must be a number, negative where its place finds no position, but is {value[wrong][0]:.6g} at "
-        f"{wrong.sum()} such crank angles, the first {np.degrees(angle[wrong][0]):.6g} deg"
-        if wrong.any()
-        else None,
-    )
+    if wrong.any():
+        text = "its closure must be a number, negative where its place finds no position, but is"
+        where = f"such crank angles, the first {np.degrees(angle[wrong][0]):.6g} deg"
+        checks.require(type(group).__name__, f"{text} {value[wrong][0]:.6g} at {wrong.sum()} {where}")
 
 
 SPEED_WEIGHT = 2.0**600

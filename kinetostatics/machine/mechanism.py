@@ -62,13 +62,14 @@ MARK = 0xE000
 
 
 def _spelled(part, table):
-    """Names in a table of a part; for the library's own parts with repetitions, which a dict drops."""
+    """Names and entries in a table of a part; of the library's own with repetitions, which a dict drops."""
     if not part.trusted:
-        return list(getattr(part, table))
+        return list(getattr(part, table).items())
     texts = {field.name: text for field in fields(part) if type(text := getattr(part, field.name)) is str}
     marks = {name: chr(MARK + place) for place, name in enumerate(texts)}
     back = str.maketrans({marks[name]: text for name, text in texts.items()})
-    return [spelled.translate(back) for spelled in getattr(replace_unchecked(part, **marks), table)]
+    marked = getattr(replace_unchecked(part, **marks), table)
+    return [(spelled.translate(back), entry) for spelled, entry in marked.items()]
 
 
 def name_problems(parts):
@@ -89,13 +90,12 @@ def name_problems(parts):
     for part in parts:
         kind = type(part).__name__
         for name in (name for name in part.hangs_on if name not in joints):
+            problem = f"{kind} hangs on joint {name!r}, which no part before it places"
             if name in links:
-                problems.append(
-                    f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
-                )
-                continue
-            remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
-            problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
+                problem = f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
+            elif name == "A":
+                problem += "; give the crank a length, or put a CamRoller before it"
+            problems.append(problem)
         links += part.links
         for name, point in part.joints.items():
             if point.link not in links:
@@ -103,11 +103,11 @@ def name_problems(parts):
                 problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
         joints.update(part.joints)
         own = [link for link in part.links if link not in points]
-        add(points, "joint", kind, _spelled(part, "joints"))
+        add(points, "joint", kind, [name for name, _ in _spelled(part, "joints")])
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")
         for vector, what in ((True, "reaction"), (False, "quantity")):
-            add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
+            add(forces, what, kind, [name for name, output in outputs if output.vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in own for ending in endings])
         add(forces, "quantity", kind, [*part.motions, *part.contacts])
@@ -284,11 +284,8 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        lengths = [reach for part in self.parts for reach in part.reaches]
-        are_floats = all(type(length) is float for length in lengths)
-        shortest = min(lengths, default=math.inf) if are_floats else reduce(np.minimum, lengths, math.inf)
-        found = self.extent / shortest
-        return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
+        shortest = reduce(np.minimum, (reach for part in self.parts for reach in part.reaches), math.inf)
+        return float(np.max(np.asarray(self.extent / shortest, dtype=float)))
 
     @property
     def couplers(self):

@@ -145,14 +145,13 @@ def _inertia(bar, link, crank):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
     elif bar.link not in crank.links and np.any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
         # the inertia of a crank may include the drive
-        times = inertia / np.where(unit > 0, unit, np.inf)
+        times, inertia = map(np.ravel, np.broadcast_arrays(inertia / np.where(unit > 0, unit, np.inf), inertia))
         worst = np.argmax(times)
-        odd, most = np.ravel(np.broadcast_to(inertia, np.shape(times)))[worst], np.ravel(times)[worst]
+        odd, most = inertia[worst], times[worst]
         beside, advice = f"{12.0 * most:.4g} times", "is it in kg m2, about the mass centre?"
-        for least, (name, factor) in OTHER_UNITS.items():
-            if most > least:
-                advice = f"is it in {name}? That makes {factor * odd:.4g} kg m2"
-                break
+        name, factor = next((unit for least, unit in OTHER_UNITS.items() if most > least), ("", 0.0))
+        if name:
+            advice = f"is it in {name}? That makes {factor * odd:.4g} kg m2"
     else:
         return None
     rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"

@@ -60,7 +60,7 @@ def test_four_bar_equals_its_joint_motion(seed):
     for side, is_close in product(SIDES, (False, True)):
         joint = placement.joints[name]
         links = near_dead_centre.place(placement, name, b, h, pivot, side, is_close)
-        found, wanted = rocker.joined(joint, h, pivot, *links), rocker.place(joint, b, h, pivot, side)
+        found, wanted = rocker.motion_of(joint, h, pivot, *links), rocker.place(joint, b, h, pivot, side)
         for part in ("coupler", "rocker"):
             same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)
         same(pin(found.pin), pin(wanted.pin), wanted.closure)

@@ -14,6 +14,7 @@ from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from support import multibody
+from support.change_points import ACCELERATION, DIGITS, NEAR, SIDES, SPEED, WEIGHT, solve
 from support.enclosed import assert_enclosed
 
 DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "lever": (1.5, 0.7, -0.2, 0.1), "block": (3.0, 0.04, 0.25, 0.5)}
@@ -27,23 +28,14 @@ LEVERS = {
     "grazing": (1.0 + 2.0**-7, 2.0**-7),
 }
 """Distance of the pivot and offset of the slot, for a crank of 1 m."""
-SIDES = {"open": 1, "crossed": -1}
 every = pytest.mark.parametrize(("name", "assembly"), list(product(LEVERS, SIDES)))
 meeting = pytest.mark.parametrize("assembly", SIDES)
-SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
-DIGITS = 80
-"""Of the reference, whose equations lose half of them 1e-17 rad from a change point."""
 
 
 def lever(name, assembly, start=0.0, **links):
     distance, offset = LEVERS[name]
     pivot = (distance * np.cos(start), distance * np.sin(start)) if start else (distance, 0.0)
     return ks.slotted_lever(1.0, pivot=pivot, offset=offset, assembly=assembly, **(links or LINKS))
-
-
-def solve(made, angles, **options):
-    given = {"crank_speed": SPEED, "crank_acceleration": ACCELERATION, "loads": ks.Gravity(WEIGHT)}
-    return ks.solve(made, angles, **given | options)
 
 
 @cache
@@ -75,9 +67,6 @@ def found(solution, place):
     vectors["direction"] = solution.placement.links["lever"].direction
     scalars |= {name: x + 1j * y for name, (x, y) in vectors.items()}
     return {name: np.broadcast_to(values, solution.shape)[place] for name, values in scalars.items()}
-
-
-NEAR = [sign * 10.0**-power for power in (1, 4, 8, 14) for sign in (1, -1)]
 
 
 @every

@@ -118,38 +118,24 @@ def test_articulated_rod_meets_the_guide(offset, radius, length):
 # What is refused
 
 
-def names(*parts):
-    return ks.Mechanism("chain", ks.Crank(0.1), parts)
+BARS = ks.RockerGroup(0.4, 0.3, (0.3, 0.1))
 
 
-def test_a_pin_on_no_link_names_those_there_are():
-    with pytest.raises(ParameterError, match=r"link that carries joint 'C' is 'couplr', allowed: .*'crank', 'coupler'"):
-        names(ks.RockerGroup(0.4, 0.3, (0.3, 0.1)), ks.Pin(on="couplr", at=(0.1, 0.0)))
-
-
-def test_pin_must_follow_its_link():
-    with pytest.raises(ParameterError, match="the part that adds a link stands before what is fixed to it"):
-        names(ks.Pin(on="coupler", at=(0.1, 0.0)), ks.RockerGroup(0.4, 0.3, (0.3, 0.1)))
-
-
-def test_a_second_pin_of_a_name_is_refused():
-    with pytest.raises(ParameterError, match="Pin adds joint 'C' a second time"):
-        names(ks.Pin(on="crank", at=(0.1, 0.0)), ks.Pin(on="crank", at=(0.0, 0.1)))
-
-
-def test_a_second_rod_on_a_pin_needs_a_label():
-    with pytest.raises(ParameterError, match="adds reaction 'A' a second time"):
-        names(ks.SliderGroup(0.4), ks.CylinderGroup((0.3, 0.3)))
-
-
-def test_pin_named_like_a_labelled_joint_works():
+@pytest.mark.parametrize(
+    ("first", "second", "words"),
+    [
+        (BARS, ks.Pin("couplr", (0.1, 0.0)), "link that carries joint 'C' is 'couplr', allowed: .*'crank', 'coupler'"),
+        (ks.Pin("coupler", (0.1, 0.0)), BARS, "the part that adds a link stands before what is fixed to it"),
+        (ks.Pin("crank", (0.1, 0.0)), ks.Pin("crank", (0.0, 0.1)), "Pin adds joint 'C' a second time"),
+        (ks.SliderGroup(0.4), ks.CylinderGroup((0.3, 0.3)), "adds reaction 'A' a second time"),
+        (BARS, ks.SliderGroup(0.9, on="B", pin="B2", label="2"), "adds reaction 'B2' a second time"),
+        (BARS, ks.LeverGroup((0.5, 0.5), on="B", pivot_name="B2", label="2"), "adds reaction 'B2' a second time"),
+    ],
+)
+def test_names_that_do_not_fit_are_refused(first, second, words):
     """Pin "B2" of one group beside label "2" on "B" of another: both would be reaction "B2"."""
-    for first, second in (
-        (ks.RockerGroup(0.4, 0.3, (0.3, 0.1)), ks.SliderGroup(0.9, on="B", pin="B2", label="2")),
-        (ks.RockerGroup(0.4, 0.3, (0.3, 0.1)), ks.LeverGroup((0.5, 0.5), on="B", pivot_name="B2", label="2")),
-    ):
-        with pytest.raises(ParameterError, match="adds reaction 'B2' a second time"):
-            names(first, second)
+    with pytest.raises(ParameterError, match=words):
+        ks.Mechanism("chain", ks.Crank(0.1), (first, second))
 
 
 @pytest.mark.parametrize(

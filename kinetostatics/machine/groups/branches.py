@@ -15,7 +15,7 @@ from ...numbers import checks
 from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import rotate_back
 from . import near_dead_centre
-from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS, parse_passage
+from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS
 
 MAX_ULPS = 8
 """Largest difference of lengths that count as equal, in units of the last place of the longest length."""
@@ -141,7 +141,7 @@ class Branch:
         if not angles:
             return ""
         named = dict.fromkeys(angles, "a kink")
-        if parse_passage(passing.passage)[0] in (MEETING, RHOMBUS):
+        if passing.kind in (MEETING, RHOMBUS):
             at = angles[0] if len(angles) == 1 else self._first(throws) % (2 * math.pi)
             named[at] = f"a jump, as {self.on} meets the pivot"
         texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
@@ -155,17 +155,19 @@ class Branch:
         return math.atan2(y, x)
 
     @property
+    def kind(self):
+        """Kind of the change points that it passes, "" without any."""
+        return self.passage.partition(" ")[0]
+
+    @property
     def turns(self):
-        kind = parse_passage(self.passage)[0] if self.passage else ""
-        return 2 if kind in TWO_TURN_KINDS else 1
+        return 2 if self.kind in TWO_TURN_KINDS else 1
 
     def change_points(self: Any, throws):
         if not self.passage:
             return ()
         several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
         checks.require("change points", several if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None)
-        kind, first, turn = parse_passage(self.passage)[0], self._first(throws), 2 * math.pi
-        at = [0.0, math.pi]
-        if kind in TWO_TURN_KINDS:
-            at = [math.pi if kind == FAR else 0.0]
+        first, turn = self._first(throws), 2 * math.pi
+        at = {FAR: [math.pi]}.get(self.kind, [0.0] if self.turns == 2 else [0.0, math.pi])
         return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn

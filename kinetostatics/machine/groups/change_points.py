@@ -27,7 +27,6 @@ from ...numbers.planar import (
     dot,
     length_with_error,
     minus,
-    number_or_zero,
     rotate,
     rotate_back,
     subtract_vectors,
@@ -136,14 +135,14 @@ def slid(placement, on, coupler_length, guide, passage, side):
     kind, facing = parse_passage(passage)
     throw = placement.course(on).throw
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
-    b, e = coupler_length, number_or_zero(guide.offset)
+    b, e = coupler_length, guide.offset
     x, y = rotate_back((1.0, 0.0) if guide.direction is None else guide.direction, direction)
     if kind == BOTH:
         along = dot((x, y), placement.ray)
         ratio = -1.0 if side > 0 else 1.0
         return side * a * along, ratio, None, (float(side), offset_from_zero(along, MIN_DISTANCE)), 1.0
     half = _half(placement.angle, (y, -x), 1.0, facing)
-    constant = compensated_sum(b, e if kind == NEAR else -e, -a, minus(None, slack))
+    constant = compensated_sum(b, e if kind == NEAR else minus(None, e), -a, minus(None, slack))
     height, closure, rate, bend, factor, passed = _swung(kind, half, 0.5 * a, 2.0 * b, constant, side)
     reach = side * sqrt(2.0 * a) * passed * height
     return reach, -2.0 * rate, -2.0 * bend, (factor, offset_from_zero(passed, MIN_DISTANCE)), closure

@@ -189,9 +189,8 @@ class LeverGroup(RPRGroup):
     label : str
         Appended to the names of links and forces of a second lever group in one mechanism.
     assembly : +1, -1, "open" or "crossed"
-        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
-        direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
-        crank as long as the pivot's distance turns half as fast as that, and keep their side where there are none.
+        +1: the slot points to the block, -1: away from it. The words are for a group on A or another pin of the crank,
+        as for `slotted_lever`.
 
     Raises
     ------

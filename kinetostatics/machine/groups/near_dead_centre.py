@@ -42,7 +42,7 @@ from ...numbers.arithmetic import (
     offset_from_zero,
     sign,
 )
-from ...numbers.parameter_tree import FLOATS, Axis
+from ...numbers.parameter_tree import Axis
 from ...numbers.planar import (
     cross,
     length,
@@ -60,6 +60,8 @@ from ..links import present
 
 MIN_ROOT = 2.0**-100
 """Least root of closure, sine and cosine, by which rates and forces are divided."""
+NEGLIGIBLE_AREA = RELATIVE_OFFSET * NEGLIGIBLE_LENGTH * NEGLIGIBLE_LENGTH
+"""Product of two differences of lengths, m2, that changes no digit of others beside them."""
 CLOSE_SHARE = 2.0**-5
 """Clearance below which a pin is close to a limit position, over the sum of length and crank radius."""
 TERMS = {
@@ -138,10 +140,8 @@ def pivot_from_pin(placement, on, pivot, is_close):
     a, slack = throw.radius_and_rest
     start, reach = (direction, size) if throw.ahead else direction_and_length(rotate_back(pivot, throw.at))
     turn, near_by, far_off = squared_distances(placement.ray, start, reach)
-    gap, unit = (
-        offset_from_zero(compensated_sum(ground, rest, -a, minus(None, slack)), NEGLIGIBLE_LENGTH),
-        reach * reach,
-    )
+    gap = offset_from_zero(compensated_sum(ground, rest, -a, minus(None, slack)), NEGLIGIBLE_LENGTH)
+    unit = reach * reach
     if is_close:
         along, across = gap + 0.5 * a / unit * near_by, a / reach * turn
         x, y = (quotient(part, size) for part in direction)
@@ -162,9 +162,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     (a, slack, ground, rest), near_by, far_off = line[:4], line.near_by, line.far_off
     (less, short), unit = (minus(None, rest), minus(None, slack)), 4.0 * product * line.reach * line.reach
     near_c = compensated_sum(ground, h, -a, -b, rest, short) * compensated_sum(ground, b, -a, -h, rest, short)
-    near_c = (
-        offset_from_zero(near_c, RELATIVE_OFFSET * NEGLIGIBLE_LENGTH * NEGLIGIBLE_LENGTH) / unit
-    )  # where A meets the pivot
+    near_c = offset_from_zero(near_c, NEGLIGIBLE_AREA) / unit  # it vanishes where A meets the pivot
     near_s = compensated_sum(ground, a, h, -b, rest, slack) * compensated_sum(ground, a, b, -h, rest, slack) / unit
     far_c = compensated_sum(a, b, h, -ground, less, slack) * compensated_sum(ground, b, h, -a, rest, short) / unit
     far_s = compensated_sum(b, h, -ground, -a, less, short) * (both + ground + a) / unit
@@ -316,8 +314,7 @@ def toggle_axis(group, guide, throw):
     """
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
-    are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.has_known_values, given))
-    if not are_known or not (guide.is_level or type(guide.exact) is Axis):
+    if not all(map(checks.has_known_values, given)) or not (guide.is_level or type(guide.exact) is Axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])

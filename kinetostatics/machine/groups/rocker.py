@@ -95,16 +95,16 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     swing_slope = (lag - swing_lag * cosine - dot(second, q)) / (h * divided)
 
     links = (q, ratio, ratio_slope), (p, swing, swing_slope)
-    return joined(joint, h, pivot, *links, (divided, None), heron / unit)
+    return motion_of(joint, h, pivot, *links, (divided, None), heron / unit)
 
 
-def joined(joint, rocker_length, pivot, coupler, rocker, divisor, closure):
+def motion_of(joint, rocker_length, pivot, coupler, rocker, divisor, closure):
     """Motion of the group from direction, ratio and slope of both links (kernel)."""
     rocker = LinkMotion(Joint(pivot, None, None), *rocker)
     return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), divisor, closure)
 
 
-def between(start, end, pin, coupler_length, rocker_length):
+def motion_between(start, end, pin, coupler_length, rocker_length):
     """Motion of two links from their ends to a pin at known joints."""
     coupler, rocker = link_between(start, pin, coupler_length), link_between(end, pin, rocker_length)
     return RockerMotion(coupler, rocker, pin, (cross(coupler.direction, rocker.direction), None), None)
@@ -174,7 +174,7 @@ class RRRGroup(checks.Checked, Group):
             if point.link == FRAME:
                 placement.joints[name] = Joint(point[1:], None, None)
         ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
-        self._enter(placement, between(*ends, first.length, second.length))
+        self._enter(placement, motion_between(*ends, first.length, second.length))
 
     def closure(self, placement):
         """Squared sine of the angle between the links."""
@@ -203,9 +203,8 @@ class RockerGroup(Branch, RRRGroup):
     pivot : (x, y)
         Fixed pivot O2, m.
     assembly : +1, -1, "open" or "crossed"
-        +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
-        behind the direction O -> O2, "crossed" is the other way round there; on A, or another pin of the crank, they go
-        on through change points as inertia carries them, and keep their side where there are none.
+        +1: the pin to the left of the direction from the inner joint to the pivot. The words are for a group on A or
+        another pin of the crank, as for `four_bar`.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
@@ -317,7 +316,9 @@ class RockerGroup(Branch, RRRGroup):
         if self.toggle:
             p = near_dead_centre.straighten_rocker(rocker[0], coupler[0], joint, *given, self.toggle)
             rocker = (p, *rocker[1:])
-        return self._enter(placement, joined(joint, *given[1:], coupler, rocker, *rest))
+        return self._enter(placement, motion_of(joint, *given[1:], coupler, rocker, *rest))
+
+    follow = RRRGroup.follow
 
     def _enter(self, placement, motion):
         super()._enter(placement, motion)
@@ -414,6 +415,8 @@ class Dyad(RRRGroup):
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
         self._enter(placement, relative(first, second, self.length1, self.length2, self.assembly))
+
+    follow = RRRGroup.follow
 
     def resolve(self, placement, loads, along) -> Resolved:
         first, pin, second = self._forces(placement, loads)

@@ -75,10 +75,7 @@ def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
 
     A joint on a pin of the crank may have `reached`, by a kernel for that; a joint that a link swings has its `swing`.
     """
-    position = rotate_back(joint.position, guide.direction)
-    first = rotate_back(vector_or_zero(joint.first), guide.direction)
-    second = rotate_back(vector_or_zero(joint.second), guide.direction)
-
+    position, first, second = (rotate_back(vector_or_zero(part), guide.direction) for part in joint)
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
     if reached is None:
         square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
@@ -130,9 +127,8 @@ class SliderGroup(checks.Checked, Branch, Group):
         m.
     guide : Guide
     assembly : +1, -1, "open" or "crossed"
-        +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
-        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
-        keep their side where there are none.
+        +1: slider ahead of the inner joint along the guide. The words are for a group on A or another pin of the
+        crank, as for `crank_slider`.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.

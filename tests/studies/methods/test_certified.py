@@ -184,7 +184,7 @@ def test_what_is_zero_but_for_rounding_is_given_up():
     [
         (slider, "place", (2,), "plain", "balancing_torque"),  # the sine
         (slider, "resolve", (1, 0), "six-bar", "guide_force2"),
-        (rocker, "joined", (3, 0), "six-bar", "O2"),  # the divisor
+        (rocker, "motion_of", (3, 0), "six-bar", "O2"),  # the divisor
         (cam_roller, "resolve", (1,), "circle", "slot_force"),
     ],
 )
