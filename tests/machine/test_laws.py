@@ -186,8 +186,8 @@ def test_every_derivative_is_that_of_the_one_before(name):
 def test_peaks_scale_with_stroke_and_angle(name):
     """Velocity by stroke / angle, acceleration by stroke / angle^2, jerk by stroke / angle^3."""
     segment = CURVES[name](2.0, 1.5, 0.8)
-    found = [np.abs(part).max() for part in segment(np.linspace(0.0, 0.8, 40_001))[1:]]
-    assert_allclose(found, np.array(segment.coefficients) * 0.5 / 0.8 ** np.arange(1, 4), rtol=1e-6)
+    found = [np.abs(part).max() for part in segment(np.linspace(0.0, 0.8, 80_001))[1:]]
+    assert_allclose(found, np.array(segment.coefficients) * 0.5 / 0.8 ** np.arange(1, 4), rtol=1e-8)
 
 
 def test_a_dwell_rests():
@@ -256,10 +256,7 @@ def test_rise_integrates_its_textbook_acceleration(name):
 
 @pytest.mark.parametrize("name", RISES)
 def test_peaks_are_the_published_ones(name):
-    rise = RISES[name]
-    assert_allclose(rise.coefficients, PUBLISHED[name], rtol=2e-5)
-    found = [np.max(np.abs(part)) for part in rise(np.linspace(0.0, 1.0, 80001))[1:]]
-    assert_allclose(found, rise.coefficients, rtol=1e-8)
+    assert_allclose(RISES[name].coefficients, PUBLISHED[name], rtol=2e-5)
 
 
 @pytest.mark.parametrize("name", RISES)

@@ -139,24 +139,17 @@ def test_roller_reaching_another_part_is_refused():
     neck = ks.cams.Sampled(angle, 0.03 + 0.27 / (1.0 + (angle / 0.45) ** 8))
     made = neck.profile(0.02, 8)
     assert made.largest_roller_radius > 0.024
-    with pytest.raises(
-        ks.ParameterError, match=r"radius 0\.024 m cuts into another part of the disk: .* as near as 0\.0228"
-    ):
+    with pytest.raises(ks.ParameterError, match=r"radius 0\.024 m cuts into another part of the disk: .* 0\.0228"):
         neck.profile(0.024, 8)
-
-
-def test_a_roller_that_covers_the_crank_is_refused():
     with pytest.raises(ks.ParameterError, match=r"radius 0\.12 m covers O, as its centre comes as near as 0\.1 m"):
         ks.cams.Circle(0.2, (0.1, 0.0)).profile(0.12, 8)
 
 
 def test_cutter_larger_than_the_hollow_is_refused():
-    hollow = LOBES.profile(0.02, 8).smallest_hollow
-    LOBES.profile(0.02, 8).cutter_path(-0.999 * hollow.value)
-    with pytest.raises(
-        ks.ParameterError, match=r"does not fit into the hollow of the disk at crank angle 180 deg, whose"
-    ):
-        LOBES.profile(0.02, 8).cutter_path(-1.001 * hollow.value)
+    made = LOBES.profile(0.02, 8)
+    made.cutter_path(-0.999 * made.smallest_hollow.value)
+    with pytest.raises(ks.ParameterError, match=r"not fit into the hollow of the disk at crank angle 180 deg, whose"):
+        made.cutter_path(-1.001 * made.smallest_hollow.value)
 
 
 def test_limits_name_what_exceeds_them():

@@ -314,32 +314,24 @@ def rounding_bound(table, motion):
     The bound of a piece is that at its end. The end of the last piece is rounded too. In other turns all rows move by
     rounding, so near a row the next piece may be read.
     """
-    x, slope, own = _piece_errors(table)
-    angle = np.asarray(motion.crank_angle)
-    turned = np.floor((angle - x[0]) / table.period) * table.period
-    place = angle - turned
-    row = piece_index(np, x, place)
-    bound = own[row]
-    on = turned != 0.0
-    if not on.any():
-        return bound
-    reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
-    near = _row_distance(x, place[on]) <= 4.0 * UNIT_ROUNDOFF * reach
-    moved = np.zeros_like(bound)
-    moved[on] = (BOUND_FACTOR * UNIT_ROUNDOFF) * (3.0 * slope[row[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
-    return bound + moved
-
-
-@lru_cache(maxsize=64)
-def _piece_errors(table):
-    """Rows of a table over the angle with the first one repeated, and slope and error bound of each piece."""
     x, (y,) = table.closed()
     rise = np.abs(np.diff(y))
     slope = rise / np.diff(x)
     own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
     if x[0] != 0.0:
         own[-1] += 2.0 * abs(x[-1]) * slope[-1]
-    return x, slope, BOUND_FACTOR * UNIT_ROUNDOFF * own + MIN_BOUND
+    angle = np.asarray(motion.crank_angle)
+    turned = np.floor((angle - x[0]) / table.period) * table.period
+    place = angle - turned
+    row = piece_index(np, x, place)
+    bound = (BOUND_FACTOR * UNIT_ROUNDOFF * own + MIN_BOUND)[row]
+    on = turned != 0.0
+    if on.any():
+        reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
+        near = _row_distance(x, place[on]) <= 4.0 * UNIT_ROUNDOFF * reach
+        moved = 3.0 * slope[row[on]] + np.where(near, 8.0 * slope.max(), 0.0)
+        bound[on] += (BOUND_FACTOR * UNIT_ROUNDOFF) * moved * reach
+    return bound
 
 
 def _row_distance(x, place):

@@ -62,11 +62,8 @@ def test_what_declares_kinks_is_found_and_nothing_else():
 @pytest.mark.parametrize("kind", LOADS)
 def test_a_pulse_that_is_declared_is_swept_whole(kind):
     scene = ks.Scene(PUMP, 30.0, loads=[LOADS[kind]])
-    designs, outputs = (
-        pd.DataFrame({"slider.mass": [1.0, 2.0]}),
-        ["largest B", "smallest_at balancing_torque", "mean balancing_torque"],
-    )
-    found = sweep(scene, designs, outputs, engine="numpy")
+    outputs = ["largest B", "smallest_at balancing_torque", "mean balancing_torque"]
+    found = sweep(scene, pd.DataFrame({"slider.mass": [1.0, 2.0]}), outputs, engine="numpy")
     assert found["failed"].tolist() == ["", ""]
     middle = ks.solve(PUMP, 1.0 + 1e-5, crank_speed=30.0, loads=[LOADS[kind]])
     assert found["largest B [N]"][1] == pytest.approx(float(np.hypot(*middle.reaction("B"))), rel=1e-4)
@@ -173,11 +170,10 @@ def test_a_table_over_two_turns_is_not_folded_to_one():
 
 
 def test_period_end_is_optional_and_angles_may_fall():
-    closed, left_out = (
-        Table(STROKES, GAS, period=2 * TURN),
-        Table(np.append(STROKES[:-1], 3 * np.pi), GAS, period=2 * TURN),
+    closed, left_out, falling = (
+        Table(*rows, period=2 * TURN)
+        for rows in ((STROKES, GAS), (np.append(STROKES[:-1], 3 * np.pi), GAS), (STROKES[::-1], GAS[::-1]))
     )
-    falling = Table(STROKES[::-1], GAS[::-1], period=2 * TURN)
     angle = np.linspace(-3.0, 20.0, 500)
     for other in (left_out, falling):
         np.testing.assert_allclose(pushed(other, angle), pushed(closed, angle), rtol=0, atol=1e-9)
