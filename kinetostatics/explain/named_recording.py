@@ -256,7 +256,7 @@ class NamedDynamics(Dynamics):
     """A recorded scene that names its results; made by `record_with_names`."""
 
     names: Any
-    heads: Any
+    heads: Any  # title of each load, and its name in paths
     runs: bool
 
     @cached_property
@@ -338,23 +338,19 @@ class NamedDynamics(Dynamics):
             self.names.number(wrench.moment, Symbol(moment, "", owner), f"moment of {words}", "N m"),
         )
 
-    def _head(self, item):
-        """Title of a load and its name in paths."""
-        return next(head for known, head in zip(self.loads, self.heads, strict=True) if known is item)
-
-    def _wrenches_of(self, item):
-        title, key = self._head(item)
+    def _wrenches_of(self, place):
+        title, key = self.heads[place]
         with self.names.under(title):
             return [
                 (link, self._wrench(wrench, ("L", "K"), f"{key}_{link}", f"{key.replace('_', ' ')} on the {link}"))
-                for link, wrench in super()._wrenches_of(item)
+                for link, wrench in super()._wrenches_of(place)
             ]
 
-    def _push_of(self, item):
-        title, key = self._head(item)
+    def _push_of(self, place):
+        title, key = self.heads[place]
         with self.names.under(title):
-            words = f"{key.replace('_', ' ')} along the guide of the {item.on}"
-            return self.names.number(super()._push_of(item), Symbol("L", "", key), words, "N")
+            words = f"{key.replace('_', ' ')} along the guide of the {self.loads[place].on}"
+            return self.names.number(super()._push_of(place), Symbol("L", "", key), words, "N")
 
     @property
     def acting(self):

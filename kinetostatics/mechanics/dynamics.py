@@ -302,22 +302,23 @@ class Dynamics(Motion):
     @cached_property
     def wrenches(self):
         """Pairs of a link and an applied wrench on it, without those on the frame."""
-        return [pair for item in self.loads if hasattr(item, "wrenches") for pair in self._wrenches_of(item)]
+        places = [place for place, item in enumerate(self.loads) if hasattr(item, "wrenches")]
+        return [pair for place in places for pair in self._wrenches_of(place)]
 
-    def _wrenches_of(self, item):
-        return [pair for pair in evaluate_load(item, self).wrenches(self) if pair[0] != FRAME]
+    def _wrenches_of(self, place):
+        return [pair for pair in evaluate_load(self.loads[place], self).wrenches(self) if pair[0] != FRAME]
 
     @cached_property
     def pushes(self):
         """Applied force along its guide by slider, N."""
         pushes: dict[str, Any] = {}
-        for item in self.loads:
+        for place, item in enumerate(self.loads):
             if hasattr(item, "push"):
-                pushes[item.on] = plus(pushes.get(item.on), self._push_of(item))
+                pushes[item.on] = plus(pushes.get(item.on), self._push_of(place))
         return pushes
 
-    def _push_of(self, item):
-        return slider_push(item, self)
+    def _push_of(self, place):
+        return slider_push(self.loads[place], self)
 
     @cached_property
     def powers(self):
