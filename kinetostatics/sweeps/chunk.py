@@ -120,7 +120,8 @@ def _reduce_by_numpy(solution, outputs, numbers, rough, gaps, nearest):
         gaping = ~(margin >= -SQUARE_TOLERANCE).all(axis=0)
         gaps[gaping] = (~(closure[:, gaping] >= -SQUARE_TOLERANCE)).any(axis=0).sum(axis=-1)
         near = ~gaping & (margin < NEAR).any(axis=0)
-        nearest[near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
+        if near.any():
+            nearest[near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
 
 
 def _split_turns(scene, job, outputs):

@@ -62,10 +62,24 @@ def test_gaps_have_no_bound_as_they_have_no_value():
     assert np.isnan(s.error_bound("slider_velocity")).tolist() == [False, True]
 
 
-@every("quantity", ["nothing", "|nothing|", "|balancing_torque|", "||", 3])
-def test_what_is_no_quantity_is_refused(quantity):
-    with pytest.raises((QuantityError, ParameterError)):
-        solved().error_bound(quantity)
+NO_NAMES = [None, 3, "ab", [("slider.mass", 1.0)], {3: 1.0}]
+REFUSED = [
+    *((quantity, {}, "quantity|magnitude") for quantity in ["nothing", "|nothing|", "|balancing_torque|", "||", 3]),
+    ("O", {"crank_length": -1.0}, "at least 0"),
+    ("O", {"crank_length": np.nan}, "finite"),
+    ("O", {"crank": 1.0}, "allowed"),
+    ("O", {"crank_length": np.array([[1.0], [2.0]])}, "one number"),
+    *(("O", inputs, "inputs must map paths to numbers") for inputs in NO_NAMES),
+]
+
+
+@every("quantity, inputs, message", REFUSED)
+def test_wrong_quantities_and_uncertainties_are_refused(quantity, inputs, message):
+    with pytest.raises((QuantityError, ParameterError), match=message):
+        solved().uncertainty(quantity, inputs)
+    if quantity != "O":
+        with pytest.raises((QuantityError, ParameterError), match=message):
+            solved().error_bound(quantity)
 
 
 def test_unrecordable_code_has_no_bound():
@@ -97,26 +111,6 @@ def test_uncertainty_adds_rounding_to_root_sum():
     assert "rounding" in repr(found)
     assert repr(found).startswith("largest over the crank angles [N")
     assert np.all(s.uncertainty("O", {}).total == s.error_bound("O"))
-
-
-@every(
-    "inputs, message",
-    [
-        ({"crank_length": -1.0}, "at least 0"),
-        ({"crank_length": np.nan}, "finite"),
-        ({"crank": 1.0}, "allowed"),
-        ({"crank_length": np.array([[1.0], [2.0]])}, "one number"),
-    ],
-)
-def test_wrong_uncertainties_are_refused(inputs, message):
-    with pytest.raises(ParameterError, match=message):
-        solved().uncertainty("O", inputs)
-
-
-@every("inputs", [None, 3, "ab", [("slider.mass", 1.0)], {3: 1.0}])
-def test_what_names_no_inputs_is_refused(inputs):
-    with pytest.raises(ks.ParameterError, match="inputs must map paths to numbers"):
-        ks.solve(ks.crank_slider(0.1, 0.4), 0.5, crank_speed=5.0).uncertainty("O", inputs)
 
 
 def test_vanishing_magnitude_is_as_uncertain_as_vector():

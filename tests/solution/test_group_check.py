@@ -126,8 +126,8 @@ class Mine(ks.RockerGroup):
     def place(self, placement):
         """Place, then change."""
         super().place(placement)
-        if self.change in DERIVATIVES:
-            DERIVATIVES[self.change](placement)
+        if self.change in WRONG:
+            WRONG[self.change][1](placement)
 
     def resolve(self, placement, loads, along):
         """Resolve, then change."""
@@ -144,47 +144,50 @@ def _joint(placement, **changes):
     placement.joints["B"] = placement.joints["B"]._replace(**changes)
 
 
-DERIVATIVES = {
-    "wrong first": lambda p: _joint(p, first=tuple(-part for part in p.joints["B"].first)),
-    "wrong second": lambda p: _joint(p, second=tuple(1.1 * part for part in p.joints["B"].second)),
-    "no second": lambda p: _joint(p, second=None),
-    "wrong ratio": lambda p: p.links.update(rocker=p.links["rocker"]._replace(ratio=2.0 * p.links["rocker"].ratio)),
-    "no ratio_slope": lambda p: p.links.update(coupler=p.links["coupler"]._replace(ratio_slope=None)),
-    "long direction": lambda p: p.links.update(
-        coupler=p.links["coupler"]._replace(direction=tuple(2.0 * part for part in p.links["coupler"].direction))
+def _link(placement, name, **changes):
+    placement.links[name] = placement.links[name]._replace(**changes)
+
+
+def _times(factor, vector):
+    return tuple(factor * part for part in vector)
+
+
+WRONG = {
+    "wrong first": ("first derivative of joint B", lambda p: _joint(p, first=_times(-1.0, p.joints["B"].first))),
+    "wrong second": ("second derivative of joint B", lambda p: _joint(p, second=_times(1.1, p.joints["B"].second))),
+    "no second": ("second derivative of joint B", lambda p: _joint(p, second=None)),
+    "wrong ratio": ("ratio of rocker", lambda p: _link(p, "rocker", ratio=2.0 * p.links["rocker"].ratio)),
+    "no ratio_slope": ("ratio_slope of coupler", lambda p: _link(p, "coupler", ratio_slope=None)),
+    "long direction": (
+        "direction of coupler",
+        lambda p: _link(p, "coupler", direction=_times(2.0, p.links["coupler"].direction)),
     ),
-    "wrong length": lambda p: _joint(p, position=tuple(1.1 * part for part in p.joints["B"].position)),
-    "other joint": lambda p: p.links.update(coupler=p.links["coupler"]._replace(joint=Joint((9.0, 0.0), None, None))),
-    "other swing": lambda p: p.courses.update(B=Course(swing=p.course("B").swing._replace(radius=0.31))),
-    "wrong departure": lambda p: p.courses.update(B=Course(departure=p.joints["B"].second)),
-    "wrong orbit": lambda p: p.courses.update(B=Course(orbit=Orbit(0.3, 0.01))),
+    "wrong length": ("length of coupler", lambda p: _joint(p, position=_times(1.1, p.joints["B"].position))),
+    "other joint": (
+        "reference joint of coupler",
+        lambda p: _link(p, "coupler", joint=Joint((9.0, 0.0), None, None)),
+    ),
+    "other swing": (
+        "swing of B",
+        lambda p: p.courses.update(B=Course(swing=p.course("B").swing._replace(radius=0.31))),
+    ),
+    "wrong departure": ("departure of B", lambda p: p.courses.update(B=Course(departure=p.joints["B"].second))),
+    "wrong orbit": ("orbit of B", lambda p: p.courses.update(B=Course(orbit=Orbit(0.3, 0.01)))),
+    "wrong force": ("work of the forces along x", lambda p: None),
 }
-SEEN = {
-    "wrong first": "first derivative of joint B",
-    "wrong second": "second derivative of joint B",
-    "no second": "second derivative of joint B",
-    "wrong ratio": "ratio of rocker",
-    "no ratio_slope": "ratio_slope of coupler",
-    "long direction": "direction of coupler",
-    "wrong length": "length of coupler",
-    "other joint": "reference joint of coupler",
-    "other swing": "swing of B",
-    "wrong departure": "departure of B",
-    "wrong orbit": "orbit of B",
-    "wrong force": "work of the forces along x",
-}
+"""By change: the check that sees it, and how it changes the placement; of a wrong force `resolve` does."""
 
 
 def mine(change=None):
     return Mine(0.4, 0.3, (0.35, 0.1), coupler=ROD, rocker=ROD, change=change)
 
 
-@every("change", SEEN)
+@every("change", WRONG)
 def test_check_says_what_is_wrong_with_a_group(change):
-    report = ks.check(mine(change))
+    report, (what, _) = ks.check(mine(change)), WRONG[change]
     assert not report
-    assert any(problem.startswith(SEEN[change]) for problem in report.problems)
-    assert f"WRONG  {report.errors[SEEN[change]]:7.1e}  {SEEN[change]}" in repr(report)
+    assert any(problem.startswith(what) for problem in report.problems)
+    assert f"WRONG  {report.errors[what]:7.1e}  {what}" in repr(report)
 
 
 class Departing(ks.SliderGroup):

@@ -88,6 +88,12 @@ def test_output_units_are_the_declared_ones():
         sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0]}), ["rms guide_force"])
 
 
+def test_a_crank_alone_is_swept():
+    disc = ks.Scene(ks.Mechanism("disc", ks.Crank(0.1, ks.Link(inertia=3.0)), ()), 5.0, 2.0)
+    found = sweep(disc, pd.DataFrame({"crank.inertia": [1.0, 3.0]}), "largest balancing_torque")
+    assert found.iloc[:, 1].tolist() == [2.0, 6.0]
+
+
 def test_reference_takes_shared_parameters():
     designs = pd.DataFrame({"slider2.mass": [1.0, 5.0], "crank_speed": [10.0, 30.0]})
     assert sweep(six_bar(), designs, "ratio rms O", reference=six_bar(7.0)).iloc[:, 2].tolist() == [1.0, 1.0]
