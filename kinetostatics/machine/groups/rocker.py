@@ -155,6 +155,7 @@ class RRRGroup(checks.Checked, Group):
     pin: str
     LENGTHS: ClassVar[str]
     """Their lengths in the requirement."""
+    closure = Branch.closure
 
     def _enter(self, placement, motion):
         self.enter(placement, motion, {self.pin: motion.pin})
@@ -167,10 +168,6 @@ class RRRGroup(checks.Checked, Group):
                 placement.joints[name] = Joint(point[1:], None, None)
         ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
         self._enter(placement, motion_between(*ends, first.length, second.length))
-
-    def closure(self, placement):
-        """Squared sine of the angle between the links."""
-        return self.placed(placement).closure
 
     def requirement(self, placement):
         first, second = self.bars
