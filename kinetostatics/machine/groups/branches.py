@@ -76,6 +76,7 @@ class Branch:
         return close(placement, self.on, *given, self.side) if self.is_close else None
 
     def closure(self: Any, placement):
+        """Margin of its motion at each crank angle."""
         return self.placed(placement).closure
 
     def on_crank(self: Any, throws):

@@ -18,16 +18,7 @@ import numpy as np
 from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
 from ...numbers.parameter_tree import replace_unchecked
-from ...numbers.planar import (
-    add_vectors,
-    cross,
-    dot,
-    number_or_zero,
-    quotient,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import add_vectors, cross, dot, number_or_zero, scale_vector, subtract_vectors, vector_or_zero
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
@@ -117,12 +108,13 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     about A and of the rocker about O2 give the pin force by its parts along both links.
     """
     q, p = motion.coupler.direction, motion.rocker.direction
-    moments = quotient(rocker_load.moment, rocker_length), quotient(coupler_load.moment, coupler_length)
+    by_rocker = number_or_zero(rocker_load.moment) / rocker_length
+    by_coupler = number_or_zero(coupler_load.moment) / coupler_length
     if motion.divisor[1] is None:
-        along_coupler, along_rocker = divide(map(number_or_zero, moments), motion.divisor)
+        along_coupler, along_rocker = divide((by_rocker, by_coupler), motion.divisor)
         pin = add_vectors(scale_vector(along_coupler, q), scale_vector(along_rocker, p))
     else:  # as a whole, so that what does not grow at the change point is not lost in what does
-        whole = vector_or_zero(add_vectors(*map(scale_vector, moments, (q, p))))
+        whole = add_vectors(scale_vector(by_rocker, q), scale_vector(by_coupler, p))
         pin = divide(whole, motion.divisor)
     pivot = subtract_vectors(subtract_vectors(None, pin), rocker_load.force)
     return subtract_vectors(pin, coupler_load.force), pin, pivot
@@ -163,6 +155,7 @@ class RRRGroup(checks.Checked, Group):
     pin: str
     LENGTHS: ClassVar[str]
     """Their lengths in the requirement."""
+    closure = Branch.closure
 
     def _enter(self, placement, motion):
         self.enter(placement, motion, {self.pin: motion.pin})
@@ -175,10 +168,6 @@ class RRRGroup(checks.Checked, Group):
                 placement.joints[name] = Joint(point[1:], None, None)
         ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
         self._enter(placement, motion_between(*ends, first.length, second.length))
-
-    def closure(self, placement):
-        """Squared sine of the angle between the links."""
-        return self.placed(placement).closure
 
     def requirement(self, placement):
         first, second = self.bars

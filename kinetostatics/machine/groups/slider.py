@@ -17,13 +17,10 @@ from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, guarded_divisor
 from ...numbers.planar import (
     add_vectors,
-    cross,
-    dot,
     minus,
     number_or_zero,
     plus,
     product,
-    quotient,
     rotate,
     rotate_back,
     subtract_vectors,
@@ -103,7 +100,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     """
     on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
-    across = number_or_zero(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
+    across = number_or_zero(coupler_load.moment) / coupler_length + motion.sine * along
     if motion.divisor[1] is None:
         (across,) = divide((across,), motion.divisor)
         pin = rotate((along, across), guide.direction)
@@ -221,8 +218,8 @@ class SliderGroup(checks.Checked, Branch, Group):
         """Place coupler and slider at known joints."""
         pin, direction = joints[self.pin], self.guide.direction
         coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
-        sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
-        travel = Joint(*(dot(direction, part) for part in pin))
+        cosine, sine = rotate_back(coupler.direction, direction)
+        travel = Joint(*(rotate_back(part, direction)[0] for part in pin))
         slider = LinkMotion(pin, direction, None, None)
         motion = SliderMotion(coupler, slider, sine, cosine, (cosine, None), None, travel)
         self.enter(placement, motion, travels={"slider": travel})
