@@ -177,17 +177,14 @@ class _ShakingSearch:
         """Sizes under the norm at each crank angle, relative to the reference."""
         return self.force_sizes(self.solved(unknowns)) / self.reference
 
-    def value(self, unknowns):
-        """The norm."""
-        if self.norm == "weighted":
-            solved, (by_force, by_moment) = self.solved(unknowns), self.weights
-            force, moment = by_force * magnitude(solved.shaking_force), by_moment * solved.shaking_moment
-            return np.sqrt(np.mean(force * force + moment * moment))
-        return (np.mean if self.norm == "mean" else np.max)(self.force_sizes(self.solved(unknowns)))
-
     def objective(self, unknowns):
         """The norm relative to the reference."""
-        return self.value(unknowns) / self.reference
+        solved = self.solved(unknowns)
+        if self.norm == "weighted":
+            by_force, by_moment = self.weights
+            force, moment = by_force * magnitude(solved.shaking_force), by_moment * solved.shaking_moment
+            return np.sqrt(np.mean(force * force + moment * moment)) / self.reference
+        return (np.mean if self.norm == "mean" else np.max)(self.force_sizes(solved)) / self.reference
 
 
 def _minimise_norm(objective, start):
@@ -284,7 +281,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
     scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
     search = _ShakingSearch(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn, scale)
-    search = replace(search, reference=search.value(search.none) or 1.0)
+    search = replace(search, reference=search.objective(search.none) or 1.0)
     # one start on each side where weights keep out of a hole
     kept_out = any(weight.keep_out for weight in counterweights.values())
     starts = (search.none - 0.5, search.none + 0.5) if kept_out else (search.none,)
@@ -294,7 +291,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     for _ in range(8):  # peaks between the angles join them
         best = min(best, _minimise_peak(search.sizes, best), key=search.objective)
         peaks = extremes(search.solved(best), search.force_sizes)
-        if peaks.range[1] <= search.value(best) + 1e-10 * search.reference:
+        if peaks.range[1] <= (search.objective(best) + 1e-10) * search.reference:
             break
         search = replace(search, turn=np.append(search.turn, peaks.angle))
     return search.balanced(best)

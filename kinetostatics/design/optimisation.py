@@ -163,7 +163,7 @@ def _starting_designs(problem, count, seed, begin=None):
 
 def _numbers_text(problem, values):
     """Numbers of a design by their paths, as a text."""
-    return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
+    return ", ".join(f"{name} = {value:.9g}" for name, value in problem.numbers(values).items())
 
 
 def best_design(problem, task, begins, reported, robust, progress) -> Found:
@@ -185,8 +185,7 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         ends = [search_from(problem, searched, (*plain, *own), start) for start in begins]
         best = reduce(better, ends)
         if best.missed > MISSED:
-            nearest = dict(zip(problem.names, map(float, best.values), strict=True))
-            raise DesignError(_failure_text(problem, searched, kept, best, len(ends)), nearest)
+            raise DesignError(_failure_text(problem, searched, kept, best, len(ends)), problem.numbers(best.values))
         best = _tighten_limits(problem, searched, (*plain, *own), best)
     goals = [searched.sign * end.goal if end.missed <= MISSED else np.inf for end in ends]
     if robust is None and searched.output.ratio != output.ratio:
@@ -196,8 +195,8 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
     active, prices = active_prices(problem, goal, kept, best.values)
     of = "" if robust is None else f"{robust.quantile:g} quantile of "
     return Found(
-        scene_of(problem.scene(best.values)),
-        dict(zip(problem.names, map(float, best.values), strict=True)),
+        problem.scene(best.values),
+        problem.numbers(best.values),
         scene_of(problem.source),
         reference,
         kept,
@@ -233,7 +232,7 @@ def _failure_text(problem, goal, limits, best, count):
         obstacle = f"the one with {numbers} runs, but outputs asked for have no value"
         whose = ""
         try:
-            solution = scene_of(problem.scene(best.values)).solve(problem.angles)
+            solution = problem.scene(best.values).solve(problem.angles)
             for name in problem.quantities:
                 values_of(solution, name)
             if callable(goal.output):
@@ -287,7 +286,7 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
     raise DesignError(
         f"the best design so far, {_numbers_text(problem, best.values)}, was found at {problem.angles} crank angles: "
         f"{why if failure is None else failure}",
-        dict(zip(problem.names, map(float, best.values), strict=True)),
+        problem.numbers(best.values),
     )
 
 
@@ -295,7 +294,7 @@ def _true_excess_of(problem, limit, values):
     """`true_excess` of a design; of an output over a spread or a ratio, at the crank angles of the search."""
     if callable(limit.output) or limit.output.ratio:
         return excess_over(problem, limit, values)[0][0]
-    return true_excess(limit, scene_of(problem.scene(values)))
+    return true_excess(limit, problem.scene(values))
 
 
 def true_excess(limit, scene):

@@ -151,9 +151,13 @@ class Problem:
         values = [value if isinstance(value := own[name], float) else scene[name] for name in self.names]
         return np.clip(np.array(values, dtype=float), self.low, self.high)
 
+    def numbers(self, values):
+        """Numbers of a design by their paths."""
+        return dict(zip(self.names, map(float, values), strict=True))
+
     def scene(self, values):
-        """Scene, or variant, of a design."""
-        return self.source.varied(dict(zip(self.names, map(float, values), strict=True)))
+        """Scene of a design."""
+        return scene_of(self.source.varied(self.numbers(values)))
 
     def curves(self, values):
         """Curve by quantity of a design; NaN where it cannot be built."""
@@ -175,9 +179,7 @@ class Problem:
         self.evaluations += 1
         try:
             numbers, changes = self.derived(values)
-            parted = PiecewiseTurns.of(
-                scene_of(self.scene(values)), (output,), min(self.angles, START_ANGLES * self.turns)
-            )
+            parted = PiecewiseTurns.of(self.scene(values), (output,), min(self.angles, START_ANGLES * self.turns))
             ((_, pieces, values_on),) = parted.refined((output,))
             angle = pieces.angle[0]
             slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]

@@ -270,19 +270,18 @@ def _require_within_bound(start, problem, limits, reference, values):
     advice = _advice(start, problem, reference, values)
     if not advice:
         return
-    greatest = ratio_bound(start, scene_of(problem.scene(values)), reference)
+    greatest = ratio_bound(start, problem.scene(values), reference)
     for limit in limits:
         output = limit.output
         mean = output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
         if mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
-            nearest = dict(zip(problem.names, map(float, values), strict=True))
-            raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", nearest)
+            raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", problem.numbers(values))
 
 
 def _advice(start, problem, reference, values):
     """Sentence naming what else balances weight where a symmetric cam cannot."""
     helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
-    limit = ratio_bound(start, scene_of(problem.scene(values)), reference)
+    limit = ratio_bound(start, problem.scene(values), reference)
     if helped or not np.isfinite(limit):
         return ""
     return (
