@@ -152,8 +152,8 @@ class SvgDrawing:
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
         for axis in (0, 1):
-            ends = self.low[axis] - 2 * size, self.high[axis] + 2 * size
-            self._line(*(np.roll((end, 0.0), axis) for end in ends), kind="axis")
+            low, high = self.low[axis] - 2 * size, self.high[axis] + 2 * size
+            self._line(np.roll((low, 0.0), axis), np.roll((high, 0.0), axis), "axis")
         self._words((0.5 * size, -1.5 * size), "O")
         start = self.curves["pitch"][:, 0]
         self._circle("thin", start, self.roller)
