@@ -92,7 +92,7 @@ def without_forces(motion, kind=ForceFreeMotion):
 
 def evaluate_load(item, motion):
     """The load with values at the crank angles of a motion in place of its table or function."""
-    return item if item.is_given else replace_unchecked(item, **{item.VALUE: user_value(item, motion)})
+    return item if has_no_user_code(item) else replace_unchecked(item, **{item.VALUE: user_value(item, motion)})
 
 
 def user_value(item, motion):

@@ -75,7 +75,8 @@ class Panels:
         t, found = 2.0 * (angle - start) / width - 1.0, []
         coefficients = self.coefficients
         for power in range(order + 1):
-            found.append(_clenshaw(coefficients[place], t) * (2.0 / width) ** power)
+            values = chebyshev.chebval(t, np.moveaxis(coefficients[place], -1, 0), tensor=False)
+            found.append(values * (2.0 / width) ** power)
             coefficients = chebyshev.chebder(coefficients, axis=1)
         return tuple(found)
 
@@ -111,14 +112,6 @@ class Panels:
         middles = (places + np.append(places[1:], places[0] + self.period)) / 2.0
         signs = np.sign(self(middles))
         return places[signs != np.roll(signs, 1)]
-
-
-def _clenshaw(coefficients, t):
-    """Chebyshev series by Clenshaw's recurrence: coefficients (..., degree + 1) at t (...)."""
-    ahead = after = np.zeros_like(t)
-    for order in range(coefficients.shape[-1] - 1, 0, -1):
-        ahead, after = coefficients[..., order] + 2.0 * t * ahead - after, ahead
-    return coefficients[..., 0] + t * ahead - after
 
 
 def panel_nodes(low, high):

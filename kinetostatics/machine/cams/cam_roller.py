@@ -16,12 +16,13 @@ from ...numbers.arithmetic import atan, sign, sqrt
 from ...numbers.parameter_tree import come_from_one_class
 from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
-from ..group import FRAME, Group, Output, Point, Resolved
+from ..group import FRAME, Declaration, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
 from .cam import RADIUS_ANGLES
 from .roller import LineContact, Roller, relative_radius
 
+CURVES = {"A": "pitch curve of the cam"}
 TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
@@ -111,26 +112,28 @@ class CamRoller(checks.Checked, Group):
     LINKS: ClassVar = {"block": "joint"}
     joint = "A"
     hangs_on = ("O",)
-    joints: ClassVar = {"A": Point("block")}
-    slots = (Slot("crank", "A"),)
-    led = (CamDriven("block", "A", FRAME, "cam_force"),)
-    curves: ClassVar = {"A": "pitch curve of the cam"}
+    curves = CURVES
     outputs: ClassVar = {
         "cam_force": Output("N", text="cam on roller along the normal, positive toward the inside of the pitch curve"),
         "slot_force": Output("N", text="slotted crank on block across the ray, positive with growing crank angle"),
     }
-    motions: ClassVar = {
-        "pressure_angle": Output("rad", text="of the cam pair, atan(r'/r), positive where the radius grows"),
-        "cam_radius": Output("m", text="of the pitch curve, from O to the roller centre"),
-    }
-    pairs: ClassVar = {
-        "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
-        "cam": Rolling("block", "A", "cam_force"),
-    }
 
     @property
-    def lengths(self):
-        return (*getattr(self.cam, "lengths", ()), *self.block.centre)
+    def declaration(self):
+        slot, contact = Sliding("block", "A", "crank", "slot_force", "slot_moment"), Rolling("block", "A", "cam_force")
+        pairs: tuple[Any, ...] = (slot, contact)
+        return Declaration(
+            joints={"A": Point("block")},
+            slots=(Slot("crank", "A"),),
+            led=(CamDriven("block", "A", FRAME, "cam_force"),),
+            pairs=pairs,
+            motions={
+                "pressure_angle": Output("rad", text="of the cam pair, atan(r'/r), positive where the radius grows"),
+                "cam_radius": Output("m", text="of the pitch curve, from O to the roller centre"),
+            },
+            contacts={} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")},
+            lengths=tuple(getattr(self.cam, "lengths", ())),
+        )
 
     @property
     def knots(self):
@@ -152,10 +155,6 @@ class CamRoller(checks.Checked, Group):
     @property
     def rollers(self):
         return {"A": None if self.roller is None else self.roller.radius}
-
-    @property
-    def contacts(self):
-        return {} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
         return relative_radius(polar_curvature(*placement.details["cam"]), self.contacts[name].body.radius, side)

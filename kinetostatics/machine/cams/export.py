@@ -132,18 +132,14 @@ class SvgDrawing:
         right = max(self.high[0] + 14 * size, x + 0.55 * size * max(map(len, notes)))
         left, up = x - 2 * size, self.high[1] + 8 * size
         width, height = right - x + 4 * size, up - bottom + 3 * size
-        return "\n".join(
-            [
-                '<?xml version="1.0" encoding="UTF-8"?>',
-                f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
-                f'viewBox="{left:.6g} {-up:.6g} {width:.6g} {height:.6g}">',
-                f"<title>{escape(self.sheet.notes[0])}</title>",
-                f"<style>{SVG_STYLE}</style>",
-                *self.items,
-                "</svg>",
-                "",
-            ]
-        )
+        header = [
+            '<?xml version="1.0" encoding="UTF-8"?>',
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
+            f'viewBox="{left:.6g} {-up:.6g} {width:.6g} {height:.6g}">',
+            f"<title>{escape(self.sheet.notes[0])}</title>",
+            f"<style>{SVG_STYLE}</style>",
+        ]
+        return "\n".join([*header, *self.items, "</svg>", ""])
 
     def _draw_cam(self):
         """The curves, with the material of a disk inside its working curve, of a ring outside; axes, roller, sense."""
@@ -156,8 +152,8 @@ class SvgDrawing:
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
         for axis in (0, 1):
-            ends = self.low[axis] - 2 * size, self.high[axis] + 2 * size
-            self._line(*(np.roll((end, 0.0), axis) for end in ends), "axis")
+            low, high = self.low[axis] - 2 * size, self.high[axis] + 2 * size
+            self._line(np.roll((low, 0.0), axis), np.roll((high, 0.0), axis), "axis")
         self._words((0.5 * size, -1.5 * size), "O")
         start = self.curves["pitch"][:, 0]
         self._circle("thin", start, self.roller)

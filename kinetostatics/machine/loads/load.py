@@ -81,11 +81,6 @@ class Load(checks.Checked, Batched):
         return getattr(self, self.VALUE) if self.VALUE else None
 
     @property
-    def is_given(self):
-        """Whether it consists of checked numbers, without a function of the user's."""
-        return not callable(self.value_now)
-
-    @property
     def period(self) -> float:
         """Period, rad of the crank."""
         return getattr(self.value_now, "period", TURN)
@@ -122,7 +117,8 @@ class Load(checks.Checked, Batched):
 
         Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
         """
-        value, here = self.value_now, 0.0
+        here: Any = 0.0
+        value = self.value_now
         if isinstance(value, Table):
             largest = value.largest
             with suppress(ParameterError):
@@ -139,7 +135,7 @@ class Load(checks.Checked, Batched):
 
 def has_no_user_code(item):
     """Whether a load consists of checked numbers, without code of the user's."""
-    return isinstance(item, Load) and item.is_given
+    return isinstance(item, Load) and not callable(item.value_now)
 
 
 def value_of(item):

@@ -284,7 +284,7 @@ class Table:
             require_sense("table over travel: it has other values for the stroke back", motion)
         return start, value, slope
 
-    def closed(self, number=lambda given: given):
+    def closed(self, number=lambda given: given) -> tuple[Any, Any]:
         """Rows and the values of each stroke; over the angle the first row stands again a period behind."""
         x, strokes = number(self.x), [number(y) for y in self.strokes]
         if self.over == "travel":
