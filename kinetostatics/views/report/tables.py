@@ -29,19 +29,9 @@ number = partial(formatting.number, infinity="∞")
 
 @dataclass(frozen=True)
 class Table:
-    """A table as text.
+    """A table as text; a cell that is a pair has a smaller text below.
 
-    Attributes
-    ----------
-    caption : str
-    columns : list of str
-    rows : list of list of str or (str, str)
-        A pair is a text with a smaller one below.
-    words : int
-        Number of columns from the left with words.
-    note : str
-    code : bool
-        Whether the first column contains names from files.
+    `words` columns from the left have words, others numbers; with `code`, the first has names from files.
     """
 
     caption: str
@@ -98,15 +88,7 @@ def special_tables(case):
 
 
 class MergedRow(NamedTuple):
-    """Row of comparisons with one reference, NaN for those without it.
-
-    Attributes
-    ----------
-    label, unit : str
-    numbers, bounds : list of float
-        Of the reference, then of each other.
-    ratios, bounds_of_ratios : list of float
-    """
+    """Row of comparisons: numbers of their reference, then of each other, and the ratios; NaN for those without it."""
 
     label: str
     unit: str
