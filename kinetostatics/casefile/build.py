@@ -362,7 +362,7 @@ def _balance(mechanism, table):
 def _own_loads(table, tabulated):
     """Gravity, spring and process force, which have tables of their own."""
     if table.gravity is not None:
-        yield Gravity(table.gravity.acceleration, table.gravity.direction)
+        yield Gravity(**dict(table.gravity))
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
     if spring is not None:
         stiffness = spring.stiffness

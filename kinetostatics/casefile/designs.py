@@ -65,12 +65,12 @@ class Design:
         """
         table = self.table
         source, reference = self._variants[self.source], self._variants[self.reference]
-        shared: dict[str, Any] = {"limits": table.limits, "reference": reference, "seed": table.seed}
-        shared |= {"starts": table.starts if starts is None else starts, "progress": progress}
+        starts = table.starts if starts is None else starts
+        shared = {"limits": table.limits, "reference": reference, "seed": table.seed, "starts": starts}
+        shared["progress"] = progress
         if isinstance(table, FrontTable):
             return pareto(source, table.vary, table.minimise, points=table.points, angles=table.angles, **shared)
-        shared |= {"minimise": table.minimise, "maximise": table.maximise}
-        shared |= {"robust": self.spread}
+        shared |= {"minimise": table.minimise, "maximise": table.maximise, "robust": self.spread}
         if isinstance(table, OptimumTable):
             return optimise(source, table.vary, angles=table.angles, **shared)
         own = {name: getattr(table, name) for name in CAM_KEYS}

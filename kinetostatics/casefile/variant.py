@@ -162,15 +162,7 @@ def make_variant(table, folder, tabulated):
 
 
 class NamedItems(Mapping):
-    """Items of a case by name, in any Unicode form; it does not change.
-
-    Attributes
-    ----------
-    kind : str
-        Word for the items: "variant".
-    path : Path
-        Of the case.
-    """
+    """Items of a case by name, in any Unicode form; errors name their kind, "variant", and the path of the case."""
 
     def __init__(self, kind, path, items):
         self.kind, self.path, self._items = kind, path, dict(items)

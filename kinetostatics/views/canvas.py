@@ -417,16 +417,7 @@ def write_notes(ax, lines):
 
 
 class CurveEnd(NamedTuple):
-    """End of a curve at a gap or at the frame.
-
-    Attributes
-    ----------
-    row : int
-    angle : float
-        Direction of the curve there, degrees.
-    why : str
-        Reason of the gap; "" where the curve continues beyond the frame.
-    """
+    """End of a curve: its row, the direction there in degrees, and why; "" where it continues beyond the frame."""
 
     row: int
     angle: float

@@ -103,14 +103,12 @@ def energy_flow(runs, ax=None):
     _require_running(runs)
     ax = axes(ax)
     shown = energy_parts(runs)
-    flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}
-    energies = {name: [flow.get(part, 0.0) for part in shown] for name, flow in flows.items()}
-    largest = max((abs(value) for values in energies.values() for value in values), default=0.0)
-    factor, unit = (1e-3, "kJ") if largest >= 1e4 else (1.0, "J")
-    height = 0.8 / len(flows)
-    for row, name in enumerate(flows):
-        values = [factor * value for value in energies[name]]
-        places = np.arange(len(shown)) + (row - 0.5 * (len(flows) - 1)) * height
+    flows = [{part.name: part.energy for part in run.energy_flow.parts} for run in runs.values()]
+    energies = np.array([[flow.get(part, 0.0) for part in shown] for flow in flows])
+    factor, unit = (1e-3, "kJ") if np.max(np.abs(energies), initial=0.0) >= 1e4 else (1.0, "J")
+    height = 0.8 / len(runs)
+    for row, (name, values) in enumerate(zip(runs, factor * energies, strict=True)):
+        places = np.arange(len(shown)) + (row - 0.5 * (len(runs) - 1)) * height
         bars = ax.barh(places, values, 0.92 * height, label=name)
         ax.bar_label(bars, [f"{value:.4g}" if value else "" for value in values], padding=3, fontsize="small")
     ax.set_yticks(range(len(shown)), shown)
@@ -120,7 +118,7 @@ def energy_flow(runs, ax=None):
     ax.margins(x=0.14)
     ax.grid(axis="x", alpha=0.3)
     ax.set_axisbelow(True)
-    if len(flows) > 1:
+    if len(runs) > 1:
         ax.legend(frameon=False, fontsize="small")
     return ax
 

@@ -98,17 +98,8 @@ DISTANCE_COSTS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
 class _Places(NamedTuple):
     """Possible places of a label, in pixels.
 
-    Attributes
-    ----------
-    offsets : array (P, 2)
-        Of the lower left corner from the point.
-    boxes : array (P, 4)
-    bounds : list of Bbox
-        The same boxes.
-    leaders : list of Path or None
-        Line from the point to the nearest point of the label, if the label is far away.
-    reaches : array (P, 4)
-        Boxes around the leaders; NaN without one.
+    `offsets` (P, 2) lead from the point to the lower left corner; `boxes` (P, 4) and `bounds` are the same boxes. A
+    label far away has a leader from the point to its nearest side; `reaches` (P, 4) are the boxes of the leaders.
     """
 
     offsets: np.ndarray

@@ -83,12 +83,7 @@ class Stroke(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape:
-    """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns.
-
-    Attributes
-    ----------
-    turn : Motion
-    """
+    """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns."""
 
     turn: Any
 

@@ -15,6 +15,7 @@ from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 from kinetostatics.cli.options import STARTERS
 from kinetostatics.cli.output import print_folded, print_table
+from support.commands import printed_by
 from support.every import every
 
 
@@ -26,9 +27,9 @@ def broken(tmp_path):
 
 
 def test_run_prints_extremes_and_the_power_check(capsys):
-    assert main(["run", "sawframe_2r63", "--variant", "plain"]) == 0
-    printed = capsys.readouterr().out
-    assert "40578.9" in printed
+    printed = printed_by(["run", "sawframe_2r63", "--variant", "plain"], capsys)
+    row = next(line for line in printed.splitlines() if line.startswith("balancing torque  "))
+    assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]  # each extremum beside its angle
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
 
@@ -125,12 +126,6 @@ def test_module_and_shell_agree_and_show_no_traceback(broken):
     assert done.stderr.startswith(f"kinetostatics: {broken}: 3 problems")
 
 
-def test_run_puts_each_extremum_beside_its_own_angle(capsys):
-    main(["run", "sawframe_2r63", "--variant", "plain"])
-    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("balancing torque  "))
-    assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]
-
-
 @pytest.mark.slow
 def test_single_variant_case_has_no_comparison(tmp_path, capsys):
     case = tmp_path / "one.toml"
@@ -164,8 +159,7 @@ def test_wrong_types_are_problems_not_tracebacks(tmp_path, text, capsys):
 
 
 def test_list_shows_cases_with_title_and_variants(capsys):
-    assert main(["list"]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["list"], capsys)
     assert re.findall(r"^\S+", printed, re.MULTILINE) == list(shipped_cases())
     words = " ".join(printed.split())
     assert "mower_drive Mower drive: static balancing of an offset crank-slider (unbalanced, full, partial-1" in words
@@ -177,8 +171,7 @@ def test_new_case_compares_and_designs_at_once(tmp_path, monkeypatch, capsys, ki
     monkeypatch.chdir(tmp_path)
     assert main(["new", "my pump", "--kind", kind]) == 0
     assert capsys.readouterr().out == 'wrote my pump.toml; kinetostatics run "my pump.toml"\n'
-    assert main(["compare", "my pump.toml"]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["compare", "my pump.toml"], capsys)
     assert printed.startswith("my pump\n")
     assert " / " in printed
     assert main(["design", "my pump.toml"]) == 0
@@ -324,14 +317,10 @@ def test_no_losses_for_a_saw_that_starts_from_rest(tmp_path, capsys):
 
 def test_explain_prints_and_writes_the_calculation(tmp_path, capsys):
     asked = ["explain", "sawframe_2r63", "--angle", "39.3 deg", "--variant", "cam-circle"]
-    for ending, start in {
-        ".html": "<!DOCTYPE html>",
-        ".tex": r"\section*{",
-        ".txt": "cam-balanced crank-slider",
-    }.items():
+    starts = {".html": "<!DOCTYPE html>", ".tex": r"\section*{", ".txt": "cam-balanced crank-slider"}
+    for ending, start in starts.items():
         path = tmp_path / f"told{ending}"
-        assert main([*asked, "--out", str(path)]) == 0
-        printed = capsys.readouterr().out
+        printed = printed_by([*asked, "--out", str(path)], capsys)
         assert "balancing torque at crank angle 0.685914 rad = 39.3 deg" in " ".join(printed.split())
         assert f"wrote {path}" in printed
         assert path.read_text(encoding="utf-8").startswith(start)
@@ -370,8 +359,7 @@ def test_stability_prints_a_line_a_method(tmp_path, monkeypatch, capsys):
     path = tmp_path / "stability_summary.csv"
     pd.DataFrame(rows).to_csv(path)
     monkeypatch.setattr(stability, "write", lambda *_, **__: ["stability.csv", path])
-    assert main(["stability", "--out", str(tmp_path)]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["stability", "--out", str(tmp_path)], capsys)
     lines = {line[:11].strip(): line[11:].split() for line in printed.splitlines()}
     assert lines["ours, NumPy"] == ["1", "1", "0", "0"]
     assert lines["series"] == ["0", "0", "2", "2"]
@@ -481,8 +469,7 @@ def test_tables_without_rows_are_their_headings(capsys):
 def test_shipped_tables_fit_80_columns(name, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
     assert main(["run", name, "--angles", "24"]) == 0
-    assert main(["compare", name]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["compare", name], capsys)
     assert max(map(len, printed.splitlines())) <= 80
     assert not re.search(r"\x1b|[\u2500-\u257f]", printed)
     assert not re.search(r"\de-1[2-9]", re.sub(r"differ by\s+\S+", "", printed))

@@ -8,6 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
+from support.commands import printed_by
 
 pytestmark = pytest.mark.slow
 
@@ -46,8 +47,7 @@ def test_json_holds_the_tables_of_the_library_in_full(capsys):
 
 def test_csv_has_a_row_for_each_variant_and_quantity(tmp_path, capsys):
     path = tmp_path / "saw.csv"
-    assert main(["compare", "sawframe_2r63", "--csv"]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["compare", "sawframe_2r63", "--csv"], capsys)
     assert printed.startswith("quantity,unit,reference_name,variant_name,reference,variant,ratio,published\n")
     assert printed.count("power residual,1,plain,") == 2
     assert main(["compare", "sawframe_2r63", "--csv", str(path)]) == 0
@@ -82,8 +82,7 @@ def test_double_cranks_have_no_table_of_swings(tmp_path, capsys):
     )
     path = tmp_path / "drag.toml"
     path.write_text(text, encoding="utf-8")
-    assert main(["compare", str(path)]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["compare", str(path)], capsys)
     assert "a / b" in printed
     assert "swing" not in printed
 

@@ -7,7 +7,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.cli import main
 from support.case_files import FRONT, STIFFER, saw_with
-from support.commands import held
+from support.commands import held, printed_by
 
 pytestmark = pytest.mark.slow
 
@@ -36,8 +36,7 @@ def test_design_prints_gains_and_writes_a_case(saw, tmp_path, capsys):
 
 
 def test_only_named_designs_are_searched(saw, capsys):
-    assert main(["design", str(saw), "--design", "stiffer", "--starts", "2"]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["design", str(saw), "--design", "stiffer", "--starts", "2"], capsys)
     assert "trade" not in printed
     assert "2 of 2 searches came to this end" in printed
 

@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
+from support.commands import printed_by
 
 pytestmark = pytest.mark.slow
 
@@ -40,8 +41,7 @@ def pump(tmp_path):
 
 
 def test_drive_prints_running_and_start_or_reasons(pump, capsys):
-    assert main(["drive", str(pump)]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["drive", str(pump)], capsys)
     rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
     variant = ks.load_case(pump).variants["pump"]
     run = ks.drive.steady(variant.scene, variant.motor, variant.flywheel)
@@ -68,8 +68,7 @@ def test_drive_writes_a_table_and_figures_with_units(pump, tmp_path, capsys):
 
 
 def test_drive_starts_from_angle_and_shows_energy(pump, capsys):
-    assert main(["drive", str(pump), "--variant", "pump", "--start", "40 deg"]) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(["drive", str(pump), "--variant", "pump", "--start", "40 deg"], capsys)
     variant = ks.load_case(pump).variants["pump"]
     begun = ks.drive.start(variant.scene, variant.motor, variant.flywheel, np.radians(40.0))
     flow = ks.drive.steady(variant.scene, variant.motor, variant.flywheel).energy_flow

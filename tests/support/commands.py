@@ -1,4 +1,4 @@
-"""Commands that are refused, and commands stopped in a process of their own."""
+"""Commands with their output, commands that are refused, and commands stopped in a process of their own."""
 
 import math
 import subprocess
@@ -23,6 +23,12 @@ cam = { kind = "sampled", table = "saw_precision.csv" }
 """
 CAM = "\n".join(["angle [deg], radius [m]", *(f"{a}, {0.3 + 0.01 * math.cos(math.radians(a))}" for a in range(360))])
 VARY = ["--vary", "slider.mass=600..700 kg:2"]
+
+
+def printed_by(arguments, capsys):
+    """Standard output of a command, which ends well."""
+    assert main([str(item) for item in arguments]) == 0
+    return capsys.readouterr().out
 
 
 def refused(arguments, capsys):

@@ -29,19 +29,9 @@ number = partial(formatting.number, infinity="∞")
 
 @dataclass(frozen=True)
 class Table:
-    """A table as text.
+    """A table as text; a cell that is a pair has a smaller text below.
 
-    Attributes
-    ----------
-    caption : str
-    columns : list of str
-    rows : list of list of str or (str, str)
-        A pair is a text with a smaller one below.
-    words : int
-        Number of columns from the left with words.
-    note : str
-    code : bool
-        Whether the first column contains names from files.
+    `words` columns from the left have words, others numbers; with `code`, the first has names from files.
     """
 
     caption: str
@@ -98,15 +88,7 @@ def special_tables(case):
 
 
 class MergedRow(NamedTuple):
-    """Row of comparisons with one reference, NaN for those without it.
-
-    Attributes
-    ----------
-    label, unit : str
-    numbers, bounds : list of float
-        Of the reference, then of each other.
-    ratios, bounds_of_ratios : list of float
-    """
+    """Row of comparisons: numbers of their reference, then of each other, and the ratios; NaN for those without it."""
 
     label: str
     unit: str
@@ -155,29 +137,21 @@ KINDS = ("force", "reaction", "friction", "slider", "motion", "whole", "rate")
 
 def readings(machines):
     """Values of each quantity of any machine, as data for the page, in the order of their kinds."""
-    found: dict[str, dict] = {}
+    quantities: dict[str, Any] = {}
     for machine in machines.values():
         for name, quantity in of_scene(machine.solution).items():
-            if quantity.kind in KINDS and name not in found and not _is_still(machine.solution, quantity):
-                found[name] = {
-                    "quantity": quantity,
-                    "values": [_values(other, other.solution, name) for other in machines.values()],
-                    "between": [_values(other, other.between, name) for other in machines.values()],
-                }
-    ordered = sorted(found.items(), key=lambda item: KINDS.index(item[1]["quantity"].kind))
+            if quantity.kind in KINDS and not _is_still(machine.solution, quantity):
+                quantities.setdefault(name, quantity)
+    found = {}
     texts = {
         name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
     }
-    for name, item in ordered:
-        quantity = item["quantity"]
-        arrays = [values for values in item["values"] if values is not None]
-        sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
+    for name, quantity in sorted(quantities.items(), key=lambda item: KINDS.index(item[1].kind)):
+        values = [_values(machine, machine.solution, name) for machine in machines.values()]
+        between = [_values(machine, machine.between, name) for machine in machines.values()]
+        sizes = [np.hypot(*item) if quantity.vector else item for item in values if item is not None]
         factor, unit = display_unit(quantity.unit, sizes)
         sight = drawn_limit(sizes)
-        sent = {
-            key: [None if values is None else to_base64(factor * values, "<f8") for values in item[key]]
-            for key in ("values", "between")
-        }
         found[name] = {
             "label": quantity.label,
             "kind": quantity.kind,
@@ -187,9 +161,10 @@ def readings(machines):
             "vector": quantity.vector,
             "sight": factor * sight if np.isfinite(sight) else None,
             "decimals": decimals(factor * ordinary_size(sizes)),
-            **sent,
+            "values": [item if item is None else to_base64(factor * item, "<f8") for item in values],
+            "between": [item if item is None else to_base64(factor * item, "<f8") for item in between],
         }
-    return {name: found[name] for name, _ in ordered}
+    return found
 
 
 def _is_still(solution, quantity):
@@ -442,11 +417,9 @@ def inputs(subject):
             common.append([path, shown, cells[0]])
         else:
             apart.append([path, shown, *cells])
-    tables = (
-        [Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO_NOTE, code=True)]
-        if common
-        else []
-    )
+    tables = []
+    if common:
+        tables.append(Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO_NOTE, code=True))
     if apart:
         heads = ["", "unit", *(machine.name for machine in machines)]
         tables.append(Table("What tells them apart", heads, apart, 2, code=True))
