@@ -192,7 +192,8 @@ class Program:
         tables = numba_backend.row_table(rows, shape_of_rows)
         parameters, tables = (array.astype(angle.dtype, copy=False) for array in (parameters, tables))
         results = np.empty((len(parameters), len(self.outputs), angle.shape[1]), angle.dtype)
-        numba_backend.run_loop(loop or self.loop, angle, *sines(angle), parameters, tables, results)
+        sine, cosine = sines(angle)
+        numba_backend.run_loop(loop or self.loop, angle, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 

@@ -8,6 +8,7 @@ import math
 import sys
 from functools import cache
 from hashlib import sha256
+from typing import Any
 
 from ..version import __version__
 from . import codegen
@@ -32,6 +33,14 @@ def edition(*others) -> str:
     return sha256(text.encode()).hexdigest()[:8]
 
 
+def _compiled(function, **options) -> Any:
+    """The function compiled by numba; it allocates no memory, so no reference is counted."""
+    import numba
+
+    njit: Any = numba.njit
+    return njit(error_model="numpy", _nrt=False, **options)(function)
+
+
 def rising(here, after):
     """Whether the second of two numbers is higher, or one of them is NaN."""
     return not after <= here
@@ -53,17 +62,17 @@ def bits_of_steps(condition, other=None):
     Step k goes from value k in a row of results (designs, rows, N) to the next, from the last to the first. `words` has
     a row of uint64 for each condition; bits beyond N are 0.
     """
-    from numba import njit, uint64
+    from numba import uint64
 
-    both, options = other is not None, {"error_model": "numpy", "_nrt": False}
-    condition, other = njit(condition), njit(other or condition)
+    both = other is not None
+    condition, other = _compiled(condition), _compiled(other or condition)
 
-    @njit(**options)
+    @_compiled
     def marked(here, after, i, one, two):
         one |= uint64(condition(here, after)) << uint64(i)
         return one, two | uint64(other(here, after)) << uint64(i) if both else two
 
-    @njit(**options)
+    @_compiled
     def bits(results, design, row, words):
         values, last = results[design, row], results.shape[2] - 1
         for k in range(words.shape[1]):
@@ -86,15 +95,12 @@ def over_columns(function, rows):
 
     ``function(parts, chosen, sqrt)`` returns fewer rows than the table has.
     """
-    from numba import njit
-
     graph = Graph()
     parts = [graph.parameter(row) for row in range(rows)]
     found = function(parts, lambda sign, *parts: graph.node(f"if {sign}", *parts), lambda part: part.sqrt())
-    source, options = line_source(found, "parameters"), {"error_model": "numpy", "_nrt": False}
-    line, width = njit(**options)(compile_line(source, {"sqrt": math.sqrt})), len(found)
+    line, width = _compiled(compile_line(line_source(found, "parameters"), {"sqrt": math.sqrt})), len(found)
 
-    @njit(**options)
+    @_compiled
     def over(table, count):
         for k in range(count):
             top = line(table[:, k])
@@ -109,11 +115,8 @@ def summing(term):
 
     Results have the shape (designs, rows, N). Additions are in the order of the processor's vectors.
     """
-    from numba import njit
+    size = term if inspect.isbuiltin(term) else _compiled(term)
 
-    size = term if inspect.isbuiltin(term) else njit(term)
-
-    @njit(error_model="numpy", _nrt=False, fastmath={"reassoc"})
     def sums(results, design, row):
         values, even, odd = results[design, row], 0.0, 0.0
         for k in range(values.size // 2):
@@ -121,7 +124,7 @@ def summing(term):
             odd += size(values[2 * k + 1])
         return even + size(values[-1]) if values.size % 2 else even, odd
 
-    return sums
+    return _compiled(sums, fastmath={"reassoc"})
 
 
 def lowest_bit():

@@ -187,7 +187,9 @@ def write_atomically(path):
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
-        _create_empty(temporary, 0o600 if before else 0o666, path)
+        with _errors_naming(path, "; give another place"):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600 if before else 0o666))
         with _errors_naming(path):
             yield str(temporary)
         if before is not None:
@@ -198,23 +200,14 @@ def write_atomically(path):
 
 
 @contextmanager
-def _errors_naming(path):
+def _errors_naming(path, advice=""):
     """Turn system errors of the block into a `FileError` that names the file written, not the temporary one."""
     try:
         yield
     except FileError:
         raise
     except OSError as error:
-        raise FileError(f"{path} cannot be written: {error.strerror or error}") from error
-
-
-def _create_empty(temporary, mode, path):
-    """Create an empty new file, and its folder if missing; errors name the final path."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
-    except OSError as error:
-        raise FileError(f"{path} cannot be written: {error.strerror}; give another place") from None
+        raise FileError(f"{path} cannot be written: {error.strerror or error}{advice}") from error
 
 
 def describe_os_error(error, elsewhere):

@@ -220,18 +220,16 @@ def _function_parts(function):
 
 
 def _own_globals(function):
+    """Values that a function uses of its own module, and functions and classes defined there, by name."""
     known, module = function.__globals__, function.__module__
     if _is_library(str(module)):
         return {}
-    names = sorted(name for name in _names(function.__code__) if name in known)
-    return {name: known[name] for name in names if _is_own(known[name], module)}
-
-
-def _is_own(item, module):
-    """Whether a global is a value, or a function or class of this module."""
-    if isinstance(item, ModuleType):
-        return False
-    return not callable(item) or getattr(item, "__module__", module) == module
+    used = {name: known[name] for name in sorted(_names(function.__code__)) if name in known}
+    return {
+        name: item
+        for name, item in used.items()
+        if not isinstance(item, ModuleType) and (not callable(item) or getattr(item, "__module__", module) == module)
+    }
 
 
 def _class_attributes(kind):

@@ -95,12 +95,8 @@ def pretty_unit(unit):
     """A unit with superscripts and dots: "kg·m²", "m/s²"."""
     if unit in ("", "1"):
         return ""
-    over = [_pretty_product(part) for part in unit.replace("**", "^").split("/")]
-    return "/".join(over)
-
-
-def _pretty_product(unit):
-    return "·".join(UNIT_SIGNS.get(part, part) for part in unit.replace("*", " ").split())
+    products = [factors.replace("*", " ").split() for factors in unit.replace("**", "^").split("/")]
+    return "/".join("·".join(UNIT_SIGNS.get(part, part) for part in product) for product in products)
 
 
 def heading(name, unit):

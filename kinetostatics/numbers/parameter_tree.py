@@ -265,16 +265,11 @@ class _Flatteners(dict):
         return found
 
 
-_FLATTENERS = _Flatteners(
-    {
-        **dict.fromkeys((bool, str, type(None), Axis), _unchanged),
-        **dict.fromkeys((float, int), _flatten_number),
-        **dict.fromkeys((tuple, list), _flatten_tuple),
-        np.ndarray: _flatten_array,
-        KeptZero: _flatten_kept_zero,
-        FunctionType: _flatten_by_content,
-    }
-)
+_FLATTENERS: dict[Any, Callable] = _Flatteners()
+_FLATTENERS |= dict.fromkeys((bool, str, type(None), Axis), _unchanged)
+_FLATTENERS |= dict.fromkeys((float, int), _flatten_number)
+_FLATTENERS |= dict.fromkeys((tuple, list), _flatten_tuple)
+_FLATTENERS |= {np.ndarray: _flatten_array, KeptZero: _flatten_kept_zero, FunctionType: _flatten_by_content}
 _CONSTANT_TYPES = frozenset((bool, int, float, str, type(None)))
 
 

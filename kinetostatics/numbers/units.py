@@ -234,14 +234,11 @@ def respelling_advice(text, readable):
     """
     advice = []
     for choice in (0, -1):
-        parts = [part if ".." in part else _DIGITS.sub(partial(_reading, choice), part) for part in _split(text)]
-        advice.append("".join(parts).strip())
+        parts = re.split(r"(\.\.+)", text)
+        read = [part if ".." in part else _DIGITS.sub(partial(_reading, choice), part) for part in parts]
+        advice.append("".join(read).strip())
     advice = [f'"{found}"' for found in dict.fromkeys(advice) if found != text.strip() and readable(found)]
     return f"; write {' or '.join(advice)}" if advice else ""
-
-
-def _split(text):
-    return re.split(r"(\.\.+)", text)
 
 
 def _reading(choice, found):
