@@ -29,7 +29,7 @@ def _compared(name, found):
         if name in CASES
         else frozenset()
     )
-    context = kept.Context(before, tables, kept.has_other_arithmetic())
+    context = kept.Context(before, tables, kept.has_other_arithmetic(), kept.SEARCHED.get(name, frozenset()))
     compared = {path.split("/", 2)[1] for path in found} | {"exact", "bounds"}
     before = {path: result for path, result in before.items() if path.split("/", 2)[1] in compared}
     wrong = [f"{name}, {difference}" for difference in kept.differences(before, found, context)]
@@ -64,6 +64,7 @@ def test_bounds_cover_true_errors_closely(name):
     wrong = [
         f"{name}, {problem}"
         for variant, made in shipped(name).variants.items()
+        if variant not in kept.SEARCHED.get(name, ())  # the exact values are of inputs to the last bit
         for problem in kept.bound_problems(before, variant, made.scene)
     ]
     assert not wrong, "\n".join(wrong)

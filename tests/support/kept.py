@@ -37,6 +37,12 @@ FLOOR = 1e-3
 TABLE_LOADS, OTHER_PROCESSOR = 1e-13, 1e-14
 """Tolerances of values relative to the quantity's scale: with table loads, and where sines have other last bits."""
 EXTREMES, SEARCHES, TRAJECTORIES = 1e-12, 1e-9, 1e-9
+BESIDE = 1e-5
+"""Tolerance of what a search neither aims at nor limits: where the goal is flat, a change of it by 1e-9 moves the rest by
+the root of that, and roundings of another processor do.
+"""
+SEARCHED = {"mower_drive": {"optimal"}, "comparisons": {"mower_drive optimal"}}
+"""Variants whose counterweights a search finds: all their results are known as closely as that."""
 NEAR, ANGLE = 1e-9, 1e-6
 """Relative difference of extrema that count as equally high, and difference of their crank angles, rad."""
 LARGER_BOUND, TABLE_BOUND = 3.2, 1e-12
@@ -264,7 +270,10 @@ def designs():
     free = _quietly(ks.design.torque_free_cam, saw, cosine=3)
     for study, design in (("optimise", optimised), ("torque-free cam", free)):
         report = design.report()
-        found |= {f"{study}/searched/{output}": float(value) for output, value in report["after"].items()}
+        for output, value in report["after"].items():
+            named = output.partition(" [")[0].removeprefix("ratio ")
+            kind = "searched" if any(named in text for text in (design.goal, *design.active)) else "beside"
+            found[f"{study}/{kind}/{output}"] = float(value)
         found |= {f"{study}/texts/active": list(design.active), f"{study}/texts/goal": design.goal}
     return found
 
@@ -467,11 +476,16 @@ def differences(kept, now, context):
 
 
 class Context(NamedTuple):
-    """What tolerances depend on: all kept results of the subject, and the variants that table loads act on."""
+    """What tolerances depend on: all kept results of the subject, variants with table loads, and `SEARCHED` ones."""
 
     kept: dict
     tables: frozenset = frozenset()
     other_arithmetic: bool = False
+    searched: frozenset = frozenset()
+
+    def share(self, path, share):
+        """Relative tolerance of a result."""
+        return max(share, SEARCHES) if path.split(SEP)[0] in self.searched else share
 
     def scale(self, path, kept):
         """Size of what a quantity is a sum of: its own largest value, or for forces and moments the largest load."""
@@ -490,7 +504,8 @@ def _values(path, kept, now, context):
         allowed = ULPS * np.spacing(np.maximum(np.abs(kept), FLOOR * scale))
         told = f"{ULPS} ulp, or of {FLOOR:g} of {scale:.4g}"
     if context.other_arithmetic:
-        allowed, told = np.maximum(allowed, OTHER_PROCESSOR * scale), f"{OTHER_PROCESSOR:g} of {scale:.4g}"
+        share = context.share(path, OTHER_PROCESSOR)
+        allowed, told = np.maximum(allowed, share * scale), f"{share:g} of {scale:.4g}"
     period = context.kept[f"{path.split(SEP)[0]}/scales/period"]
     yield from _within(path, kept, now, allowed, told, period)
 
@@ -523,6 +538,7 @@ def _relative(share, path, kept, now, context):
     variant, _, name = path.split(SEP, 2)
     known = context.kept.get(f"{variant}/sizes/{name.split()[-1]}", 0.0)
     scale = max(known, float(np.nanmax(np.abs(kept), initial=0.0)))
+    share = context.share(path, share)
     allowed = ANGLE if "_at " in name else share * scale
     yield from _within(path, kept, now, allowed, f"{share:g} of {scale:.4g}")
 
@@ -562,6 +578,7 @@ RULES = {
     "table": partial(_relative, EXTREMES),
     "curves": partial(_relative, EXTREMES),
     "searched": partial(_relative, SEARCHES),
+    "beside": partial(_relative, BESIDE),
     "motion": partial(_relative, TRAJECTORIES),
     "angles": _angles,
     "texts": _texts,
