@@ -86,7 +86,7 @@ def _extremes(solution, given):
     """Results of a variant for ``--json``."""
     from ..cycle.extremes import SHOWN, extremes_by_name
     from ..cycle.losses import lose
-    from ..solution.uncertainty_table import largest_with_uncertainty
+    from ..solution.tables import largest_with_uncertainty
 
     found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
     found["extremes"] = {

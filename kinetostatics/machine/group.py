@@ -70,7 +70,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .links import CamDriven, Link, Sliding, Slot, Turning, Wrench, present
+from .links import CamDriven, Link, Rolling, Sliding, Slot, Turning, Wrench, present
 
 FRAME, CRANK = "frame", "crank"
 """Link that does not move, and the link of every crank."""
@@ -147,7 +147,7 @@ class Declaration(NamedTuple):
     guides: Mapping[str, Any] = EMPTY
     slots: tuple[Slot, ...] = ()
     led: tuple[CamDriven, ...] = ()
-    pairs: tuple[Turning | Sliding, ...] = ()
+    pairs: tuple[Turning | Sliding | Rolling, ...] = ()
     motions: Mapping[str, Output] = EMPTY
     contacts: Mapping[str, Any] = EMPTY
     lengths: tuple[Any, ...] = ()
@@ -262,11 +262,11 @@ class Part:
         """Which links turn or slide against what, by the name of the reaction or force.
 
         A reaction is called as its joint, with the label where the group hangs on that, with the link where it hangs on
-        several; that of a slider as its force, but for the ending.
+        several; that of a slider or roller as its force, but for the ending.
         """
         found: dict[str, Any] = {}
         for pair in self.declaration.pairs:
-            if isinstance(pair, Sliding):
+            if not isinstance(pair, Turning):
                 name = self.called(pair.force.removesuffix("_force"))
             elif pair.joint not in self.hangs_on:
                 name = pair.joint

@@ -121,12 +121,11 @@ class CamRoller(checks.Checked, Group):
     @property
     def declaration(self):
         slot, contact = Sliding("block", "A", "crank", "slot_force", "slot_moment"), Rolling("block", "A", "cam_force")
-        pairs: tuple[Any, ...] = (slot, contact)
         return Declaration(
             joints={"A": Point("block")},
             slots=(Slot("crank", "A"),),
             led=(CamDriven("block", "A", FRAME, "cam_force"),),
-            pairs=pairs,
+            pairs=(slot, contact),
             motions={
                 "pressure_angle": Output("rad", text="of the cam pair, atan(r'/r), positive where the radius grows"),
                 "cam_radius": Output("m", text="of the pitch curve, from O to the roller centre"),

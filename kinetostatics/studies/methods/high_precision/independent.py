@@ -23,7 +23,7 @@ from ....machine.groups.rocker import Dyad, RockerGroup
 from ....machine.groups.slider import SliderGroup
 from ....machine.groups.yoke import YokeGroup
 from ....machine.laws.laws import Cosine
-from ....machine.loads import Gravity, Load
+from ....machine.loads import Gravity, has_no_user_code
 from ....mechanics.quantities import RATES
 from ....numbers import checks
 from ..method import require_moving
@@ -327,7 +327,7 @@ class Machine(Posture, LoadForces):
 
     def value(self, item):
         """Force or moment of a load, N or N m; that of a table or the user's own code by the function itself."""
-        if isinstance(item, Load) and item.is_given:
+        if has_no_user_code(item):
             return self.number(item.value_now)
         flint = require_library("flint")
         with flint.ctx.workprec(int(3.33 * self.mp.dps)):
