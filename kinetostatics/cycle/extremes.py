@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning, NotGivenError, ParameterError
-from ..mechanics import jamming, quantities
+from ..mechanics import quantities
 from ..mechanics.quantities import Quantity, components, largest_term, of_scene, unit_of, values
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
@@ -165,7 +165,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = jamming.jammed_angles(solution.sampled.at)
+    jams = solution.sampled.jammed
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import TURN, has_no_user_code, period_of, refusals
-from ..mechanics import assembly, energy_contact
+from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -19,7 +19,7 @@ from .kinks import ANGLE_TOLERANCE, has_undeclared_functions, kinks_and_jumps
 from .piecewise import JUMP_OFFSET, Pieces, edges_between
 
 SAMPLES = 1440
-"""Crank angles of a turn between which friction changes its sign, or a load function is compared a period later."""
+"""Even samples of a turn at which friction is looked at, or a load function is compared a period later."""
 MAX_WIDTH, POINTS = TURN / 8, 24
 """Width of a piece, rad, and its points, without kinks."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
@@ -113,6 +113,20 @@ class Turn:
     def points(self):
         """Indices (pieces, points + 2) of the samples at `Pieces.checked`."""
         return np.searchsorted(self.angle, self.pieces.checked)
+
+    @cached_property
+    def jammed(self):
+        """Crank angles of even samples at which friction jams, rad."""
+        return jamming.jammed_angles(self._even)
+
+    @cached_property
+    def _even(self):
+        return self.at.at(np.linspace(0.0, self.period, round(SAMPLES * self.period / TURN), endpoint=False))
+
+    def require_free(self, owner):
+        """Raise `JammingError` if friction jams at an even sample."""
+        if self.at.friction.acting:
+            jamming.require_free(self._even, owner)
 
     @property
     def beside_kinks(self):
