@@ -108,11 +108,10 @@ class Extremes:
 def extremes(solution, quantity):
     """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
 
-    Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
-    limit positions; in each, Chandrupatla's method minimises the quantity as the mechanism itself gives it. As a
-    minimum fixes its place to half the digits only, a Chebyshev fit through nearby values then gives the angle, kept
-    if the value there is as good. At a jump the extrema are the values on its two sides; at one that a function does
-    not declare, those of the nearest samples.
+    The turn is split at the kinks of loads, friction and laws of cams, and the quantity is a Chebyshev series on each
+    piece, halved until the series is exact to rounding; the zeros of its slope are evaluated by the mechanism itself.
+    Load functions that declare no kinks are evaluated every twentieth of a degree at first. At a jump the extrema are
+    the values on its two sides.
 
     Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
     each side replace them, also at the ends of gaps.
@@ -165,7 +164,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = jamming.jammed_angles(solution.sampled.at)
+    jams = jamming.jammed_angles(solution.sampled.even)
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
@@ -197,6 +196,14 @@ def extrema(solution, quantity):
     found = turn.extrema[quantity]
     arrays = {name: getattr(found, name).copy() for name in ("angle", "value", "maximum", "left_out")}
     return replace(found, solution=solution, **arrays)
+
+
+def largest_of(found):
+    """Largest value of `Extremes` and its crank angle, NaN for a constant."""
+    if not len(found):
+        return found.constant, np.nan
+    place = int(np.argmax(found.value))
+    return float(found.value[place]), float(found.angle[place])
 
 
 def _extrema(solution, turn, quantity):

@@ -29,20 +29,21 @@ MAX_VERTEX = 0.1
 """Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
 """Crank angles nearer than this, rad, count as one."""
-RESOLUTION = np.radians(0.05)
-"""Largest distance of crank angles, rad, at which a load function without declared kinks is evaluated."""
+FUNCTION_WIDTH = np.radians(0.2)
+"""Width of a piece, rad, on which a load function without declared kinks is evaluated at 8 crank angles at first."""
 
 
-def has_undeclared_functions(loads):
-    """Whether a load is a function that declares no kinks, so that a pulse below `RESOLUTION` may be missed."""
-    return any(not has_no_user_code(item) and not kink_sources([item]) for item in loads)
+def undeclared_functions(loads):
+    """Loads that are functions without kinks, a list: pulses below 0.05 deg, in sweeps 0.1 deg, may be missed."""
+    return [item for item in loads if not has_no_user_code(item) and not kink_sources([item])]
 
 
 def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
-    """Whether friction, a cam's law, or a load with kinks above `tolerance` may put a kink into a quantity."""
+    """Whether friction, a cam's law, or a load may put a kink above `tolerance` into a quantity."""
     if law_kinks(solution).size:
         return True
-    loads = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
+    kinked = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
+    loads = kinked or undeclared_functions(solution.loads)
     return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in LOAD_FREE_KINDS
 
 
@@ -75,13 +76,20 @@ def kinks_and_jumps(solution, samples):
 
     The signs of friction are sampled at `samples` crank angles.
     """
-    law, friction = law_kinks(solution, jumps=True), np.empty(0)
-    if solution.friction.acting:
-        friction = np.unique(_friction_sign_changes(solution, samples)[1])
-    sources = [(friction, friction), (law, law)]
-    for part in kink_sources(solution.loads):
-        starts = _period_starts(part, solution)[:, None]
-        kinks, jumps = kinks_of(part, solution)
+    kinks, jumps = declared_kinks(solution)
+    if not solution.friction.acting:
+        return kinks, jumps
+    friction = _friction_sign_changes(solution, samples)[1].ravel()
+    return np.union1d(kinks, friction), np.union1d(jumps, friction)
+
+
+def declared_kinks(motion):
+    """The same of loads and laws of cams alone, of a solution or a motion."""
+    law = law_kinks(motion, jumps=True)
+    sources = [(law, law)]
+    for part in kink_sources(motion.loads):
+        starts = _period_starts(part, motion)[:, None]
+        kinks, jumps = kinks_of(part, motion)
         sources.append((np.ravel(np.concatenate([kinks, jumps]) + starts), np.ravel(jumps + starts)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*sources, strict=True))
 
@@ -110,9 +118,9 @@ def sign_changes(function, period, samples):
     function : function
         From crank angles (1 or designs, N) to a sequence of arrays that broadcast with them: one for each function.
     period : float
-    samples : int
-        Crank angles over the period between which each function changes its sign once at most, or twice where its size
-        has a minimum.
+    samples : int or array
+        Crank angles over the period, rising, or their number: between two of them each function changes its sign once
+        at most, or twice where its size has a minimum.
     """
 
     def evaluate(angle):
@@ -120,7 +128,8 @@ def sign_changes(function, period, samples):
             found = function(angle)
         return np.stack([np.broadcast_arrays(np.atleast_2d(row), angle)[0] for row in found])
 
-    angle = (SAMPLE_OFFSET + np.linspace(0.0, period, samples + 1))[None]
+    start = SAMPLE_OFFSET + np.linspace(0.0, period, samples, endpoint=False) if np.ndim(samples) == 0 else samples
+    angle = np.append(start, start[0] + period)[None]
     found = function(angle)
     if not len(found):
         return np.empty((1, 0)), np.empty((1, 0))
@@ -152,15 +161,17 @@ def _sign_change_brackets(evaluate, values, angle):
     brackets = [(design, angle[0, place], angle[0, place + 1], row)]
     before, here, after = (np.abs(part) for part in (values[..., :-2], values[..., 1:-1], values[..., 2:]))
     alike = (sign[..., :-2] == sign[..., 1:-1]) & (sign[..., 1:-1] == sign[..., 2:])
-    bend = before - 2.0 * here + after
+    left, right = np.diff(angle[0])[:-1], np.diff(angle[0])[1:]
+    curve = ((after - here) / right - (here - before) / left) / (left + right)
+    slope = (here - before) / left + curve * left
     with np.errstate(invalid="ignore", divide="ignore"):
-        least = here - (before - after) ** 2 / (8.0 * bend)
-        near = alike & (here <= before) & (here <= after) & (bend > 0.0) & (least < MAX_VERTEX * bend)
+        shift = -0.5 * slope / curve
+        near = alike & (here <= before) & (here <= after) & (curve > 0.0)
+        near &= here + 0.5 * slope * shift < MAX_VERTEX * 0.5 * curve * (left + right) ** 2
     row, design, place = np.nonzero(near)
     if place.size:
-        step = 0.5 * (before - after)[near] / bend[near]
         place = place + 1
-        vertex = angle[0, place] + step * (angle[0, 1] - angle[0, 0])
+        vertex = angle[0, place] + shift[near]
         at, known, order = pad_rows(design, values.shape[1], vertex, row, np.arange(vertex.size))
         there = evaluate(np.where(np.isnan(at), angle[0, 0], at))
         there = np.take_along_axis(there, np.nan_to_num(known).astype(int)[None], axis=0)[0]

@@ -136,7 +136,7 @@ def closed_turn(solution, owner):
     turn = solution.sampled
     if turn.gaps:
         raise ParameterError(f"{owner}: {solution.mechanism.name} {turn.unclosed}")
-    jamming.require_free(turn.at, owner)
+    jamming.require_free(turn.even, owner)
     return turn
 
 

@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cycle.extremes import extrema, largest_of
 from ..cycle.kinks import sign_changes
 from ..cycle.turn import require_single
 from ..errors import ParameterError
-from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, highest
+from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import Spring
 from ..numbers import checks
 from ..solution.scene import Scene
@@ -92,7 +93,7 @@ def lift_off_speed(solution, force="cam_force"):
     """
     _require(solution, "lift_off_speed", force)
     fast = _mean_speed(solution)
-    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
+    angle = _angles(solution)
     rest, moving, faster = (
         _force(solution, force, speed, angle) for speed in (REST_SPEED_RATIO * fast, fast, 2.0 * fast)
     )
@@ -105,7 +106,7 @@ def lift_off_speed(solution, force="cam_force"):
             rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
             return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
 
-        peak = highest(ratio, 0.0, solution.period).value
+        peak = peak_of(solution, lambda at: ratio(at.crank_angle)).value
         found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
         return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
     return _lift_off_by_search(solution, force, fast, side, angle)
@@ -159,19 +160,19 @@ def lifted(solution, force="cam_force"):
     (-1.108026, 1.108026)
     """
     _require(solution, "lifted", force)
-    ends, period = force_changes(solution, force, PEAK_SAMPLES), solution.period
+    ends, period = force_changes(solution, force), solution.period
     edges = np.append(ends[-1] - period, ends) if ends.size else np.array([0.0, period])
     pulling = solution.at(np.mod(0.5 * (edges[1:] + edges[:-1]), period)).scalar(force) < 0.0
     return tuple(zip(edges[:-1][pulling].tolist(), edges[1:][pulling].tolist(), strict=True))
 
 
-def force_changes(solution, force, samples):
-    """Crank angles at which a contact force changes its sign, rising, rad; `samples` over the period bracket them."""
+def force_changes(solution, force):
+    """Crank angles at which a contact force changes its sign, rising, rad."""
 
     def values(angle):
         return [solution.at(angle).scalar(force) + 0.0]  # -0.0 has a sign
 
-    return np.sort(sign_changes(values, solution.period, samples)[1][0])
+    return np.sort(sign_changes(values, solution.period, _angles(solution))[1][0])
 
 
 def starting_torque(solution):
@@ -204,7 +205,7 @@ def starting_torque(solution):
     11.312
     """
     _require(solution, "starting_torque", "balancing_torque")
-    return highest(lambda angle: np.abs(_solution_at(solution, 0.0, angle).balancing_torque), 0.0, solution.period)
+    return peak_of(_solution_at(solution, 0.0, 0.0), lambda at: np.abs(at.balancing_torque))
 
 
 def spring_surge(solution, spring_mass):
@@ -257,6 +258,18 @@ def spring_surge(solution, spring_mass):
     natural = float(np.pi * np.sqrt(rate / mass))
     speed = abs(float(np.mean(solution.crank_speed)))
     return Surge(natural, natural / speed if speed else np.inf, series[: PEAK_SAMPLES // 4])
+
+
+def _angles(solution):
+    """Crank angles over the period, rising from 0, among them both sides of every kink and narrow pulse."""
+    even = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
+    return np.union1d(even, solution.sampled.angle)
+
+
+def peak_of(solution, function):
+    """Largest value of a function of a solution over the period, a `Peak`; of a constant at 0."""
+    value, angle = largest_of(extrema(solution, function))
+    return Peak(value, float(np.nan_to_num(angle)))
 
 
 def _require(solution, owner, name):
