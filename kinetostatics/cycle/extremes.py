@@ -10,14 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning, NotGivenError, ParameterError
-from ..mechanics import jamming, quantities
-from ..mechanics.quantities import Quantity, largest_term, of_scene, unit_of, values
+from ..mechanics import quantities
+from ..mechanics.quantities import Quantity, components, largest_term, of_scene, unit_of, values
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turn import require_single
-from .turning_points import Path, open_paths, refine_turning_points, replace_jumps, turning_points
+from .turning_points import extrema_of, paths, turning_points
 
 PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
 """Places in the period, relative to it, at which functions are compared with their values a period later."""
@@ -25,6 +25,10 @@ GROWTH_TOLERANCE = 1e-6
 """Growth in a period, relative to the largest value, above which a function does not repeat."""
 MAX_ORDINARY_CONDITION = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
+TAIL_SHARE = 0.2
+"""Size of the last coefficients of a series, relative to the rounding of the quantity, that is rounding."""
+MIN_OPEN_WIDTH = 0.005
+"""Width of a piece, rad, that is no longer halved where only a part of its values is finite."""
 SHOWN = ("smallest", "smallest at [deg]", "largest", "largest at [deg]")
 
 
@@ -161,7 +165,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = jamming.jammed_angles(solution.sampled.at)
+    jams = solution.sampled.jammed
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
@@ -214,18 +218,51 @@ def _extrema(solution, turn, quantity):
             _require_repeating(turn, function, float(np.max(np.abs(samples), initial=0.0)))
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _size_and_rounding(turn, quantity, samples, good, position)
-        samples, jumps = replace_jumps(turn, samples, size)
-        paths = [Path(turn.angle, samples, floor, turn.period)]
-        if not good.all():
-            paths = list(open_paths(turn, function, samples, good, floor, size))
-        points = [turning_points(path) for path in paths]
-        if not any(maximum.size for *_, maximum in points):
-            constant = float(np.max(samples[good])) if good.any() else np.nan
-            empty = np.empty(0)
-            return Extremes(name, empty, empty, empty.astype(bool), constant, left_out, own)
-        joined = (np.concatenate(parts, axis=-1) for parts in zip(*points, strict=True))
-        angle, value, maximum = refine_turning_points(turn, function, size, jumps, *joined)
+        if not turn.limits.size and np.ptp(samples) <= floor[0]:
+            return _constant(name, float(np.max(samples)), left_out, own)
+        square = not is_function and of_scene(solution)[quantity].kind == "contact"  # a root of a force
+        pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, 2.0 * size if square else 1.0)
+        cuts = turn.limits[~good[np.searchsorted(turn.angle, turn.limits)]]
+        found = list(paths(turn, pieces, known, rough, function, rounding, size, cuts, square))
+        if not any(turning_points(path)[1].size for path in found):
+            return _constant(name, float(np.max(samples[good])) if good.any() else np.nan, left_out, own)
+        angle, value, maximum = extrema_of(turn, function, found, size)
     return Extremes(name, angle, value, maximum, np.nan, left_out, own)
+
+
+def _constant(name, value, left_out, solution):
+    empty = np.empty(0)
+    return Extremes(name, empty, empty, empty.astype(bool), value, left_out, solution)
+
+
+def _resolved(turn, quantity, good, floor, scale):
+    """Pieces with resolved series of a quantity, its values, NaN without digits, which stay rough, and its rounding.
+
+    Values (1 or 2, pieces, points + 2) are those of the quantity, or its components; with a `scale` its square, whose
+    rounding is so many times as large.
+    """
+
+    def function(at):
+        found = (quantity(at),) if callable(quantity) else components(at, quantity)
+        return np.square(found) if scale != 1.0 else np.array(found)
+
+    def rounding(pieces):
+        if not turn.limits.size:
+            return np.full(len(pieces.half), floor[0])
+        return np.interp(pieces.checked, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
+
+    def unresolved(pieces, errors, values):
+        finite = np.isfinite(values[0, :, 1:-1])
+        open_part = finite.any(axis=1) & ~finite.all(axis=1) & (2.0 * pieces.half[:, 0] > MIN_OPEN_WIDTH)
+        with np.errstate(invalid="ignore"):
+            return (errors > TAIL_SHARE * scale * rounding(pieces)).any(axis=0) | open_part
+
+    def evaluate(angle):
+        return turn.evaluate(function, angle.ravel()).reshape(-1, *angle.shape)
+
+    first = np.where(good, function(turn.at), np.nan)[:, turn.points]
+    pieces, known, rough = turn.pieces.resolved(first, evaluate, unresolved)
+    return pieces, known, rough, rounding(pieces)
 
 
 def _require_repeating(turn, function, size):

@@ -8,6 +8,7 @@ import numpy as np
 from ..machine.loads import (
     KINK_TOLERANCE,
     TURN,
+    has_no_user_code,
     has_significant_kinks,
     kink_sources,
     kinks_of,
@@ -28,6 +29,13 @@ MAX_VERTEX = 0.1
 """Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
 """Crank angles nearer than this, rad, count as one."""
+RESOLUTION = np.radians(0.05)
+"""Largest distance of crank angles, rad, at which a load function without declared kinks is evaluated."""
+
+
+def has_undeclared_functions(loads):
+    """Whether a load is a function that declares no kinks, so that a pulse below `RESOLUTION` may be missed."""
+    return any(not has_no_user_code(item) and not kink_sources([item]) for item in loads)
 
 
 def has_kinks(solution, name, tolerance=KINK_TOLERANCE):

@@ -149,7 +149,7 @@ def lose(*solutions):
 def losses(solution) -> Losses:
     """Mean powers over time that a machine takes, gives and loses over the period of a solution.
 
-    By Gauss quadrature between the crank angles where friction jumps or has a kink (`means`).
+    By integrals of Chebyshev series between the crank angles where friction jumps or has a kink (`means`).
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def losses(solution) -> Losses:
 
     sizes = np.abs(by_angle(turn.angle)).max(axis=-1)
     floor = TERM_ROUNDING * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * (1 + len(powers))])
-    found, errors, _ = means(by_angle, turn, floor)
+    found, errors, *_ = means(by_angle, turn, floor)
     if np.any(errors > WARNING_ERROR * sizes + floor):
         error = np.max(errors[1:]) / found[0]
         text = f"losses: powers are right to about {error:.2g} W only, so uneven are the loads"

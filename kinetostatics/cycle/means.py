@@ -1,4 +1,4 @@
-"""Means over the period: adaptive Gauss quadrature between the kinks, jumps and sign changes of functions."""
+"""Means over the period: integrals of the series on pieces between the kinks, jumps and sign changes of functions."""
 
 import math
 import warnings
@@ -9,10 +9,9 @@ import numpy as np
 from ..engines.error_bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
-from ..mechanics import jamming
 from ..numbers.arithmetic import UNIT_ROUNDOFF
-from ..numbers.brackets import find_roots
 from .extremes import extrema, warning
+from .piecewise import Pieces
 from .turn import MAX_CONDITION, require_single
 
 _HALF = np.array([0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363]) / 2
@@ -21,21 +20,13 @@ NODES = 0.5 + np.concatenate([-_HALF[::-1], _HALF])
 _HALF = np.array([0.362683783378362, 0.31370664587788727, 0.22238103445337448, 0.10122853629037626]) / 2
 WEIGHTS = np.concatenate([_HALF[::-1], _HALF])
 """Their weights, right to the last digit: those of `numpy.polynomial` are off by up to 72 `UNIT_ROUNDOFF`."""
-SPLIT = 0.4
-"""Place at which a panel is split; not the middle, about which the nodes are symmetrical and hide jumps."""
 SPLIT_TOLERANCE = 1e-14
-"""Change of the integral by a split, relative to it and divided by the panels, at which a panel is done."""
+"""Error of the integral over a piece, relative to the whole and divided by the pieces, at which it is resolved."""
 WARNING_ERROR = 1e-9
 """Relative error of a mean above which a warning is due."""
-MIN_PANEL = 1e-14
-"""Smallest panel, relative to the period, that is split."""
-MAX_ANGLES = 2**17
-"""Crank angles evaluated at a time."""
-MAX_PANELS = 2**17
-"""Panels after which the quadrature stops."""
-ROUNDINGS = NODES.size + 4
-"""Roundings of a value on its way into a mean, at most: weight, sum of its panel, product with its width, sum of all
-panels (rounded once), quotient by the period."""
+ROUNDINGS = 4
+"""Roundings of a value on its way into a mean, at most, besides the sum of its piece: weight, product with its width,
+sum of all pieces (rounded once), quotient by the period."""
 TERM_ROUNDING = 1e-14
 """Rounding of a sum relative to its largest term."""
 
@@ -43,9 +34,9 @@ TERM_ROUNDING = 1e-14
 def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the period of the solution, N m.
 
-    By Gauss quadrature between changes of sign. Panels are split until the parts agree with the whole, which closes in
-    on jumps, kinks and narrow pulses of a load. The nodes of the first panels are a fiftieth of a degree apart at most
-    where a load is a function; a pulse between them may be missed.
+    By Chebyshev series between changes of sign. Pieces are halved until the series are exact to rounding, which closes
+    in on jumps, kinks and narrow pulses of a load. Crank angles are a twentieth of a degree apart at most where a load
+    is a function that declares no kinks; a pulse between them may be missed.
 
     Raises
     ------
@@ -100,29 +91,25 @@ def mean_absolute_torque_errors(solution):
     turn = closed_turn(solution, "mean torque")
     if np.isinf(extrema(solution, "balancing_torque").value).any():
         return MeanErrors(np.inf, np.inf)
-    mean, error, _, panels = _mean_of_absolute_torque(turn)
+    mean, error, _, pieces = _mean_of_absolute_torque(turn)
 
-    def bounds(angle):
-        return turn.at.at(turn.clear(angle)).error_bound("balancing_torque")[None]
-
-    bound = _sum(_integrals(bounds, *panels)) / turn.period  # also bounds the error of the magnitude
-    return MeanErrors(SAFE * float(bound[0] + ROUNDINGS * UNIT_ROUNDOFF * mean), error)
+    bounds = turn.at.at(turn.clear(pieces.angle.ravel())).error_bound("balancing_torque")
+    bound = math.fsum(pieces.whole(bounds.reshape(pieces.angle.shape))) / turn.period  # also of the magnitude
+    return MeanErrors(SAFE * (bound + (pieces.count + ROUNDINGS) * UNIT_ROUNDOFF * mean), error)
 
 
 def _mean_of_absolute_torque(turn):
-    """Mean, estimate of its error, rounding of the values, and panels of the sum."""
+    """Mean, estimate of its error, rounding of the values, and pieces of the sum."""
 
     def torque(angle):
-        return turn.at.at(turn.clear(angle)).balancing_torque
+        return turn.at.at(turn.clear(angle)).balancing_torque[None]
 
     floor = TERM_ROUNDING * turn.at.at(turn.angle[turn.usable]).largest_torque_term
-    grid = _grid(turn)
-    samples = torque(grid)
-    change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
-    ends = grid[change], grid[change + 1]
-    zeros = find_roots(lambda angle, _: torque(angle), *ends) if change.size else []
-    (mean,), (error,), panels = means(lambda angle: np.abs(torque(angle))[None], turn, floor, zeros)
-    return float(mean), float(error), floor, panels
+    _, (error,), pieces, values = means(torque, turn, floor)
+    zeros, _ = pieces.zeros(values[0, :, 1:-1])
+    parts = Pieces(np.unique(np.concatenate([pieces.edges, zeros])), pieces.count)
+    parts, (values,) = pieces.replaced(parts, values, lambda angle: torque(angle.ravel()).reshape(1, *angle.shape))
+    return math.fsum(parts.whole(np.abs(values[:, 1:-1]))) / turn.period, float(error), floor, parts
 
 
 def energy_per_turn(solution):
@@ -148,12 +135,12 @@ def closed_turn(solution, owner):
     turn = solution.sampled
     if turn.gaps:
         raise ParameterError(f"{owner}: {solution.mechanism.name} {turn.unclosed}")
-    jamming.require_free(turn.at, owner)
+    turn.require_free(owner)
     return turn
 
 
-def means(function, turn, floor, edges=()):
-    """Means over the period of functions of the crank angle, estimates of their errors, starts and widths of panels.
+def means(function, turn, floor):
+    """Means over the period of functions of the crank angle, estimates of their errors, pieces, and values on them.
 
     Parameters
     ----------
@@ -162,52 +149,23 @@ def means(function, turn, floor, edges=()):
     turn : Turn
     floor : float or array (functions,)
         Rounding of the values.
-    edges : array, optional
-        Crank angles where functions jump or have a kink, besides the turn's own.
     """
-    edges = np.unique(np.concatenate([_grid(turn), edges]))
-    floor = np.reshape(floor, (-1, 1))
+
+    def evaluate(angle):
+        return function(angle.ravel()).reshape(-1, *angle.shape)
+
+    first = evaluate(turn.pieces.checked)
     profile = np.fmin(turn.condition, MAX_CONDITION) * (turn.limits.size > 0)
-    noise = np.abs(function(edges)).max(axis=-1, keepdims=True) * UNIT_ROUNDOFF * profile
-    start, width = edges[:-1], np.diff(edges)
-    whole, parts, panels = _integrals(function, start, width), [], []
-    size, wrong, room = 0.0, 0.0, MAX_PANELS
-    while start.size:
-        left, right = SPLIT * width, (1.0 - SPLIT) * width
-        halves = np.array([start, start + left]), np.array([left, right])
-        both = _integrals(function, *map(np.ravel, halves)).reshape(-1, 2, start.size)
-        error = np.abs(both.sum(axis=1) - whole)
-        room -= 2 * start.size
-        largest = (size + np.abs(both).sum(axis=(1, 2)))[:, None]
-        rounding = np.array([np.interp(start, turn.angle, row) for row in noise])
-        rough = error > width * (floor + rounding) + 1e-16 * largest
-        rough &= error > SPLIT_TOLERANCE * largest / start.size
-        rough = rough.any(axis=0) & (left > MIN_PANEL * turn.period) & (room >= 0)
-        parts.append(both[..., ~rough].reshape(both.shape[0], -1))
-        panels.append([np.ravel(half[:, ~rough]) for half in halves])
-        size = size + np.abs(parts[-1]).sum(axis=-1)
-        wrong = wrong + error[:, ~rough].sum(axis=-1)
-        start, width = (np.ravel(half[:, rough]) for half in halves)
-        whole = both[..., rough].reshape(both.shape[0], -1)
-    total = _sum(np.concatenate(parts, axis=-1))
-    return total / turn.period, wrong / turn.period, [np.concatenate(part) for part in zip(*panels, strict=True)]
+    noise = np.abs(first).max(axis=(1, 2))[:, None] * UNIT_ROUNDOFF
 
+    def unresolved(pieces, errors, values):
+        width = 2.0 * pieces.half[:, 0]
+        whole = np.abs(pieces.whole(values[..., 1:-1])).sum(axis=-1, keepdims=True)
+        rounding = np.reshape(floor, (-1, 1)) + noise * np.interp(pieces.edges[:-1], turn.angle, profile)
+        error = errors * width
+        rough = (errors > rounding) & (error > 1e-16 * whole) & (error > SPLIT_TOLERANCE * whole / width.size)
+        return rough.any(axis=0)
 
-def _integrals(function, start, width):
-    """Integral of each function over each panel."""
-    parts = []
-    for some in np.array_split(np.arange(start.size), 1 + start.size * NODES.size // MAX_ANGLES):
-        angle = start[some, None] + width[some, None] * NODES
-        parts.append(function(angle.ravel()).reshape(-1, *angle.shape) @ WEIGHTS)
-    return width * np.concatenate(parts, axis=-1)
-
-
-def _sum(parts):
-    """Sum of each row, rounded once."""
-    return np.array([math.fsum(row) for row in parts])
-
-
-def _grid(turn):
-    """Ends of the first panels: two samples wide, and at limit positions and kinks."""
-    even = np.linspace(0.0, turn.period, round(turn.period / np.diff(turn.angle).max() / 2) + 1)
-    return np.unique(np.concatenate([even, turn.limits % turn.period, turn.kinks]))
+    pieces, values, _ = turn.pieces.resolved(first, evaluate, unresolved)
+    total = np.array([math.fsum(row) for row in pieces.whole(values[..., 1:-1])])
+    return total / turn.period, pieces.tails(values[..., 1:-1]) @ pieces.half[:, 0] / turn.period, pieces, values

@@ -52,11 +52,15 @@ class BoundedExtremes:
         return np.where(np.isfinite(errors), errors, np.nan)
 
     def end(self, name, find):
-        """`End` at the index that `find` (`np.argmin`, `np.argmax`) returns for the values; the value of a constant."""
+        """`End` at the index that `find` (`np.argmin`, `np.argmax`) returns for the values; the value of a constant.
+
+        Of values that are equal but for rounding it is the first.
+        """
         item = self.found[name]
         if not len(item):
             return End(float(item.constant), np.nan, np.nan)
-        place = find(item.value)
+        level = np.abs(item.value - item.value[find(item.value)]) <= FLOOR * np.abs(item.value).max()
+        place = int(np.argmax(level)) if level.any() else find(item.value)
         return End(*(float(part[place]) for part in (item.value, item.angle, self.errors(name))))
 
     @cached_property

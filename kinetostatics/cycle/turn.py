@@ -1,6 +1,6 @@
-"""The period over which results are reduced: samples, kinks, gaps, limit positions, and limits of a quantity there.
+"""The period over which results are reduced: pieces, kinks, gaps, limit positions, and limits of a quantity there.
 
-Rates and forces change ever faster toward a limit position, so samples get denser there. Samples without a correct
+Rates and forces change ever faster toward a limit position, so pieces get narrower there. Samples without a correct
 digit are left out; the limits of the quantity from both sides replace them.
 """
 
@@ -11,32 +11,33 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import TURN, has_no_user_code, period_of, refusals
-from ..mechanics import assembly, energy_contact
+from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
+from .kinks import ANGLE_TOLERANCE, has_undeclared_functions, kinks_and_jumps
+from .piecewise import JUMP_OFFSET, Pieces, edges_between
 
 SAMPLES = 1440
-"""Samples of a turn, besides those at and between kinks; two extrema nearer than these may be missed."""
-FUNCTION_FACTOR = 5
-"""Factor on the samples where a load is a function, which may have narrow pulses."""
+"""Even samples of a turn at which friction is looked at, or a load function is compared a period later."""
+MAX_WIDTH, POINTS = TURN / 8, 24
+"""Width of a piece, rad, and its points, without kinks."""
+POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
+"""Points of a piece where there are more edges than a number."""
+FUNCTION_WIDTH = np.radians(0.2)
+"""Width of a piece, rad, whose points are `RESOLUTION` apart at most."""
 NEAR = 0.01
-"""Closure margin below which samples get denser: peaks there are narrower than a few degrees."""
+"""Closure margin below which pieces get narrower toward the limit position."""
 MAX_CONDITION = 1e14
 """Condition from which a value has less than two correct digits and is left out."""
 MAX_LIMIT_CONDITION = 1e12
 """Condition up to which values are used to extrapolate to a limit."""
-DENSE_DISTANCES = 0.02 * 2.0 ** -np.arange(40)
-"""Distances of added samples from a limit position, rad, on both sides."""
+EDGE_DISTANCES = 0.02 * 2.0 ** -np.arange(26)
+"""Distances of added edges from a limit position, rad, on both sides."""
 LIMIT_DISTANCES = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances of the samples for a limit from its limit position, rad; every third is half as far."""
 MIN_GROWTH = 1.15
 """Growth of the change per halved distance above which a quantity grows without bound."""
-BETWEEN_KINKS = (2.0**-20, 0.5, 1.0 - 2.0**-20)
-"""Places of samples between two kinks, relative to their distance: the slope beside each kink becomes visible."""
-JUMP_OFFSETS = (-(2.0**-44), 2.0**-44)
-"""Distances of the samples on both sides of a jump from it, rad."""
 MAX_PERIODS = 6
 """Periods after which a function is tested for repetition if it does not repeat after one."""
 MIN_ANGLE_STEP = 2.0**-50
@@ -47,34 +48,34 @@ REPEAT_TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Turn:
-    """Samples of one design over its period; made by `Turn.of`.
+    """Pieces of the period of one design, and samples at their points; made by `Turn.of`.
 
     Attributes
     ----------
     at : Solution
-        At `angle`, rising from 0, even but for the neighbourhood of limit positions.
-    period : float
+        At `angle`, rising: `Pieces.checked`, and the limit positions.
+    pieces : Pieces
     gaps : tuple of (float, float)
         Crank angles between which the mechanism does not close.
     limits : array
         Crank angles at which a group is in a limit position, or nearly so, ends of gaps included.
     kinks : array
         Crank angles at which friction, a load or the law of a cam has a kink, or may jump.
+    jumps : array
+        The `kinks` that may be jumps.
     passed : array
         The change points among `limits` that the mechanism passes, where forces grow; empty unless made for `forces`.
-    jumps : array
-        The `kinks` that may be jumps: samples stand on both sides, at `JUMP_OFFSETS`.
     extrema : dict
         Extrema by quantity, cached.
     """
 
     at: Any
-    period: float
+    pieces: Pieces
     gaps: tuple[tuple[float, float], ...]
     limits: np.ndarray
     kinks: np.ndarray
-    passed: np.ndarray = field(default_factory=lambda: np.empty(0))
-    jumps: np.ndarray = field(default_factory=lambda: np.empty(0))
+    jumps: np.ndarray
+    passed: np.ndarray
     extrema: dict[str, Any] = field(default_factory=dict, init=False)
     _beside_limits: dict[tuple[float, int], Any] = field(default_factory=dict, init=False)
     """Solutions beside limit positions, by the crank angle of the position and the side."""
@@ -88,35 +89,50 @@ class Turn:
         ParameterError
             The solution depends on a table over its own crank angles, or a load does not repeat after its period.
         """
-        turns = round(solution.period / TURN)
-        count = SAMPLES * turns * (1 if all(map(has_no_user_code, solution.loads)) else FUNCTION_FACTOR)
-        grid = np.linspace(0.0, solution.period, count, endpoint=False)
+        period = solution.period
         kinks, jumps = kinks_and_jumps(solution, SAMPLES)
-        if kinks.size:
-            between = kinks[:, None] + np.diff(kinks, append=kinks[0] + solution.period)[:, None] * BETWEEN_KINKS
-            more = np.concatenate([kinks, between.ravel(), np.ravel(jumps[:, None] + JUMP_OFFSETS)])
-            grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
-        first = solution.at(grid)
+        gaps, limits, passed = _limit_positions(solution, forces)
+        graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
+        breaks = np.unique(np.append(np.mod(np.concatenate([kinks, graded]), period), 0.0))
+        breaks = np.append(breaks[np.diff(breaks, append=period) > 4.0 * JUMP_OFFSET], period)
+        undeclared = has_undeclared_functions(solution.loads)
+        edges = edges_between(breaks, FUNCTION_WIDTH if undeclared else MAX_WIDTH)
+        pieces = Pieces(edges, next((points for most, points in POINTS_BY_EDGES if edges.size > most), POINTS))
+        angle = pieces.checked.ravel()
+        first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
         if problem := repeating_problem(solution):
             raise ParameterError(problem)
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
-        near = assembly.limit_angles(solution.mechanism, NEAR)
-        gaps = assembly.gap_intervals(solution.mechanism) if near.size else ()
-        own = TURN * solution.mechanism.turns
-        near = np.concatenate([near, *gaps])
-        near = np.unique(np.mod(near + ANGLE_TOLERANCE, own) - ANGLE_TOLERANCE)
-        near = near[np.diff(near, prepend=-1.0) > 2 * ANGLE_TOLERANCE]
-        limits = np.ravel(near + own * np.arange(round(solution.period / own))[:, None])
-        passed = np.array(solution.mechanism.change_points if forces else ())
-        passed = np.ravel(passed + TURN * np.arange(turns)[:, None])
-        limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
-        if not limits.size:
-            return cls(first, solution.period, (), limits, kinks, jumps=jumps)
-        dense = limits[:, None] + np.concatenate([-DENSE_DISTANCES, [0.0], DENSE_DISTANCES])
-        angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
-        starts = own * np.arange(round(solution.period / own))
-        repeated = tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps)
-        return cls(solution.at(angle), solution.period, repeated, limits, kinks, passed, jumps)
+        return cls(first, pieces, gaps, limits, kinks, jumps, passed)
+
+    @property
+    def period(self):
+        return self.at.period
+
+    @cached_property
+    def points(self):
+        """Indices (pieces, points + 2) of the samples at `Pieces.checked`."""
+        return np.searchsorted(self.angle, self.pieces.checked)
+
+    @cached_property
+    def jammed(self):
+        """Crank angles of even samples at which friction jams, rad."""
+        return jamming.jammed_angles(self._even)
+
+    @cached_property
+    def _even(self):
+        return self.at.at(np.linspace(0.0, self.period, round(SAMPLES * self.period / TURN), endpoint=False))
+
+    def require_free(self, owner):
+        """Raise `JammingError` if friction jams at an even sample."""
+        if self.at.friction.acting:
+            jamming.require_free(self._even, owner)
+
+    @property
+    def beside_kinks(self):
+        """Crank angles of the kinks, and on both sides of jumps, rising, rad."""
+        sides = np.mod(np.ravel(self.jumps[:, None] + [-JUMP_OFFSET, JUMP_OFFSET]), self.period)
+        return np.unique(np.concatenate([self.kinks, sides]))
 
     @property
     def angle(self):
@@ -124,7 +140,7 @@ class Turn:
 
     @cached_property
     def condition(self):
-        """Condition at each angle; ones without computing it where no limit position is near."""
+        """Condition at each sample; ones without computing it where no limit position is near."""
         return self._condition(self.at) if self.limits.size else np.ones(self.angle.size)
 
     def _condition(self, solution):
@@ -217,6 +233,23 @@ class Turn:
         index = np.searchsorted(self.angle, angle)
         inside = ~self.usable[index % self.usable.size] | ~self.usable[index - 1]
         return np.where(inside, np.where(angle - low < high - angle, low, high), angle)
+
+
+def _limit_positions(solution, forces):
+    """Gaps, limit positions, and the change points passed among these, over the period of a solution."""
+    mechanism, period = solution.mechanism, solution.period
+    near = assembly.limit_angles(mechanism, NEAR)
+    gaps = assembly.gap_intervals(mechanism) if near.size else ()
+    own = TURN * mechanism.turns
+    near = np.concatenate([near, *gaps])
+    near = np.unique(np.mod(near + ANGLE_TOLERANCE, own) - ANGLE_TOLERANCE)
+    near = near[np.diff(near, prepend=-1.0) > 2 * ANGLE_TOLERANCE]
+    starts = own * np.arange(round(period / own))
+    limits = np.ravel(near + starts[:, None])
+    passed = np.array(mechanism.change_points if forces else ())
+    passed = np.ravel(passed + TURN * np.arange(round(period / TURN))[:, None])
+    limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
+    return tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps), limits, passed
 
 
 def _beside(angle, others):

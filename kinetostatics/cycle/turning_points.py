@@ -1,25 +1,32 @@
-"""Extrema of a sampled quantity: bracketed by samples, differences by rounding left out, refined by evaluation."""
+"""Turning points of a quantity: where the slope of its pieces changes its sign, evaluated by the mechanism itself."""
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from ..numbers.brackets import find_minima
 from .kinks import ANGLE_TOLERANCE
-from .turn import JUMP_OFFSETS, runs
+from .piecewise import JUMP_OFFSET, rule
+from .turn import runs
 
+JUMP_TOLERANCE = 1e-9
+"""Difference of the values on both sides of an edge, relative to the largest value, that is no jump."""
 LIMIT_TOLERANCE = 1e-4
 """Difference of the limits from both sides of a limit position, relative to the size of the quantity, that is none."""
-JUMP_TOLERANCE = 1e-9
-"""Difference of the values on both sides of a jump, relative to the size of the quantity, that is none."""
 MIN_LEVEL_WIDTH = 0.05
 """Crank angle, rad, over which values that differ by rounding alone are a level stretch, as in a dwell."""
+NEAR_END = 0.97
+"""Distance from the middle of a piece, relative to half its width, above which crank angles are polished."""
 HALVINGS = 48
 """Bisections that find an end of a level stretch."""
 
 
 class Path(NamedTuple):
-    """Samples of a quantity and their rounding, periodic; with a period of 0 open, from one limit to the next."""
+    """Values of a quantity between which it rises or falls throughout, and their rounding.
+
+    Periodic; with a period of 0 open, from one limit to the next.
+    """
 
     angle: np.ndarray
     value: np.ndarray
@@ -27,73 +34,118 @@ class Path(NamedTuple):
     period: float
 
 
-class Jumps(NamedTuple):
-    """Jumps of a quantity: the crank angles of the last sample before each and of the first one after it, rad."""
+def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
+    """Yield the `Path` of each unbroken run of pieces; a run ends at gaps, limit positions and lost digits.
 
-    before: np.ndarray
-    after: np.ndarray
-
-    def cut(self, brackets, period):
-        """Brackets that end at each jump; a middle between the two samples moves to the one before."""
-        start, middle, end = brackets
-        shifts = period * np.array([-1.0, 0.0, 1.0])[:, None]
-        for before, after in zip(*((side + shifts).ravel() for side in self), strict=True):
-            middle = np.where((before < middle) & (middle < after), before, middle)
-            start = np.where((start < after) & (after <= middle), after, start)
-            end = np.where((middle <= before) & (before < end), before, end)
-        return np.array([start, middle, end])
-
-
-def replace_jumps(turn, samples, size):
-    """Samples with the value just before each jump at the jump itself, and the jumps, as `Jumps`.
-
-    The value at the crank angle of a jump is arbitrary: of two parts that jump there, rounding may put one before its
-    jump and the other behind.
+    Parameters
+    ----------
+    turn : Turn
+    pieces : Pieces
+    values : array (1 or 2, pieces, points + 2)
+        Of the quantity, its square or its components, at `Pieces.checked`; NaN without correct digits.
+    rough : array (pieces,) of bool
+        Pieces that are not resolved.
+    function : function
+        From a solution to the values of the quantity over its crank angles.
+    floor : array (pieces,)
+        Rounding of the quantity on each piece.
+    size : float
+        Of the quantity.
+    cuts : array
+        Limit positions at which it has no value.
+    square : bool
     """
-    distance = np.mod(turn.angle[:, None] - turn.jumps + turn.period / 2, turn.period) - turn.period / 2
-    on = np.zeros(samples.shape, dtype=bool)
-    if turn.jumps.size:
-        on = np.any(np.abs(distance) < JUMP_OFFSETS[1] / 2, axis=1)
-    before, after = [], []
-    samples = samples.copy()
-    for run in runs(on):
-        low, high = run[0] - 1, (run[-1] + 1) % samples.size
-        if abs(samples[high] - samples[low]) > JUMP_TOLERANCE * size:
-            samples[run] = samples[low]
-            before.append(turn.angle[low])
-            after.append(turn.angle[high] + (turn.period if turn.angle[high] < turn.angle[low] else 0.0))
-    return samples, Jumps(np.array(before), np.array(after))
-
-
-def open_paths(turn, function, samples, good, floor, size):
-    """Yield a `Path` for each run of good samples, ended by the limits of the quantity at limit positions."""
+    count, known = values.shape[1], np.isfinite(values[..., 1:-1]).all(axis=(0, 2))
+    angle, owner = _candidates(pieces, values, known & ~rough, known, floor * (2.0 * size if square else 1.0))
+    if (rough & known).any():
+        more, its = _rough_candidates(turn, pieces, values, rough & known, function)
+        order = np.lexsort((np.append(angle, more), np.append(owner, its)))
+        angle, owner = np.append(angle, more)[order], np.append(owner, its)[order]
+    middle = 0.5 * (pieces.edges[owner] + pieces.edges[owner + 1])
+    near_end = np.abs(angle - middle) > NEAR_END * pieces.half[owner, 0]
+    near_end &= ~(np.abs(angle[:, None] - turn.kinks) <= JUMP_OFFSET).any(axis=1)
+    if near_end.any():
+        angle[near_end] = _polished(turn, function, angle[near_end], floor[owner[near_end]])
+    value = turn.evaluate(function, angle) if angle.size else angle
+    cut = np.zeros(count, dtype=bool)  # pieces that start at a limit position without a value
+    for limit in cuts:
+        cut |= np.abs(np.mod(pieces.edges[:-1] - limit + 1.0, turn.period) - 1.0) < ANGLE_TOLERANCE
+    if known.all() and not cut.any():
+        yield Path(angle, value, floor[owner], turn.period)
+        return
+    groups = [part for run in runs(known) for part in np.split(run, np.flatnonzero(cut[run][1:]) + 1)]
     limits = np.concatenate([turn.limits + shift for shift in (-turn.period, 0.0, turn.period)])
-    found = runs(good)
-    for run, earlier, later in zip(found, found[-1:] + found[:-1], found[1:] + found[:1], strict=True):
-        angle = turn.angle[run]
-        angle = np.where(angle < angle[0], angle + turn.period, angle)
-        before = angle[0] - (angle[0] - turn.angle[earlier[-1]]) % turn.period
-        after = angle[-1] + (turn.angle[later[0]] - angle[-1]) % turn.period
-        left = limits[(limits >= before - ANGLE_TOLERANCE) & (limits <= angle[0] + ANGLE_TOLERANCE)][-1:]
-        right = limits[(limits <= after + ANGLE_TOLERANCE) & (limits >= angle[-1] - ANGLE_TOLERANCE)][:1]
-        inside = angle > np.append(left, -np.inf)[0] + ANGLE_TOLERANCE
-        inside &= angle < np.append(right, np.inf)[0] - ANGLE_TOLERANCE
-        parts = [(angle[inside], samples[run][inside], floor[run][inside])]
-        for place, side, row in ((left, 1, 0), (right, -1, -1)):
-            ends = [turn.limit(function, end, side, size) for end in place]
-            parts.insert(row % 2 * len(parts), (place, ends, floor[run][[row] * place.size]))
-        angle, value, rounding = (np.concatenate(part) for part in zip(*parts, strict=True))
-        known = ~np.isnan(value)
-        yield Path(angle[known], value[known], rounding[known], 0.0)
+    for run, earlier, later in zip(groups, groups[-1:] + groups[:-1], groups[1:] + groups[:1], strict=True):
+        start, stop = pieces.edges[run[0]], pieces.edges[run[-1] + 1]
+        stop += turn.period * (stop <= start)
+        before = start - (start - pieces.edges[earlier[-1] + 1]) % turn.period
+        after = stop + (pieces.edges[later[0]] - stop) % turn.period
+        left = limits[(limits >= before - ANGLE_TOLERANCE) & (limits <= start + ANGLE_TOLERANCE)][-1:]
+        right = limits[(limits <= after + ANGLE_TOLERANCE) & (limits >= stop - ANGLE_TOLERANCE)][:1]
+        own = np.isin(owner, run)
+        here = np.where(angle[own] < start - ANGLE_TOLERANCE, angle[own] + turn.period, angle[own])
+        inside = (here > start + ANGLE_TOLERANCE) & (here < stop - ANGLE_TOLERANCE)
+        ends = []
+        for place, side, piece in ((left, 1, run[0]), (right, -1, run[-1])):
+            end = place if place.size else pieces.angle[piece, [-(side < 0)]]
+            there = turn.limit(function, end[0], side, size) if place.size else turn.evaluate(function, end)[0]
+            ends.append((end + (turn.period if end[0] < start - ANGLE_TOLERANCE else 0.0), [there], floor[[piece]]))
+        order = np.argsort(here[inside], kind="stable")
+        middle = (part[inside][order] for part in (here, value[own], floor[owner[own]]))
+        joined = [np.concatenate(parts) for parts in zip(ends[0], middle, ends[1], strict=True)]
+        known_values = ~np.isnan(joined[1])
+        yield Path(*(part[known_values] for part in joined), 0.0)
+
+
+def _polished(turn, function, angle, floor):
+    """Zeros of the slope of series around these crank angles; near the end of a piece its own slope has few digits."""
+    own, half = rule(9), 0.02
+    values = turn.evaluate(function, (angle[:, None] + half * own.points).ravel()).reshape(angle.size, -1)
+    series = own.series @ values.T
+    first = own.derived @ series
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place = -(chebyshev.chebval(0.0, first) / chebyshev.chebval(0.0, own.derived @ first))
+        smooth = (np.abs(series[-2:]).max(axis=0) <= floor) & (np.abs(place) < 1e-3)
+    return np.where(smooth, angle + half * np.where(smooth, place, 0.0), angle)
+
+
+def _rough_candidates(turn, pieces, values, rough, function):
+    """The same on unresolved pieces, by minimisation around points that are higher or lower than those beside them."""
+    angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
+    rises, falls = ((value > np.roll(value, k)).astype(int) - (value < np.roll(value, k)) for k in (1, -1))
+    top = np.flatnonzero((rises * falls > 0) & np.repeat(rough, pieces.count + 2))
+    sign, around = -rises[top], np.stack([top - 1, top, top + 1])
+    brackets = angle[around % angle.size] + turn.period * (around // angle.size)
+    found = find_minima(lambda at, place: sign[place] * turn.evaluate(function, at), brackets, relative=0.0, tiny=0.0)
+    return np.where(np.isnan(found), angle[top], found), top // (pieces.count + 2)
+
+
+def _candidates(pieces, values, resolved, known, level):
+    """Crank angles at which a quantity may turn, rising, and the piece of each; both sides of jumps."""
+    with np.errstate(invalid="ignore"):
+        inner, owner, turns = pieces.turning(np.where(known[:, None], values[..., 1:-1], 0.0), level)
+        gaps = np.abs(np.roll(values[..., -1], 1, axis=1) - values[..., 0]).max(axis=0)
+        gaps = gaps > JUMP_TOLERANCE * np.nanmax(np.abs(values), initial=0.0)
+    narrow = ~pieces.can_split
+    jump = gaps | narrow | np.roll(narrow, 1)  # at the start of each piece
+    smooth = resolved[owner] & ~narrow[owner]
+    first = turns & known & ~jump
+    after = jump & known & ~narrow
+    before = np.roll(jump, -1) & known & ~narrow
+    pieces_of = [owner[smooth], *map(np.flatnonzero, (first, after, before))]
+    edges = pieces.edges
+    angles = [inner[smooth], edges[:-1][first], edges[:-1][after] + JUMP_OFFSET, edges[1:][before] - JUMP_OFFSET]
+    angle, owner = np.concatenate(angles), np.concatenate(pieces_of)
+    order = np.lexsort((angle, owner))
+    return angle[order], owner[order]
 
 
 def turning_points(path):
-    """Crank angles around each extremum (3, K), its value, rounding, and whether it is a maximum (K,).
+    """Indices of the extrema of a path, and whether each is a maximum, both (K,).
 
-    A level stretch counts once, at its middle. The ends of an open path are extrema too, with equal angles. Rises and
-    falls within the rounding are taken out, the least first.
+    The ends of an open path are extrema too. Rises and falls within the rounding are taken out, the least first.
     """
-    angle, value, floor, period = path
+    _, value, floor, period = path
     count = value.size
     direction = np.sign(np.roll(value, -1) - value)
     direction[-1:] = direction[-1:] if period else 0.0
@@ -102,14 +154,13 @@ def turning_points(path):
     turning = direction[moving] * direction[following % count] == -1
     turning[-1:] &= period > 0
     before, after = moving[turning], following[turning]
-    places, maximum = np.array([before, (before + after + 1) // 2, after + 1]), direction[before] > 0
+    places, maximum = (before + after + 1) // 2 % count, direction[before] > 0
     if not period:
-        places = np.column_stack([[0] * 3, places, [count - 1] * 3])
+        places = np.concatenate([[0], places, [count - 1]])
         maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
         maximum = maximum if moving.size else np.array([True, False])
     while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
-        middle = places[1] % count
-        height, rounding = value[middle], floor[middle]
+        height, rounding = value[places], floor[places]
         change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
         least = int(np.argmin(change[: None if period else -1]))
         if change[least] > 1:
@@ -119,74 +170,56 @@ def turning_points(path):
             end = pair.pop(-1 if least else 0)
             maximum[end] = ~maximum[end]
         kept = np.delete(np.arange(maximum.size), pair)
-        places, maximum = places[:, kept], maximum[kept]
-    places = _bracket_level_stretches(path, places)
-    middle = places[1] % count
-    return angle[places % count] + period * (places // count), value[middle], floor[middle], maximum
+        places, maximum = places[kept], maximum[kept]
+    return places, maximum
 
 
-def _bracket_level_stretches(path, places):
-    """Brackets of extrema; in a level stretch from the sample before the stretch to the one after it."""
+def level_stretches(path, places):
+    """Yield indices of extrema in level stretches, each with the ends of the stretch and the angles beyond them."""
     angle, value, floor, period = path
     count = value.size
-
-    def end(middle, step):
-        """Place of the first sample in a direction that is not level with the middle one."""
-        place, last = middle, middle + step * (count - 1)
-        while place != last and abs(value[place % count] - value[middle % count]) <= floor[middle % count]:
-            place += step
-            if not (period or 0 <= place < count):
-                return middle
-        return place
-
-    found = places.copy()
-    for number, (start, middle, stop) in enumerate(places.T):
-        low, high = (end(middle, step) for step in (-1, 1)) if start < stop else (middle, middle)
-        if low < middle < high < low + count:
-            outer = [angle[place % count] + period * (place // count) for place in (low, high)]
-            if outer[1] - outer[0] > MIN_LEVEL_WIDTH:
-                found[:, number] = low, middle, high
-    return found
+    for number, middle in enumerate(places.tolist()):
+        ends = []
+        for step in (-1, 1):
+            place, last = middle, middle + step * (count - 1)
+            while place != last and abs(value[place % count] - value[middle]) <= floor[middle]:
+                place += step
+                if not (period or 0 <= place < count):
+                    break
+            ends.append([angle[at % count] + period * (at // count) for at in (place - step, place)])
+        (first, before), (last, after) = ends
+        if (
+            last - first > MIN_LEVEL_WIDTH
+            and first - period < before < first
+            and last < after < last + (period or after)
+        ):
+            yield number, (first, last), (before, after)
 
 
-def refine_turning_points(turn, function, size, jumps, brackets, value, floor, maximum):
-    """Angle, value and kind of turning points in order of angle; those between two samples are refined by evaluation.
-
-    Parameters
-    ----------
-    turn : Turn
-    function : function
-        From a solution to the values of the quantity over its crank angles.
-    size : float
-        Of the quantity.
-    jumps : Jumps
-    brackets, value, floor, maximum : arrays (3, K) and (K,)
-        As `turning_points` returns them.
-    """
-    end = brackets[0] == brackets[2]
-    brackets = jumps.cut(brackets, turn.period)
-    angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
-    inner = (brackets[0] < angle) & (angle < brackets[2])
-    level = inner & (brackets[2] - brackets[0] > MIN_LEVEL_WIDTH)
-
-    def evaluate(angle):
-        return turn.evaluate(function, angle)
-
-    if inner.any():
-        own, inside = sign[inner], brackets[:, inner]
-        least = find_minima(lambda angle, place: own[place] * evaluate(angle), inside, relative=0.0, tiny=0.0)
-        better = own * evaluate(least) <= own * evaluate(inside[1])  # False where no bracket is left, as at a jump
-        angle[inner] = _polish(evaluate, np.where(better, least, inside[1]), own, floor[inner])
-        if level.any():
-            angle[level] = _middle_of_level(evaluate, brackets[:, level], floor[level])
-        wrapped = np.mod(angle[inner], turn.period)
-        start = np.maximum(np.mod(angle[inner] + ANGLE_TOLERANCE, turn.period) - ANGLE_TOLERANCE, 0.0)
-        at_end = start < wrapped - ANGLE_TOLERANCE  # just before the period ends: 0, unless the value jumps there
-        if at_end.any():
-            start = np.where(at_end & (own * (evaluate(start) - evaluate(wrapped)) > floor[inner]), wrapped, start)
-        angle[inner] = start
-        value[inner] = evaluate(angle[inner])
-    angle = np.where(inner, angle, np.mod(angle, turn.period))
+def extrema_of(turn, function, found, size):
+    """Angle, value and kind of the extrema on paths, in order of angle; a level stretch counts once, at its middle."""
+    columns = []
+    for path in found:
+        places, maximum = turning_points(path)
+        angle, value = path.angle[places], path.value[places]
+        for number, inside, outside in level_stretches(path, places):
+            inside, outside = np.array(inside), np.array(outside)
+            for _ in range(HALVINGS):
+                half = 0.5 * (inside + outside)
+                level = np.abs(turn.evaluate(function, half) - value[number]) <= path.floor[places[number]]
+                inside, outside = np.where(level, half, inside), np.where(level, outside, half)
+            angle[number] = inside.mean()
+            value[number] = turn.evaluate(function, angle[number : number + 1])[0]
+        end = np.zeros(places.size, dtype=bool)
+        if not path.period:
+            end[[0, -1]] = True
+        wrapped = np.mod(angle, turn.period)
+        last = np.flatnonzero((wrapped > turn.period - ANGLE_TOLERANCE) & ~end)
+        if last.size:  # 0, unless the value jumps there
+            same = np.abs(turn.evaluate(function, 0.0 * last)[0] - value[last]) <= path.floor[places[last]]
+            wrapped[last[same]] = 0.0
+        columns.append((wrapped, value, maximum, end))
+    angle, value, maximum, end = (np.concatenate(parts) for parts in zip(*columns, strict=True))
     order = np.argsort(angle, kind="stable")
     angle, value, maximum, end = angle[order], value[order], maximum[order], end[order]
     # two ends of paths at one angle with one value: a level pair counts once, a smooth passage not at all
@@ -195,34 +228,3 @@ def refine_turning_points(turn, function, size, jumps, brackets, value, floor, m
     pair = same & alike & (np.arange(angle.size) < angle.size - 1)
     kept = ~(np.roll(pair, 1) | (pair & (maximum != np.roll(maximum, -1))))
     return angle[kept], value[kept], maximum[kept]
-
-
-def _middle_of_level(evaluate, brackets, floor):
-    """Middle of each level stretch, whose ends lie between the middle and the outer angles of its bracket."""
-    start, middle, end = brackets
-    value, ends = evaluate(middle), []
-    for outside in (start, end):
-        inside = middle
-        for _ in range(HALVINGS):
-            half = 0.5 * (inside + outside)
-            is_level = np.abs(evaluate(half) - value) <= floor
-            inside, outside = np.where(is_level, half, inside), np.where(is_level, outside, half)
-        ends.append(inside)
-    return 0.5 * (ends[0] + ends[1])
-
-
-def _polish(evaluate, angle, sign, floor, half_width=0.01, degree=8):
-    """Zero of the slope of a local Chebyshev fit, where its value is as good as the one it replaces."""
-    from numpy.polynomial import chebyshev
-
-    nodes = chebyshev.chebpts1(degree + 1)
-    samples = evaluate((angle[:, None] + half_width * nodes).ravel()).reshape(angle.size, -1)
-    series = chebyshev.chebfit(nodes, np.nan_to_num(samples).T, degree)
-    slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
-    place = np.zeros_like(angle)
-    for _ in range(3):
-        place -= chebyshev.chebval(place, slope, tensor=False) / chebyshev.chebval(place, bend, tensor=False)
-    refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
-    smooth = np.max(np.abs(series[-2:]), axis=0) <= floor
-    allowed = np.where(smooth, 1.0, 0.1) * floor
-    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + allowed, refined, angle)

@@ -4,14 +4,13 @@ Kinks of friction depend on speed and acceleration: solve, locate kinks, split t
 repeat until they stop moving. An error d of an edge changes the result by about d squared.
 """
 
-import itertools
 import math
 
 import numpy as np
 
+from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between
 from ..errors import DriveError
 from ..machine.loads import TURN
-from .pieces import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
 
 POINTS, FEW_POINTS, MANY_EDGES = 24, 12, 60
 """Points of a piece, and those where there are more edges than `MANY_EDGES`."""
@@ -33,7 +32,7 @@ NO_ANGLES = np.empty(0)
 
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    edges = _with_edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]))
+    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), MAX_WIDTH)
     pieces, kinks = Pieces(edges, FEW_POINTS if len(edges) > MANY_EDGES else POINTS), NO_ANGLES
     for _ in range(MAX_ROUNDS):
         forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
@@ -47,7 +46,7 @@ def resolved(driven, speed):
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
         edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
-        again = _halve_unresolved(driven, Pieces(_with_edges_between(edges), pieces.count), speed)
+        again = _halve_unresolved(driven, Pieces(edges_between(edges, MAX_WIDTH), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
     return _split_at_jumps(driven, pieces, speed), kinks
 
@@ -120,12 +119,6 @@ def _halve_unresolved(driven, pieces, speed):
             break
         pieces = pieces.split(marked)
     return pieces
-
-
-def _with_edges_between(breaks):
-    """Edges at breaks, and between those more than `MAX_WIDTH` apart."""
-    parts = [np.linspace(a, b, math.ceil((b - a) / MAX_WIDTH - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
-    return np.concatenate([*parts, breaks[-1:]])
 
 
 def _require_resolved(driven, pieces, torque):

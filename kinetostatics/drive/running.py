@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..cycle.piecewise import Pieces
 from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
@@ -26,7 +27,6 @@ from ..solution.solution import Solution
 from .energy_flow import energy_flow, zero_if_rounding
 from .motor import Motor
 from .one_dof import DrivenMachine
-from .pieces import Pieces
 from .savings import DrivenComparison
 
 

@@ -12,6 +12,7 @@ from functools import partial
 
 import numpy as np
 
+from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
 from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
@@ -19,7 +20,6 @@ from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
 from .one_dof import DrivenMachine
-from .pieces import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
 from .resolution import require_inertia, resolved, split_at_kinks
 from .running import Running
 

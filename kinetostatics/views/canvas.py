@@ -257,10 +257,6 @@ def set_equal_scales(ax, moving=()):
     ax.autoscale_view()
 
 
-KINK_TOLERANCE = 1e-12
-"""Distance from a kink, rad, within which samples of the turn stand at it or at a side of a jump."""
-
-
 def with_peaks(named, *quantities):
     """Solutions by label with added crank angles: extremes of quantities, and kinks of tables and friction.
 
@@ -292,13 +288,7 @@ def with_peaks(named, *quantities):
 def angles_between(solution, extremes):
     """Rising crank angles of extremes that the solution lacks, of kinks, and of both sides of jumps."""
     there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
-    turn = solution.sampled
-    if not turn.kinks.size:
-        return np.unique(extremes[~there])
-    kinks = np.concatenate([turn.kinks[-1:] - turn.period, turn.kinks, turn.kinks[:1] + turn.period])
-    behind = np.searchsorted(kinks, turn.angle).clip(1, kinks.size - 1)
-    distance = np.minimum(turn.angle - kinks[behind - 1], kinks[behind] - turn.angle)
-    return np.unique(np.concatenate([extremes[~there], turn.angle[distance < KINK_TOLERANCE]]))
+    return np.unique(np.concatenate([extremes[~there], solution.sampled.beside_kinks]))
 
 
 def _is_known_between(solution):

@@ -1,6 +1,5 @@
 """Extremes: where they must lie, that all are found, their table, and what is refused."""
 
-import itertools
 import re
 
 import numpy as np
@@ -264,13 +263,11 @@ def solved(mechanism=PUMP, *loads):
     return ks.solve(mechanism, np.zeros(1), crank_speed=1.0, loads=loads, on_gap="nan")
 
 
-def test_table_kinks_are_samples():
+def test_table_kinks_are_edges():
     table = ks.Table([0.2, 0.4, 0.4000001, 0.4000003, 0.6], [0.0, 0.0, 1.0, 0.0, 0.0], over="travel")
     turn = Turn.of(solved(PUMP, ks.ProcessForce(table)))
     assert turn.kinks.size == 8
-    assert np.isin(turn.kinks, turn.angle).all()
-    for kink, following in itertools.pairwise(turn.kinks):
-        assert np.sum((turn.angle > kink) & (turn.angle < following)) >= 3
+    assert np.isin(turn.kinks, turn.pieces.edges).all()
 
 
 @pytest.mark.slow

@@ -1,14 +1,12 @@
 """Means and the rounding of results."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.cycle.means import (
-    NODES,
     _mean_of_absolute_torque,
     closed_turn,
     energy_per_turn,
@@ -34,7 +32,7 @@ FUNCTIONS = {
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_the_mean_is_that_of_calculus(name):
     function, expected = FUNCTIONS[name]
-    found, error, _ = means(lambda x: function(x)[None], TURN, 1e-14)
+    found, error, *_ = means(lambda x: function(x)[None], TURN, 1e-14)
     assert found[0] == pytest.approx(expected, rel=1e-11, abs=1e-14)
     assert error[0] < 1e-10
 
@@ -60,31 +58,27 @@ def test_errors_of_a_mean_are_rounding_and_quadrature():
     assert ks.compare(s, s).mean_torque_errors[0] == (rounding, quadrature)
 
 
-def _exact_rule():
-    """Nodes and weights of Gauss's quadrature on the unit panel, by Legendre's polynomial in 40 digits."""
+def _exact_weights(count):
+    """Weights of Fejer's first rule on [-1, 1] in 40 digits."""
     mp = pytest.importorskip("mpmath")
     with mp.workdps(40):
-        legendre = partial(mp.legendre, NODES.size)
-        roots = sorted(mp.polyroots(mp.taylor(legendre, 0, NODES.size)[::-1], maxsteps=200, extraprec=200))
-        slopes = [mp.diff(legendre, x) for x in roots]
-        return [(1 + x) / 2 for x in roots], [
-            1 / ((1 - x * x) * slope**2) for x, slope in zip(roots, slopes, strict=True)
-        ]
+        angles = [(2 * k + 1) * mp.pi / (2 * count) for k in range(count)]
+        orders = range(1, count // 2 + 1)
+        return [(2 - 4 * sum(mp.cos(2 * j * a) / (4 * j * j - 1) for j in orders)) / count for a in angles]
 
 
 def test_rounding_bound_of_a_mean_is_near():
-    """The torque of a Scotch yoke is m r^2 omega^2 sin 2 phi / 2; the sum of its nodes is taken in 40 digits."""
+    """The torque of a Scotch yoke is m r^2 omega^2 sin 2 phi / 2; the sum of its points is taken in 40 digits."""
     mp = pytest.importorskip("mpmath")
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
-    mean, _, _, (start, width) = _mean_of_absolute_torque(closed_turn(s, "mean torque"))
-    _, weights = _exact_rule()
-    angle = start[:, None] + width[:, None] * NODES
+    mean, _, _, pieces = _mean_of_absolute_torque(closed_turn(s, "mean torque"))
+    weights = _exact_weights(pieces.count)
     with mp.workdps(40):
         size = mp.mpf(0.1) ** 2 * 3 * 49 / 2
         total = mp.mpf(0)
-        for row, breadth in zip(angle.tolist(), width.tolist(), strict=True):
+        for row, half in zip(pieces.angle.tolist(), pieces.half[:, 0].tolist(), strict=True):
             parts = (weight * abs(mp.sin(2 * mp.mpf(x))) for x, weight in zip(row, weights, strict=True))
-            total += mp.mpf(breadth) * mp.fsum(parts)
+            total += mp.mpf(half) * mp.fsum(parts)
         error = abs(mp.mpf(mean) - size * total / mp.mpf(s.period))
     rounding = mean_absolute_torque_errors(s).rounding
     assert mean == mean_absolute_torque(s)
