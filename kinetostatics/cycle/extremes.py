@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning, NotGivenError, ParameterError
-from ..mechanics import quantities
+from ..mechanics import jamming, quantities
 from ..mechanics.quantities import Quantity, components, largest_term, of_scene, unit_of, values
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
@@ -165,7 +165,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = solution.sampled.jammed
+    jams = jamming.jammed_angles(solution.sampled.even)
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
@@ -197,6 +197,14 @@ def extrema(solution, quantity):
     found = turn.extrema[quantity]
     arrays = {name: getattr(found, name).copy() for name in ("angle", "value", "maximum", "left_out")}
     return replace(found, solution=solution, **arrays)
+
+
+def largest_of(found):
+    """Largest value of `Extremes` and its crank angle, NaN for a constant."""
+    if not len(found):
+        return found.constant, np.nan
+    place = int(np.argmax(found.value))
+    return float(found.value[place]), float(found.angle[place])
 
 
 def _extrema(solution, turn, quantity):

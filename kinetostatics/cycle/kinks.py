@@ -29,20 +29,21 @@ MAX_VERTEX = 0.1
 """Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
 """Crank angles nearer than this, rad, count as one."""
-RESOLUTION = np.radians(0.05)
-"""Largest distance of crank angles, rad, at which a load function without declared kinks is evaluated."""
+FUNCTION_WIDTH = np.radians(0.2)
+"""Width of a piece, rad, on which a load function without declared kinks is evaluated at 8 crank angles at first."""
 
 
-def has_undeclared_functions(loads):
-    """Whether a load is a function that declares no kinks, so that a pulse below `RESOLUTION` may be missed."""
-    return any(not has_no_user_code(item) and not kink_sources([item]) for item in loads)
+def undeclared_functions(loads):
+    """Loads that are functions without kinks, a list: pulses below 0.05 deg, in sweeps 0.1 deg, may be missed."""
+    return [item for item in loads if not has_no_user_code(item) and not kink_sources([item])]
 
 
 def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
-    """Whether friction, a cam's law, or a load with kinks above `tolerance` may put a kink into a quantity."""
+    """Whether friction, a cam's law, or a load may put a kink above `tolerance` into a quantity."""
     if law_kinks(solution).size:
         return True
-    loads = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
+    kinked = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
+    loads = kinked or undeclared_functions(solution.loads)
     return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in LOAD_FREE_KINDS
 
 
@@ -75,13 +76,20 @@ def kinks_and_jumps(solution, samples):
 
     The signs of friction are sampled at `samples` crank angles.
     """
-    law, friction = law_kinks(solution, jumps=True), np.empty(0)
-    if solution.friction.acting:
-        friction = np.unique(_friction_sign_changes(solution, samples)[1])
-    sources = [(friction, friction), (law, law)]
-    for part in kink_sources(solution.loads):
-        starts = _period_starts(part, solution)[:, None]
-        kinks, jumps = kinks_of(part, solution)
+    kinks, jumps = declared_kinks(solution)
+    if not solution.friction.acting:
+        return kinks, jumps
+    friction = _friction_sign_changes(solution, samples)[1].ravel()
+    return np.union1d(kinks, friction), np.union1d(jumps, friction)
+
+
+def declared_kinks(motion):
+    """The same of loads and laws of cams alone, of a solution or a motion."""
+    law = law_kinks(motion, jumps=True)
+    sources = [(law, law)]
+    for part in kink_sources(motion.loads):
+        starts = _period_starts(part, motion)[:, None]
+        kinks, jumps = kinks_of(part, motion)
         sources.append((np.ravel(np.concatenate([kinks, jumps]) + starts), np.ravel(jumps + starts)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*sources, strict=True))
 

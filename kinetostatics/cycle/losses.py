@@ -26,7 +26,7 @@ from ..mechanics.energy_contact import work_of
 from ..mechanics.load_values import title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
-from .extremes import extrema
+from .extremes import extrema, largest_of
 from .means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from .rounding import PLACED, zeroed
 
@@ -109,8 +109,8 @@ class Losses:
     @cached_property
     def peaks(self):
         """Largest power lost, W, with its crank angle, rad, by joint and damper, and of "all" together."""
-        found = {name: _largest(extrema(self.solution, power)) for name, power in self.powers.items()}
-        return found | {"all": _largest(extrema(self.solution, self.power))}
+        found = {name: largest_of(extrema(self.solution, power)) for name, power in self.powers.items()}
+        return found | {"all": largest_of(extrema(self.solution, self.power))}
 
     def frame(self):
         """Losses by joint and damper, a pandas DataFrame: mean, share, largest and its crank angle, energy per turn."""
@@ -213,10 +213,3 @@ def losses(solution) -> Losses:
 def _taken(item, at):
     """Power that a load takes, W."""
     return np.broadcast_to(-at.crank_speed * number_or_zero(work_of(item, at)), at.crank_angle.shape)
-
-
-def _largest(found):
-    if not len(found):
-        return found.constant, np.nan
-    place = int(np.argmax(found.value))
-    return float(found.value[place]), float(found.angle[place])

@@ -9,6 +9,7 @@ import numpy as np
 from ..engines.error_bounds import SAFE
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
+from ..mechanics import jamming
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from .extremes import extrema, warning
 from .piecewise import Pieces
@@ -135,7 +136,7 @@ def closed_turn(solution, owner):
     turn = solution.sampled
     if turn.gaps:
         raise ParameterError(f"{owner}: {solution.mechanism.name} {turn.unclosed}")
-    turn.require_free(owner)
+    jamming.require_free(turn.even, owner)
     return turn
 
 

@@ -19,7 +19,9 @@ from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 STEP = 0.25
 PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
 """Places on a piece, from -1 to 1, between which peaks are sought."""
-SERIES = np.linalg.inv(np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NODES.size - 1))
+_VANDER = np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NODES.size - 1).astype(np.longdouble)
+SERIES = np.linalg.inv(_VANDER.astype(float))
+SERIES = (SERIES @ (2.0 * np.eye(NODES.size) - _VANDER @ SERIES)).astype(float)
 """Coefficients of the polynomial over these places from values at the nodes."""
 _LEGENDRE = np.polynomial.legendre.legvander(2.0 * NODES - 1.0, NODES.size - 1)
 LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T

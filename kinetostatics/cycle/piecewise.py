@@ -15,6 +15,10 @@ from numpy.polynomial import chebyshev
 from ..machine.loads import TURN
 from ..numbers.lazy import cached_property
 
+POINTS = 24
+"""Points of a piece."""
+POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
+"""The same where there are more edges than a number."""
 TAIL = 2e-14
 """Size of the last coefficients of a series, relative to its largest value, that is rounding."""
 MAX_HALVINGS = 60
@@ -33,7 +37,7 @@ CHOPPED = 2e-3
 
 
 class Rule(NamedTuple):
-    """Matrices from values at the points in [-1, 1] to series, integrals from -1, slopes, and values at dense places.
+    """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
     `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes;
     `ends` and `end_slopes` from values at the points to values and slopes at both ends.
@@ -44,8 +48,6 @@ class Rule(NamedTuple):
     series: np.ndarray
     integral: np.ndarray
     weights: np.ndarray
-    slope: np.ndarray
-    dense: np.ndarray
     places: np.ndarray
     derived: np.ndarray
     many: np.ndarray
@@ -68,8 +70,6 @@ def rule(count) -> Rule:
         series,
         chebyshev.chebvander(points, count) @ whole,
         _weights(count),
-        vander @ derived @ series,
-        many @ series,
         places,
         derived,
         many,
@@ -155,17 +155,12 @@ class Pieces:
 
     def largest(self, values):
         """Largest value of a function given at the points, and its crank angle."""
-        dense = values @ rule(self.count).dense.T
-        piece, at = np.unravel_index(np.argmax(dense), dense.shape)
-        place = rule(self.count).places[at]
-        series = rule(self.count).series @ values[piece]
-        slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
-        for _ in range(4):
-            curved = chebyshev.chebval(place, bend)
-            if curved < 0.0:
-                place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
-        angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
-        return float(chebyshev.chebval(place, series)), float(angle)
+        turning, *_ = self.turning(values[None], np.zeros(len(values)))
+        sides = self.with_ends(values)
+        angle = np.concatenate([turning, self.edges[:-1], self.edges[1:]])
+        value = np.concatenate([self.evaluate(self.series(values), turning), sides[:, 0], sides[:, -1]])
+        best = int(np.argmax(value))
+        return float(value[best]), float(angle[best])
 
     def peak(self, values):
         """Value of largest size of a function given at the points, with its sign."""
@@ -297,6 +292,11 @@ class Pieces:
                 step = place - value / rate
                 place = np.clip(np.where(np.isfinite(step), step, place), low, high)
         return 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place, piece
+
+
+def point_count(edges):
+    """Points of the pieces between edges: fewer where there are many."""
+    return next((points for most, points in POINTS_BY_EDGES if len(edges) > most), POINTS)
 
 
 def _slope(value, first, second):

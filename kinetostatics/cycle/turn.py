@@ -11,21 +11,17 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import TURN, has_no_user_code, period_of, refusals
-from ..mechanics import assembly, energy_contact, jamming
+from ..mechanics import assembly, energy_contact
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, has_undeclared_functions, kinks_and_jumps
-from .piecewise import JUMP_OFFSET, Pieces, edges_between
+from .kinks import ANGLE_TOLERANCE, FUNCTION_WIDTH, kinks_and_jumps, undeclared_functions
+from .piecewise import JUMP_OFFSET, Pieces, edges_between, point_count
 
 SAMPLES = 1440
 """Even samples of a turn at which friction is looked at, or a load function is compared a period later."""
-MAX_WIDTH, POINTS = TURN / 8, 24
-"""Width of a piece, rad, and its points, without kinks."""
-POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
-"""Points of a piece where there are more edges than a number."""
-FUNCTION_WIDTH = np.radians(0.2)
-"""Width of a piece, rad, whose points are `RESOLUTION` apart at most."""
+MAX_WIDTH = TURN / 8
+"""Width of a piece, rad."""
 NEAR = 0.01
 """Closure margin below which pieces get narrower toward the limit position."""
 MAX_CONDITION = 1e14
@@ -95,9 +91,9 @@ class Turn:
         graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
         breaks = np.unique(np.append(np.mod(np.concatenate([kinks, graded]), period), 0.0))
         breaks = np.append(breaks[np.diff(breaks, append=period) > 4.0 * JUMP_OFFSET], period)
-        undeclared = has_undeclared_functions(solution.loads)
+        undeclared = undeclared_functions(solution.loads)
         edges = edges_between(breaks, FUNCTION_WIDTH if undeclared else MAX_WIDTH)
-        pieces = Pieces(edges, next((points for most, points in POINTS_BY_EDGES if edges.size > most), POINTS))
+        pieces = Pieces(edges, point_count(edges))
         angle = pieces.checked.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
         if problem := repeating_problem(solution):
@@ -115,18 +111,9 @@ class Turn:
         return np.searchsorted(self.angle, self.pieces.checked)
 
     @cached_property
-    def jammed(self):
-        """Crank angles of even samples at which friction jams, rad."""
-        return jamming.jammed_angles(self._even)
-
-    @cached_property
-    def _even(self):
+    def even(self):
+        """The solution at even crank angles, at which friction is looked at."""
         return self.at.at(np.linspace(0.0, self.period, round(SAMPLES * self.period / TURN), endpoint=False))
-
-    def require_free(self, owner):
-        """Raise `JammingError` if friction jams at an even sample."""
-        if self.at.friction.acting:
-            jamming.require_free(self._even, owner)
 
     @property
     def beside_kinks(self):

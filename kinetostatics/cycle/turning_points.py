@@ -69,7 +69,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
     value = turn.evaluate(function, angle) if angle.size else angle
     cut = np.zeros(count, dtype=bool)  # pieces that start at a limit position without a value
     for limit in cuts:
-        cut |= np.abs(np.mod(pieces.edges[:-1] - limit + 1.0, turn.period) - 1.0) < ANGLE_TOLERANCE
+        cut |= np.abs(np.mod(pieces.edges[:-1] - limit + 1.0, turn.period) - 1.0) < 0.1 * ANGLE_TOLERANCE
     if known.all() and not cut.any():
         yield Path(angle, value, floor[owner], turn.period)
         return
@@ -94,7 +94,8 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
         middle = (part[inside][order] for part in (here, value[own], floor[owner[own]]))
         joined = [np.concatenate(parts) for parts in zip(ends[0], middle, ends[1], strict=True)]
         known_values = ~np.isnan(joined[1])
-        yield Path(*(part[known_values] for part in joined), 0.0)
+        angle_here, value_here, floor_here = (part[known_values] for part in joined)
+        yield Path(angle_here, value_here, floor_here, 0.0)
 
 
 def _polished(turn, function, angle, floor):
@@ -114,6 +115,8 @@ def _rough_candidates(turn, pieces, values, rough, function):
     angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
     rises, falls = ((value > np.roll(value, k)).astype(int) - (value < np.roll(value, k)) for k in (1, -1))
     top = np.flatnonzero((rises * falls > 0) & np.repeat(rough, pieces.count + 2))
+    if not top.size:
+        return np.empty(0), top
     sign, around = -rises[top], np.stack([top - 1, top, top + 1])
     brackets = angle[around % angle.size] + turn.period * (around // angle.size)
     found = find_minima(lambda at, place: sign[place] * turn.evaluate(function, at), brackets, relative=0.0, tiny=0.0)
@@ -216,7 +219,7 @@ def extrema_of(turn, function, found, size):
         wrapped = np.mod(angle, turn.period)
         last = np.flatnonzero((wrapped > turn.period - ANGLE_TOLERANCE) & ~end)
         if last.size:  # 0, unless the value jumps there
-            same = np.abs(turn.evaluate(function, 0.0 * last)[0] - value[last]) <= path.floor[places[last]]
+            same = np.abs(turn.evaluate(function, np.array([JUMP_OFFSET]))[0] - value[last]) <= path.floor[places[last]]
             wrapped[last[same]] = 0.0
         columns.append((wrapped, value, maximum, end))
     angle, value, maximum, end = (np.concatenate(parts) for parts in zip(*columns, strict=True))

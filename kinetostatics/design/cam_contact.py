@@ -19,7 +19,7 @@ from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .follower_speed import lift_off_speed, starting_torque
+from .follower_speed import lift_off_speed, peak_of, starting_torque
 
 
 class Reversal(NamedTuple):
@@ -400,7 +400,7 @@ class Contact:
         return self.solution.at(np.linspace(0.0, period, round(PEAK_SAMPLES * period / (2 * np.pi)), endpoint=False))
 
     def _highest(self, function):
-        return highest(lambda angle: function(self.solution.at(np.asarray(angle))), 0.0, self.solution.period)
+        return peak_of(self.solution, function)
 
     # limits
 

@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..cycle.extremes import extrema, largest_of
 from ..cycle.turn import require_single
 from ..errors import ParameterError
-from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, highest
+from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import Spring
 from ..numbers import checks
 from ..solution.scene import Scene
@@ -91,7 +92,7 @@ def lift_off_speed(solution, force="cam_force"):
     """
     _require(solution, "lift_off_speed", force)
     fast = _mean_speed(solution)
-    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
+    angle = _angles(solution)
     rest, moving, faster = (
         _force(solution, force, speed, angle) for speed in (REST_SPEED_RATIO * fast, fast, 2.0 * fast)
     )
@@ -104,7 +105,7 @@ def lift_off_speed(solution, force="cam_force"):
             rest = _force(solution, force, REST_SPEED_RATIO * fast, angle)
             return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
 
-        peak = highest(ratio, 0.0, solution.period).value
+        peak = peak_of(solution, lambda at: ratio(at.crank_angle)).value
         found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
         return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
     return _lift_off_by_search(solution, force, fast, side, angle)
@@ -164,7 +165,7 @@ def lifted(solution, force="cam_force"):
     def value(angle):
         return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
 
-    angle = np.linspace(0.0, solution.period, PEAK_SAMPLES + 1)
+    angle = np.append(_angles(solution), solution.period)
     pressing = value(angle) >= 0.0
     if np.all(pressing) or not np.any(pressing):
         return () if pressing[0] else ((0.0, solution.period),)
@@ -206,7 +207,7 @@ def starting_torque(solution):
     11.312
     """
     _require(solution, "starting_torque", "balancing_torque")
-    return highest(lambda angle: np.abs(_solution_at(solution, 0.0, angle).balancing_torque), 0.0, solution.period)
+    return peak_of(_solution_at(solution, 0.0, 0.0), lambda at: np.abs(at.balancing_torque))
 
 
 def spring_surge(solution, spring_mass):
@@ -259,6 +260,18 @@ def spring_surge(solution, spring_mass):
     natural = float(np.pi * np.sqrt(rate / mass))
     speed = abs(float(np.mean(solution.crank_speed)))
     return Surge(natural, natural / speed if speed else np.inf, series[: PEAK_SAMPLES // 4])
+
+
+def _angles(solution):
+    """Crank angles over the period, rising from 0, among them both sides of every kink and narrow pulse."""
+    even = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
+    return np.union1d(even, solution.sampled.angle)
+
+
+def peak_of(solution, function):
+    """Largest value of a function of a solution over the period, a `Peak`; of a constant at 0."""
+    value, angle = largest_of(extrema(solution, function))
+    return Peak(value, float(np.nan_to_num(angle)))
 
 
 def _require(solution, owner, name):

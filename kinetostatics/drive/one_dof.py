@@ -14,11 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import declared_kinks
 from ..engines.numba_backend import numba_available
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
-from ..machine.loads import Table, has_no_user_code, kink_sources, kinks_of, period_on, value_of
+from ..machine.loads import Table, has_no_user_code, value_of
 from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import require_free, solve_friction
 from ..mechanics.load_values import drive_dependence, title_of
@@ -159,12 +160,8 @@ class DrivenMachine:
     @cached_property
     def kinks(self):
         """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
-        found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
-        for part in kink_sources(self.scene.loads):
-            repeats = np.arange(0.0, self.period - ANGLE_TOLERANCE, period_on(part, self.scene.mechanism))[:, None]
-            found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
-        kinks = _distinct_angles(np.concatenate(found), self.period)
-        return kinks if self._slip is None else _distinct_angles(np.concatenate([kinks, self.jumps]), self.period)
+        declared, _ = declared_kinks(self.scene.unsolved(np.zeros(1)))
+        return _distinct_angles(np.concatenate([declared, self.jumps]), self.period)
 
     @property
     def jumps(self):

@@ -8,12 +8,11 @@ import math
 
 import numpy as np
 
-from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between
+from ..cycle.kinks import FUNCTION_WIDTH, undeclared_functions
+from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError
 from ..machine.loads import TURN
 
-POINTS, FEW_POINTS, MANY_EDGES = 24, 12, 60
-"""Points of a piece, and those where there are more edges than `MANY_EDGES`."""
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
 """Rounds of locating kinks of friction."""
@@ -32,8 +31,9 @@ NO_ANGLES = np.empty(0)
 
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), MAX_WIDTH)
-    pieces, kinks = Pieces(edges, FEW_POINTS if len(edges) > MANY_EDGES else POINTS), NO_ANGLES
+    widest = FUNCTION_WIDTH if undeclared_functions(driven.scene.loads) else MAX_WIDTH
+    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), widest)
+    pieces, kinks = Pieces(edges, point_count(edges)), NO_ANGLES
     for _ in range(MAX_ROUNDS):
         forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
         split = split_at_kinks(driven, pieces, forces, kinks)
@@ -46,7 +46,7 @@ def resolved(driven, speed):
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
         edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
-        again = _halve_unresolved(driven, Pieces(edges_between(edges, MAX_WIDTH), pieces.count), speed)
+        again = _halve_unresolved(driven, Pieces(edges_between(edges, widest), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
     return _split_at_jumps(driven, pieces, speed), kinks
 

@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
@@ -279,6 +280,27 @@ def test_no_extremum_hides_between_close_kinks(seed):
         found, size = ks.extremes(scene.solve(13), name).range, max(abs(low), abs(high))
         assert high - 1e-9 * size <= found[1] < high + 1e-7 * size
         assert low - 2e-3 * size < found[0] <= low + 1e-9 * size  # few angles stand where a reaction is least
+
+
+def test_all_parts_find_a_narrow_pulse_of_a_function():
+    """-1 MN over 0.6 deg, without kinks declared: extremes, a sweep and the flywheel see the same pulse."""
+
+    def pulse(motion):
+        inside = np.abs(np.mod(motion.crank_angle, 2 * np.pi) - np.radians(100.5)) < np.radians(0.3)
+        return np.where(inside, -1e6, 0.0)
+
+    def scene(mass):
+        return ks.Scene(ks.crank_slider(0.3, 1.1, slider=ks.Link(mass)), 30.0, 0.0, (ks.ProcessForce(pulse),))
+
+    torque, rod = (ks.extremes(scene(10.0).solve(0.0), name) for name in ("balancing_torque", "B"))
+    assert torque.largest == pytest.approx(-280_790.2, abs=0.1)
+    outputs = ["largest_absolute balancing_torque", "largest B"]
+    row = ks.sweep(scene, pd.DataFrame({"mass": [10.0]}), outputs, progress=False).iloc[0]
+    assert row["failed"] == ""
+    assert row.iloc[1:3].tolist() == pytest.approx([-torque.largest, rod.largest], rel=1e-9)
+    ends = np.radians([100.2, 100.8])
+    work = 1e6 * np.ptp(scene(10.0).solve(ends).slider_position)
+    assert ks.drive.flywheel(scene(10.0), 0.02).energy == pytest.approx(work, rel=0.05)
 
 
 # Where sampled values turn
