@@ -108,11 +108,10 @@ class Extremes:
 def extremes(solution, quantity):
     """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
 
-    Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
-    limit positions; in each, Chandrupatla's method minimises the quantity as the mechanism itself gives it. As a
-    minimum fixes its place to half the digits only, a Chebyshev fit through nearby values then gives the angle, kept
-    if the value there is as good. At a jump the extrema are the values on its two sides; at one that a function does
-    not declare, those of the nearest samples.
+    The turn is split at the kinks of loads, friction and laws of cams, and the quantity is a Chebyshev series on each
+    piece, halved until the series is exact to rounding; the zeros of its slope are evaluated by the mechanism itself.
+    Load functions that declare no kinks are evaluated every twentieth of a degree at first. At a jump the extrema are
+    the values on its two sides.
 
     Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
     each side replace them, also at the ends of gaps.
