@@ -40,7 +40,7 @@ class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
     `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes;
-    `dense` and `ends` from values at the points to those at the dense places and both ends, `end_slopes` to slopes there.
+    `dense` and `ends` from values at the points to those at the dense places and both ends, `end_slopes` to slopes.
     """
 
     points: np.ndarray
