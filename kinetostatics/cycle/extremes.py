@@ -227,10 +227,11 @@ def _extrema(solution, turn, quantity):
         size, floor = _size_and_rounding(turn, quantity, samples, good, position)
         if not turn.limits.size and np.ptp(samples) <= floor[0]:
             return _constant(name, float(np.max(samples)), left_out, own)
-        square = not is_function and of_scene(solution)[quantity].kind == "contact"  # a root of a force
-        pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, 2.0 * size if square else 1.0)
+        root_of_force = not is_function and of_scene(solution)[quantity].kind == "contact"
+        scale = 2.0 * size if root_of_force else 1.0
+        pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, scale)
         cuts = turn.limits[~good[np.searchsorted(turn.angle, turn.limits)]]
-        found = list(paths(turn, pieces, known, rough, function, rounding, size, cuts, square))
+        found = list(paths(turn, pieces, known, rough, function, rounding, size, cuts, scale))
         if not any(turning_points(path)[1].size for path in found):
             return _constant(name, float(np.max(samples[good])) if good.any() else np.nan, left_out, own)
         angle, value, maximum = extrema_of(turn, function, found, size)

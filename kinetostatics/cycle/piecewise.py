@@ -40,7 +40,7 @@ class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
     `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes;
-    `ends` and `end_slopes` from values at the points to values and slopes at both ends.
+    `dense` and `ends` from values at the points to those at the dense places and both ends, `end_slopes` to slopes.
     """
 
     points: np.ndarray
@@ -51,6 +51,7 @@ class Rule(NamedTuple):
     places: np.ndarray
     derived: np.ndarray
     many: np.ndarray
+    dense: np.ndarray
     ends: np.ndarray
     end_slopes: np.ndarray
 
@@ -73,6 +74,7 @@ def rule(count) -> Rule:
         places,
         derived,
         many,
+        many @ series,
         many[[0, -1]] @ series,
         many[[0, -1]] @ derived @ series,
     )
@@ -155,12 +157,17 @@ class Pieces:
 
     def largest(self, values):
         """Largest value of a function given at the points, and its crank angle."""
-        turning, *_ = self.turning(values[None], np.zeros(len(values)))
-        sides = self.with_ends(values)
-        angle = np.concatenate([turning, self.edges[:-1], self.edges[1:]])
-        value = np.concatenate([self.evaluate(self.series(values), turning), sides[:, 0], sides[:, -1]])
-        best = int(np.argmax(value))
-        return float(value[best]), float(angle[best])
+        dense = values @ rule(self.count).dense.T
+        piece, at = np.unravel_index(np.argmax(dense), dense.shape)
+        place = rule(self.count).places[at]
+        series = rule(self.count).series @ values[piece]
+        slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
+        for _ in range(4):
+            curved = chebyshev.chebval(place, bend)
+            if curved < 0.0:
+                place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
+        angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
+        return float(chebyshev.chebval(place, series)), float(angle)
 
     def peak(self, values):
         """Value of largest size of a function given at the points, with its sign."""

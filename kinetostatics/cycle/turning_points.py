@@ -34,7 +34,7 @@ class Path(NamedTuple):
     period: float
 
 
-def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
+def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
     """Yield the `Path` of each unbroken run of pieces; a run ends at gaps, limit positions and lost digits.
 
     Parameters
@@ -53,21 +53,22 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
         Of the quantity.
     cuts : array
         Limit positions at which it has no value.
-    square : bool
+    scale : float
+        Rounding of the values over that of the quantity.
     """
-    count, known = values.shape[1], np.isfinite(values[..., 1:-1]).all(axis=(0, 2))
-    angle, owner = _candidates(pieces, values, known & ~rough, known, floor * (2.0 * size if square else 1.0))
+    known = np.isfinite(values[..., 1:-1]).all(axis=(0, 2))
+    angle, owner = _candidates(pieces, values, known & ~rough, known, floor * scale)
     if (rough & known).any():
         more, its = _rough_candidates(turn, pieces, values, rough & known, function)
         order = np.lexsort((np.append(angle, more), np.append(owner, its)))
         angle, owner = np.append(angle, more)[order], np.append(owner, its)[order]
     middle = 0.5 * (pieces.edges[owner] + pieces.edges[owner + 1])
     near_end = np.abs(angle - middle) > NEAR_END * pieces.half[owner, 0]
-    near_end &= ~(np.abs(angle[:, None] - turn.kinks) <= JUMP_OFFSET).any(axis=1)
+    near_end &= ~np.isin(pieces.edges, np.append(turn.kinks, turn.period))[owner + (angle > middle)]
     if near_end.any():
         angle[near_end] = _polished(turn, function, angle[near_end], floor[owner[near_end]])
     value = turn.evaluate(function, angle) if angle.size else angle
-    cut = np.zeros(count, dtype=bool)  # pieces that start at a limit position without a value
+    cut = np.zeros(known.size, dtype=bool)  # pieces that start at a limit position without a value
     for limit in cuts:
         cut |= np.abs(np.mod(pieces.edges[:-1] - limit + 1.0, turn.period) - 1.0) < 0.1 * ANGLE_TOLERANCE
     if known.all() and not cut.any():
@@ -83,7 +84,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, square):
         left = limits[(limits >= before - ANGLE_TOLERANCE) & (limits <= start + ANGLE_TOLERANCE)][-1:]
         right = limits[(limits <= after + ANGLE_TOLERANCE) & (limits >= stop - ANGLE_TOLERANCE)][:1]
         own = np.isin(owner, run)
-        here = np.where(angle[own] < start - ANGLE_TOLERANCE, angle[own] + turn.period, angle[own])
+        here = start + np.mod(angle[own] - start, turn.period)
         inside = (here > start + ANGLE_TOLERANCE) & (here < stop - ANGLE_TOLERANCE)
         ends = []
         for place, side, piece in ((left, 1, run[0]), (right, -1, run[-1])):
@@ -181,7 +182,9 @@ def level_stretches(path, places):
     """Yield indices of extrema in level stretches, each with the ends of the stretch and the angles beyond them."""
     angle, value, floor, period = path
     count = value.size
-    for number, middle in enumerate(places.tolist()):
+    after = np.abs(np.roll(value, -1) - value) <= floor
+    for number in np.flatnonzero((after | np.roll(after, 1))[places]):
+        middle = int(places[number])
         ends = []
         for step in (-1, 1):
             place, last = middle, middle + step * (count - 1)

@@ -505,7 +505,8 @@ def contact(
     limits = {} if limits is None else limits
     known = limits if isinstance(limits, dict) else {}
     own = {"roller_mass": roller_mass, "life_exponent": life_exponent}
-    own |= {"roller_inertia": roller_inertia, "load_rating": load_rating}
+    optional = {"roller_inertia": roller_inertia, "load_rating": load_rating}
+    own |= {name: value for name, value in optional.items() if value is not None}
     no_roller = f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none"
     if any(group.led for group in solution.mechanism.groups):
         no_roller += "; give its follower a Roller or Face, then contact_pressure is an output"
@@ -514,7 +515,7 @@ def contact(
         None if groups else no_roller,
         *_limit_problems(limits, load_rating),
         **_contact_rules(given, groups),
-        **{name: (value, *ROLLER_RULES[name]) for name, value in own.items() if value is not None},
+        **{name: (value, *ROLLER_RULES[name]) for name, value in own.items()},
         **{f"limit {name!r}": (known[name], unit, POSITIVE) for name, unit in LIMIT_UNITS.items() if name in known},
     )
     cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
