@@ -91,7 +91,13 @@ def declared_kinks(motion):
         starts = _period_starts(part, motion)[:, None]
         kinks, jumps = kinks_of(part, motion)
         sources.append((np.ravel(np.concatenate([kinks, jumps]) + starts), np.ravel(jumps + starts)))
-    return tuple(np.unique(np.concatenate(angles)) for angles in zip(*sources, strict=True))
+    return tuple(np.unique(_wrapped(np.concatenate(angles), motion.period)) for angles in zip(*sources, strict=True))
+
+
+def _wrapped(angle, period):
+    """Crank angles in [0, period); those within `ANGLE_TOLERANCE` below the period are 0 but for rounding."""
+    angle = np.mod(angle, period)
+    return np.where(angle > period - ANGLE_TOLERANCE, 0.0, angle)
 
 
 def law_kinks(solution, jumps=False):

@@ -38,7 +38,7 @@ TABLE_LOADS, OTHER_PROCESSOR = 1e-13, 1e-14
 """Tolerances of values relative to the quantity's scale: with table loads, and where sines have other last bits."""
 EXTREMES, SEARCHES, TRAJECTORIES = 1e-12, 1e-9, 1e-9
 BESIDE = 1e-5
-"""Tolerance of what a search neither aims at nor limits. Where the goal is flat, the roundings of another processor move
+"""Tolerance of what a search neither aims at nor limits. Where the goal is flat, roundings of another processor move
 the goal by 1e-9 and the rest by the root of that.
 """
 SEARCHED = {"mower_drive": {"optimal"}, "comparisons": {"mower_drive optimal"}}
