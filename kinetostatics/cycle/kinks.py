@@ -3,6 +3,8 @@
 Friction has them where a rate or a force changes its sign; `sign_changes` finds these.
 """
 
+import math
+
 import numpy as np
 
 from ..machine.loads import (
@@ -16,6 +18,7 @@ from ..machine.loads import (
     period_on,
     significant_kinks,
 )
+from ..mechanics.load_values import user_value
 from ..mechanics.quantities import quantity
 from ..numbers.brackets import find_roots
 
@@ -29,12 +32,16 @@ MAX_VERTEX = 0.1
 """Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
 """Crank angles nearer than this, rad, count as one."""
-FUNCTION_WIDTH = np.radians(0.2)
-"""Width of a piece, rad, on which a load function without declared kinks is evaluated at 8 crank angles at first."""
+FUNCTION_STEP = np.radians(0.05)
+"""Step of crank angles, rad, at which load functions without declared kinks are searched for pulses and jumps."""
+ROUGHNESS = 1e-5
+"""Fourth difference, relative to the largest value, above which a function is not smooth: that of a 64th harmonic."""
+BLOCK_VALUES = 2**20
+"""Values of such functions that are computed at a time."""
 
 
 def undeclared_functions(loads):
-    """Loads that are functions without kinks, a list: pulses below 0.05 deg, in sweeps 0.1 deg, may be missed."""
+    """Loads that are functions without kinks, a list: pulses narrower than `FUNCTION_STEP` may be missed."""
     return [item for item in loads if not has_no_user_code(item) and not kink_sources([item])]
 
 
@@ -65,6 +72,9 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
         angles = (angles[..., None] + starts).reshape(len(angles), -1)
         sources.append((angles, np.repeat(jumps, starts.size)[None]))
         largest_left_out = max(largest_left_out, left_out)
+    for item in undeclared_functions(solution.loads):
+        angles = rough_places(item, solution)
+        sources.append((angles, np.zeros(angles.shape, dtype=bool)))
     designs = max(len(angles) for angles, _ in sources)
     rows = ([np.broadcast_to(part, (designs, part.shape[1])) for part in row] for row in zip(*sources, strict=True))
     angle, jumps = map(np.column_stack, rows)
@@ -77,6 +87,8 @@ def kinks_and_jumps(solution, samples):
     The signs of friction are sampled at `samples` crank angles.
     """
     kinks, jumps = declared_kinks(solution)
+    for item in undeclared_functions(solution.loads):
+        kinks = np.union1d(kinks, rough_places(item, solution))
     if not solution.friction.acting:
         return kinks, jumps
     friction = _friction_sign_changes(solution, samples)[1].ravel()
@@ -98,6 +110,28 @@ def _wrapped(angle, period):
     """Crank angles in [0, period); those within `ANGLE_TOLERANCE` below the period are 0 but for rounding."""
     angle = np.mod(angle, period)
     return np.where(angle > period - ANGLE_TOLERANCE, 0.0, angle)
+
+
+def rough_places(item, solution):
+    """Crank angles around and in stretches where a load function is not smooth, (designs, K); NaN pads the rows.
+
+    Jumps and kinks lie between them. A long stretch, as of measured values with noise, is split every fourth step.
+    """
+    angle = np.linspace(0.0, solution.period, round(solution.period / FUNCTION_STEP), endpoint=False)
+    designs = math.prod(solution.shape[:-1])
+    blocks = np.array_split(angle, 1 + angle.size * designs // BLOCK_VALUES)
+    values = [np.atleast_2d(user_value(item, solution.at(some))) + 0.0 * some for some in blocks]
+    value = np.concatenate(values, axis=-1)
+
+    def beside(row, step):
+        return np.roll(row, -step, axis=-1)
+
+    change = abs(beside(value, -2) + beside(value, 2) - 4.0 * (beside(value, -1) + beside(value, 1)) + 6.0 * value)
+    rough = change > ROUGHNESS * np.fmax.reduce(abs(value), axis=-1)[:, None]
+    rough = np.any([beside(rough, step) for step in range(-2, 3)], axis=0)
+    inside = beside(rough, -1) & beside(rough, 1) & (np.arange(angle.size) % 4 > 0)
+    design, place = np.nonzero(rough & ~inside)
+    return pad_rows(design, len(value), angle[place])[0]
 
 
 def law_kinks(solution, jumps=False):

@@ -15,7 +15,7 @@ from ..mechanics import assembly, energy_contact
 from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, FUNCTION_WIDTH, kinks_and_jumps, undeclared_functions
+from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
 from .piecewise import JUMP_OFFSET, Pieces, edges_between, point_count
 
 SAMPLES = 1440
@@ -91,8 +91,7 @@ class Turn:
         graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
         breaks = np.unique(np.append(np.mod(np.concatenate([kinks, graded]), period), 0.0))
         breaks = np.append(breaks[np.diff(breaks, append=period) > 4.0 * JUMP_OFFSET], period)
-        undeclared = undeclared_functions(solution.loads)
-        edges = edges_between(breaks, FUNCTION_WIDTH if undeclared else MAX_WIDTH)
+        edges = edges_between(breaks, MAX_WIDTH)
         pieces = Pieces(edges, point_count(edges))
         angle = pieces.checked.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)

@@ -9,21 +9,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import design_kinks, undeclared_functions
+from ..cycle.kinks import design_kinks
 from ..cycle.pieces import GOAL, Pieces, refined
 from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import KINK_TOLERANCE
 from ..mechanics.jamming import solve_friction
-from ..mechanics.load_values import user_value
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
 from .scene import unchecked_solution
 
 START_ANGLES = 192
 """Crank angles of a turn at the start; enough for most outputs of a turn split at its kinks."""
-FUNCTION_STEP = math.radians(1.0 / 16.0)
-"""Mean step of crank angles at the start where a load function declares no kinks; finds pulses of 0.1 deg."""
 BLOCK_VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time; about as many fit into the cache."""
 
@@ -67,9 +64,6 @@ class PiecewiseTurns(NamedTuple):
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
         found, jumps, rest = design_kinks(solution, straight)
         found = np.broadcast_to(found, (count, found.shape[1]))
-        for item in undeclared_functions(scene.loads):
-            angles = max(angles, round(solution.period / FUNCTION_STEP))
-            user_value(item, unchecked_turn(scene, START_ANGLES))  # refuses what is no finite force
         return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
 
     def values(self, names, designs, angle):
