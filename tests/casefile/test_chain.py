@@ -86,6 +86,7 @@ def test_noise_of_a_measured_cam_has_a_unit(tmp_path):
         ks.load_case(case_file(tmp_path, text.replace(law, measured.replace("0.29", "0.09")))).variant("cam")
 
 
+@pytest.mark.slow
 def test_a_chain_is_balanced_by_a_counterweight(tmp_path):
     shutil.copy(EXAMPLES / "indicator.csv", tmp_path)
     text = (EXAMPLES / "slider.toml").read_text(encoding="utf-8")

@@ -29,6 +29,7 @@ from support.scenes import (
 )
 
 
+@pytest.mark.slow
 def test_threads_do_not_change_machine_code_results(numba, monkeypatch):
     """Of many designs each thread takes some, of a single one some angles."""
     expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)

@@ -70,6 +70,7 @@ def test_groups_as_they_are_pass_the_check(kind):
     assert ks.check(GROUPS[kind]).ok
 
 
+@pytest.mark.slow
 @every(("kind", "table", "name", "state", "flipped"), WRONG)
 def test_check_finds_each_wrong_state(kind, table, name, state, flipped):
     group = GROUPS[kind]

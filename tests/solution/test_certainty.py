@@ -89,6 +89,7 @@ def test_unrecordable_code_has_no_bound():
         s.error_bound("balancing_torque")
 
 
+@pytest.mark.slow
 def test_uncertainty_equals_a_monte_carlo_spread():
     s, spreads = solved(), {"crank_length": 1e-4, "slider.mass": 2.0, "guide_offset": 2e-4}
     found = s.uncertainty("balancing_torque", spreads)

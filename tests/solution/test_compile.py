@@ -273,6 +273,7 @@ def test_designs_have_the_numbers_that_they_have_alone():
         np.testing.assert_array_equal(together[:, row], alone[:, 0])
 
 
+@pytest.mark.slow
 def test_the_compiled_loop_gives_the_same(numba):
     plain, compiled = (
         PiecewiseTurns.of(pump(), OUTPUTS, 192, engine=engine).estimated(OUTPUTS)[0] for engine in ("numpy", "compiled")

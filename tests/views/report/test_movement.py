@@ -40,6 +40,7 @@ def test_report_curve_is_the_solutions():
     assert set(found["variant"]) == {"cam-cosine"}
 
 
+@pytest.mark.slow
 def test_shorter_periods_are_repeated():
     found = lines(figures.over_turn(subject("v_twin").solutions, "balancing_torque"))
     assert [found[f"line {row}"]["angle"][-1] for row in range(3)] == pytest.approx([720, 720, 720])
