@@ -137,7 +137,7 @@ def of_rows(write, rows):
     return made.by_loop(angle, [], list(rows), angle.shape)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_operations_agree_at_zeros_infs_and_nans(numba):
     one, other = (part.ravel() for part in np.meshgrid(SPECIAL, SPECIAL))
     more = np.roll(one, 5)
@@ -260,7 +260,7 @@ def jitted(intrinsic, arguments):
     return njit(scope["call"])
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_bits_are_set_exactly_where_conditions_hold(numba):
     rising, falling, negative = (getattr(simd_reductions, name) for name in SCANS)
     loops = {
@@ -302,7 +302,7 @@ def test_columns_of_a_table_become_a_function_of_them(numba):
         assert np.array_equal(found[2], table[2])
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_sums_of_every_other_value_lose_little(numba):
     terms = {"plain": lambda value: value, "sizes": abs, "squares": lambda value: value * value}
     for name, term in terms.items():
