@@ -26,7 +26,7 @@ CLEAR = np.array([-1.7, -0.9, 1.1, 1.9])
 SPLINE = 1e-12
 """Rounding of a cam from a table: the second derivative of a spline through 60 points loses a digit."""
 MOTION, STEEP = 1e-12, 1e-11
-"""Motions: each step is integrated to 3e-14, dozens of them add up; a motor near its mean speed multiplies that by ten."""
+"""Motions: dozens of steps, each integrated to 3e-14, add up; a motor near its mean speed multiplies that by ten."""
 WITHOUT_SPEED = tuple(kind for kind in LOADS if kind not in SPEED_LOADS)
 MOTORS = {
     "kloss": ks.drive.Motor.kloss(3000.0, 95.0, synchronous_speed=104.7, overload=2.5, transmission=5.0, inertia=0.01),
