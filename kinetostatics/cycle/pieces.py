@@ -24,23 +24,23 @@ SERIES = np.linalg.inv(_VANDER.astype(float))
 SERIES = (SERIES @ (2.0 * np.eye(NODES.size) - _VANDER @ SERIES)).astype(float)
 """Coefficients of the polynomial over these places from values at the nodes."""
 _LEGENDRE = np.polynomial.legendre.legvander(2.0 * NODES - 1.0, NODES.size - 1)
-LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
+LAST_LEGENDRE = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
 """The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
-MIN_REST = 0.1
+MIN_DECAY_RATIO = 0.1
 """Least estimate of the missing terms relative to the last ones: smooth last terms may hide a kink."""
-MAX_REST = 4.0
+TAIL_FACTOR = 4.0
 """Largest sum of all missing terms relative to the first of them: at a kink they hardly decrease."""
 NEWTON_STEPS = 6
 """Newton's steps to a peak or zero that is known to a quarter of half a piece."""
-EMPTY_WIDTH = 1e-12
+MIN_WIDTH = 1e-12
 """Width, rad, below which a piece is dropped: both ends are the same kink."""
-NARROWEST = 1e-9
+JUMP_WIDTH = 1e-9
 """Width of a piece, rad, below which a change on it is a jump: its values are those at the nodes."""
-GOAL = 1e-8
+MAX_OUTPUT_ERROR = 1e-8
 """Largest error of an output relative to the largest value of its quantity."""
-EXPECTED_ROUGH = 8
+TYPICAL_UNCERTAIN_PIECES = 8
 """Typical number of uncertain pieces that share the error of an integral."""
-MAX_ADDED = 720
+MAX_ADDED_PIECES = 720
 """Pieces of a turn that halving adds to a design at most."""
 
 
@@ -86,7 +86,7 @@ class Pieces(NamedTuple):
         width = np.diff(edges)
         widest = width.argmax(axis=1)[:, None]
         inside = np.take_along_axis(edges[:, :-1] + 0.5 * width, widest, axis=1)
-        real = width >= EMPTY_WIDTH
+        real = width >= MIN_WIDTH
         last = np.cumsum(jumping, axis=1)
         before = np.maximum.accumulate(np.where(real, np.arange(1, width.shape[1] + 1), 0), axis=1)  # ends of pieces
         before = np.column_stack([np.zeros(len(kinks), dtype=int), before])
@@ -149,9 +149,9 @@ class Pieces(NamedTuple):
         return np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
 
     def _series(self, values):
-        """`_series` of each piece; on pieces below `NARROWEST` a line from the smallest to the largest value."""
+        """`_series` of each piece; on pieces below `JUMP_WIDTH` a line from the smallest to the largest value."""
         series = _series(values)
-        narrow = (self.width > 0.0) & (self.width < NARROWEST)
+        narrow = (self.width > 0.0) & (self.width < JUMP_WIDTH)
         if narrow.any():
             low, high = values.min(axis=0)[narrow], values.max(axis=0)[narrow]
             series[:, narrow] = 0.0
@@ -172,11 +172,11 @@ class Pieces(NamedTuple):
         gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
-        terms = [_weighted(weights, values) for weights in LAST]
+        terms = [_weighted(weights, values) for weights in LAST_LEGENDRE]
         former, latter = np.hypot(*terms[:2]), np.hypot(*terms[2:])
         with np.errstate(divide="ignore", invalid="ignore"):
-            rest = MAX_REST * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_REST, 1.0)
-        return np.where(self.width < NARROWEST, 0.0, np.maximum(rest, np.maximum(gap, after)))
+            rest = TAIL_FACTOR * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_DECAY_RATIO, 1.0)
+        return np.where(self.width < JUMP_WIDTH, 0.0, np.maximum(rest, np.maximum(gap, after)))
 
     def _peaks(self, reduction, values, vector):
         """Number of each design, and the height of its peak."""
@@ -300,10 +300,10 @@ def _mean_sizes(values):
     return found[None]
 
 
-def refined(pieces, values, outputs, evaluate, goal=GOAL):
+def refined(pieces, values, outputs, evaluate, goal=MAX_OUTPUT_ERROR):
     """Yield parts of the designs: which, their pieces, and values by quantity, halved until the outputs are certain.
 
-    A design that would need more than `MAX_ADDED` further pieces is given up.
+    A design that would need more than `MAX_ADDED_PIECES` further pieces is given up.
 
     Parameters
     ----------
@@ -317,7 +317,7 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
         Largest error of an output relative to the largest value of its quantity.
     """
     designs, first = np.arange(len(pieces.start)), (pieces.width > 0.0).sum(axis=1)
-    most = first + MAX_ADDED * round(pieces.period / TURN)
+    most = first + MAX_ADDED_PIECES * round(pieces.period / TURN)
     values = {name: rows.reshape(*pieces.start.shape, NODES.size) for name, rows in values.items()}
     vectors = {output.quantity: vector for output, vector in outputs}
     peaks: dict[str, set[float]] = {name: set() for name in vectors}
@@ -332,8 +332,8 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
                 if peaks[name]:
                     halved |= pieces.of_peaks(values[name], peaks[name], vector) > goal * size
                 if name in integrals:
-                    halved |= pieces.of_integrals(values[name]) > goal / EXPECTED_ROUGH * size
-        halved &= pieces.width >= NARROWEST
+                    halved |= pieces.of_integrals(values[name]) > goal / TYPICAL_UNCERTAIN_PIECES * size
+        halved &= pieces.width >= JUMP_WIDTH
         count = (pieces.width > 0.0).sum(axis=1) + halved.sum(axis=1)
         going = halved.any(axis=1) & (count <= most[designs])
         if not going.all():

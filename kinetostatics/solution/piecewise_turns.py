@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.kinks import design_kinks, undeclared_functions
-from ..cycle.pieces import GOAL, Pieces, refined
+from ..cycle.pieces import MAX_OUTPUT_ERROR, Pieces, refined
 from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import KINK_TOLERANCE
@@ -70,7 +70,9 @@ class PiecewiseTurns(NamedTuple):
         for item in undeclared_functions(scene.loads):
             angles = max(angles, round(solution.period / FUNCTION_STEP))
             user_value(item, unchecked_turn(scene, START_ANGLES))  # refuses what is no finite force
-        return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
+        return cls(
+            scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(MAX_OUTPUT_ERROR, rest), engine
+        )
 
     def values(self, names, designs, angle):
         """Values (D, N) by quantity, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
