@@ -129,8 +129,8 @@ class Pieces(NamedTuple):
         """
         values = self._by_node(values)
         values = values * values if vector else values
-        series, error = self._series(values), self._errors(values)
-        samples = np.stack([_at(series, place) for place in PLACES])
+        series, error = self._series_with_jumps(values), self._errors(values)
+        samples = np.stack([_evaluate(series, place) for place in PLACES])
         room = error + STEP**2 / 8.0 * sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
         found = np.zeros(error.shape)
         for sign in signs:
@@ -148,9 +148,9 @@ class Pieces(NamedTuple):
     def _by_node(self, values):
         return np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
 
-    def _series(self, values):
-        """`_series` of each piece; on pieces below `JUMP_WIDTH` a line from the smallest to the largest value."""
-        series = _series(values)
+    def _series_with_jumps(self, values):
+        """`_coefficients` of each piece; on pieces below `JUMP_WIDTH` a line from the smallest to the largest value."""
+        series = _coefficients(values)
         narrow = (self.width > 0.0) & (self.width < JUMP_WIDTH)
         if narrow.any():
             low, high = values.min(axis=0)[narrow], values.max(axis=0)[narrow]
@@ -164,7 +164,7 @@ class Pieces(NamedTuple):
         The missing terms go on decreasing as the last ones do. Those count in pairs, one even and one odd: where a kink
         lies so that one vanishes, the other does not.
         """
-        series = _series(values)
+        series = _coefficients(values)
         even, odd = sum(series[2::2], series[0]), sum(series[3::2], series[1])
         first, last = even - odd, even + odd
         count = np.maximum((self.width > 0.0).sum(axis=1), 1)[:, None] - 1
@@ -172,7 +172,7 @@ class Pieces(NamedTuple):
         gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
-        terms = [_weighted(weights, values) for weights in LAST_LEGENDRE]
+        terms = [_weighted_sum(weights, values) for weights in LAST_LEGENDRE]
         former, latter = np.hypot(*terms[:2]), np.hypot(*terms[2:])
         with np.errstate(divide="ignore", invalid="ignore"):
             rest = TAIL_FACTOR * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_DECAY_RATIO, 1.0)
@@ -180,10 +180,10 @@ class Pieces(NamedTuple):
 
     def _peaks(self, reduction, values, vector):
         """Number of each design, and the height of its peak."""
-        series = self._series(values * values if vector else values)
+        series = self._series_with_jumps(values * values if vector else values)
         heights, angles = [], []
         for sign in signs(reduction):
-            height, piece, place = _highest(sign * series)
+            height, piece, place = _global_maximum(sign * series)
             design = np.arange(len(piece))
             angle = self.start[design, piece] + self.width[design, piece] * (0.5 + 0.5 * place)
             height = sign * height
@@ -198,34 +198,34 @@ class Pieces(NamedTuple):
         kind, order = output.reduction, output.order
         if order is not None:
             angle = order * (self.start + self.width * NODES[:, None, None])
-            parts = (self._sum(values * wave(angle)) for wave in (np.cos, np.sin))
+            parts = (self._period_mean(values * wave(angle)) for wave in (np.cos, np.sin))
             return np.hypot(*parts) * (1.0 if order == 0 else 2.0)
         if kind == "rms":
-            return np.sqrt(self._sum(values * values))
-        return self._sum(values if kind == "mean" or vector else _mean_sizes(values))
+            return np.sqrt(self._period_mean(values * values))
+        return self._period_mean(values if kind == "mean" or vector else _mean_magnitudes(values))
 
-    def _sum(self, values):
+    def _period_mean(self, values):
         """Mean over the period of values at the nodes, or of one value per piece; empty pieces add nothing."""
-        parts = _weighted(WEIGHTS, values) if len(values) == NODES.size else values[0]
+        parts = _weighted_sum(WEIGHTS, values) if len(values) == NODES.size else values[0]
         return np.cumsum(self.width * parts, axis=1)[:, -1] / self.period
 
     def _swing(self, values):
         """Range of the integral of values less their mean; J for a torque."""
-        series = _series(values)
-        series[0] -= self._sum(values)[:, None]
+        series = _coefficients(values)
+        series[0] -= self._period_mean(values)[:, None]
         inner = _integral(series) * (0.5 * self.width)
-        gained = np.cumsum(_at(inner, 1.0) - _at(inner, -1.0), axis=1)
-        inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _at(inner, -1.0)
-        return _highest(inner)[0] + _highest(-inner)[0]
+        gained = np.cumsum(_evaluate(inner, 1.0) - _evaluate(inner, -1.0), axis=1)
+        inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _evaluate(inner, -1.0)
+        return _global_maximum(inner)[0] + _global_maximum(-inner)[0]
 
 
-def _weighted(weights, values):
+def _weighted_sum(weights, values):
     return sum(weight * row for weight, row in zip(weights, values, strict=True))
 
 
-def _series(values):
+def _coefficients(values):
     """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes (nodes, ...)."""
-    return np.stack([_weighted(weights, values) for weights in SERIES])
+    return np.stack([_weighted_sum(weights, values) for weights in SERIES])
 
 
 def _integral(series):
@@ -233,11 +233,11 @@ def _integral(series):
     return np.stack([0.0 * series[0], *(row / power for power, row in enumerate(series, 1))])
 
 
-def _slope(series):
+def _derivative(series):
     return [power * row for power, row in enumerate(series)][1:]
 
 
-def _at(series, place):
+def _evaluate(series, place):
     """Values of polynomials, each at its place."""
     value = series[-1]
     for row in series[-2::-1]:
@@ -245,28 +245,28 @@ def _at(series, place):
     return value
 
 
-def _newton(function, slope, place, low, high):
+def _find_zero(function, slope, place, low, high):
     """Zero of a polynomial near a place, between `low` and `high`."""
     for _ in range(NEWTON_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = place - _at(function, place) / _at(slope, place)
+            step = place - _evaluate(function, place) / _evaluate(slope, place)
         place = np.where(np.isnan(step), place, np.clip(step, low, high))
     return place
 
 
-def _highest(series):
+def _global_maximum(series):
     """Largest value of the polynomials (terms, designs, pieces) of each design, its piece, and its place there.
 
     Only pieces on which a value may exceed those at `PLACES` are refined.
     """
-    samples = np.stack([_at(series, place) for place in PLACES])
+    samples = np.stack([_evaluate(series, place) for place in PLACES])
     top = samples.max(axis=0)
     bend = sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
     design, piece = np.nonzero(top + STEP**2 / 8.0 * bend >= top.max(axis=1, keepdims=True))
     own, first = series[:, design, piece], PLACES[samples[:, design, piece].argmax(axis=0)]
-    slope = _slope(own)
-    place = _newton(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
-    height = _at(own, place)
+    slope = _derivative(own)
+    place = _find_zero(slope, _derivative(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
+    height = _evaluate(own, place)
     place = np.where(height >= top[design, piece], place, first)
     height = np.maximum(height, top[design, piece])
     highest = np.full(len(top), -np.inf)
@@ -280,22 +280,23 @@ def _highest(series):
     return found[0], pieces, found[1]
 
 
-def _mean_sizes(values):
+def _mean_magnitudes(values):
     """Mean magnitude on each piece (1, designs, pieces), also where the sign changes on it."""
-    found, series = np.abs(_weighted(WEIGHTS, values)), _series(values)
-    samples = np.stack([_at(series, place) for place in PLACES])
+    found, series = np.abs(_weighted_sum(WEIGHTS, values)), _coefficients(values)
+    samples = np.stack([_evaluate(series, place) for place in PLACES])
     design, piece = np.nonzero(np.signbit(samples).any(axis=0) & ~np.signbit(samples).all(axis=0))
     own = series[:, design, piece]
-    slope, integral = _slope(own), _integral(own)
+    slope, integral = _derivative(own), _integral(own)
     total = np.zeros(design.size)
     for low in PLACES[:-1]:
         high = low + STEP
-        one, other = _at(own, low), _at(own, high)
+        one, other = _evaluate(own, low), _evaluate(own, high)
         changes = np.signbit(one) != np.signbit(other)
         with np.errstate(divide="ignore", invalid="ignore"):
             line = np.where(changes, low + STEP * one / (one - other), low)
-        zero = np.where(changes, _newton(own, slope, line, low, high), low)
-        total += np.abs(_at(integral, zero) - _at(integral, low)) + np.abs(_at(integral, high) - _at(integral, zero))
+        zero = np.where(changes, _find_zero(own, slope, line, low, high), low)
+        at_low, at_zero, at_high = (_evaluate(integral, place) for place in (low, zero, high))
+        total += np.abs(at_zero - at_low) + np.abs(at_high - at_zero)
     found[design, piece] = 0.5 * total
     return found[None]
 
@@ -341,10 +342,10 @@ def refined(pieces, values, outputs, evaluate, goal=MAX_OUTPUT_ERROR):
         designs, pieces, halved = designs[going], pieces.some(going), halved[going]
         values = {name: rows[going] for name, rows in values.items()}
         if designs.size:
-            pieces, values = _halved(pieces, values, halved, lambda angle, own=designs: evaluate(own, angle))
+            pieces, values = _halve(pieces, values, halved, lambda angle, own=designs: evaluate(own, angle))
 
 
-def _halved(pieces, values, halved, evaluate):
+def _halve(pieces, values, halved, evaluate):
     """Pieces with those marked in `halved` halved, and values; each design has some. Halves are evaluated."""
     design, piece = np.nonzero(pieces.width > 0.0)
     parts = 1 + halved[design, piece]
