@@ -40,7 +40,7 @@ def tangents(graph, outputs, slopes):
     slopes = dict(slopes)
     for node in needed(outputs):
         parts = [
-            _times(partial, slopes[argument])
+            _product(partial, slopes[argument])
             for argument, partial in _partials(graph, node, slopes)
             if argument in slopes
         ]
@@ -49,11 +49,11 @@ def tangents(graph, outputs, slopes):
     return tuple(slopes.get(output, 0.0) for output in outputs)
 
 
-def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
+def adjoints(graph, output, wanted, seed=1.0, stop_gradient_slope=0.0, ends=frozenset()):
     """Derivatives of one output by each of the wanted nodes that it depends on: a dict of nodes or numbers.
 
-    They are times `seed`. `held` is the derivative of `arithmetic.stop_gradient`, which is 1 for rounding errors; nodes
-    among `ends` count as independent.
+    They are multiplied by `seed`. `stop_gradient_slope` is the derivative of `arithmetic.stop_gradient`: 0 for
+    sensitivities, 1 for rounding errors. Nodes among `ends` count as independent.
     """
     parts: dict[Node, list] = {output: [seed]}
     found = {}
@@ -62,14 +62,14 @@ def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
             whole = found[node] = reduce(operator.add, parts[node])
             if node in ends:
                 continue
-            if node.operation == "held" and held:
-                parts.setdefault(node.arguments[0], []).append(held * whole)
+            if node.operation == "held" and stop_gradient_slope:
+                parts.setdefault(node.arguments[0], []).append(stop_gradient_slope * whole)
             for argument, partial in _partials(graph, node, wanted):
-                parts.setdefault(argument, []).append(_times(partial, whole))
+                parts.setdefault(argument, []).append(_product(partial, whole))
     return found
 
 
-def _times(one, other):
+def _product(one, other):
     if isinstance(one, float) and one == -1.0:
         return -other
     return one * other
@@ -77,13 +77,13 @@ def _times(one, other):
 
 def _partials(graph, node, wanted):
     """Pairs of an argument among those wanted, and the derivative of the node by it."""
-    if node.operation not in _RULES:
+    if node.operation not in _PARTIAL_DERIVATIVES:
         return []
-    partials = _RULES[node.operation](graph, node, *node.arguments)
+    partials = _PARTIAL_DERIVATIVES[node.operation](graph, node, *node.arguments)
     return [pair for pair in zip(node.arguments, partials, strict=True) if pair[0] in wanted]
 
 
-_RULES: dict[str, Callable[..., tuple]] = {
+_PARTIAL_DERIVATIVES: dict[str, Callable[..., tuple]] = {
     "+": lambda graph, node, left, right: (1.0, 1.0),
     "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
     "total": lambda graph, node, *parts: (1.0,) * len(parts),

@@ -26,12 +26,18 @@ from .load_values import evaluate_load, slider_push
 
 def reduced_inertia(motion):
     """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
-    return _sum(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    return _sum(
+        _reduced_inertia_of_link(motion.placement.links[name], link.body)
+        for name, link in motion.mechanism.links.items()
+    )
 
 
 def reduced_inertia_slope(motion):
     """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-    slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    slopes = (
+        _reduced_inertia_slope_of_link(motion.placement.links[name], link.body)
+        for name, link in motion.mechanism.links.items()
+    )
     return product(2.0, _sum(slopes))
 
 
@@ -56,7 +62,7 @@ def load_torque(motion):
     """
     links = motion.placement.links
     weights = (
-        product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))
+        product(link.body.mass, work(motion.gravity, first_at(links[name], _centre_arm(links[name], link.body))))
         for name, link in motion.mechanism.links.items()
     )
     return minus(None, plus(_sum(weights), motion.load_work))
@@ -75,17 +81,17 @@ def _sum(parts):
     return reduce(plus, parts, None)
 
 
-def _to_centre(motion, body):
+def _centre_arm(motion, body):
     return arm(motion.direction, body.along, body.across)
 
 
-def _inertia(motion, body):
-    first = first_at(motion, _to_centre(motion, body))
+def _reduced_inertia_of_link(motion, body):
+    first = first_at(motion, _centre_arm(motion, body))
     return plus(product(body.mass, work(first, first)), product(body.inertia, product(motion.ratio, motion.ratio)))
 
 
-def _slope(motion, body):
-    to_centre = _to_centre(motion, body)
+def _reduced_inertia_slope_of_link(motion, body):
+    to_centre = _centre_arm(motion, body)
     moving = work(first_at(motion, to_centre), second_at(motion, to_centre))
     return plus(product(body.mass, moving), product(body.inertia, product(motion.ratio, motion.ratio_slope)))
 

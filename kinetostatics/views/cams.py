@@ -99,7 +99,7 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
         limit = (1.0 if side == "disk" else -1.0) / radius
         ax.axhline(limit, label=f"undercut by the roller, {side}", **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _label_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
+    return _label_axes(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
 
 def cam_pressure_angle(cams, largest=None, ax=None):
@@ -126,7 +126,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     for limit in () if largest is None else (-largest, largest):
         ax.axhline(np.degrees(limit), **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _label_turn(ax, "pressure angle [deg]", len(named) > 1)
+    return _label_axes(ax, "pressure angle [deg]", len(named) > 1)
 
 
 def contact_pressure(contacts, ax=None):
@@ -159,7 +159,7 @@ def contact_pressure(contacts, ax=None):
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
     ax.set_ylim(bottom=0.0)
-    return _label_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
+    return _label_axes(ax, "Hertz pressure [MPa]", len(named) > 1)
 
 
 def law_motion(laws, ax=None):
@@ -197,7 +197,7 @@ def law_motion(laws, ax=None):
     texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
     for part, text in zip(four, texts, strict=True):
         part.set_ylabel(text)
-    _label_turn(four[-1], texts[-1], False)
+    _label_axes(four[-1], texts[-1], False)
     if len(named) > 1:
         four[0].legend(frameon=False, fontsize="small")
     return four
@@ -210,7 +210,7 @@ def draw_each_over_turn(ax, named, value, points=POINTS_PER_TURN):
         ax.plot(np.degrees(angle), value(item, angle), linestyle=style, label=name)
 
 
-def _label_turn(ax, text, legend):
+def _label_axes(ax, text, legend):
     ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:

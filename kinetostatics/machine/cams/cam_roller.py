@@ -172,7 +172,7 @@ class CamRoller(checks.Checked, Group):
             polar, orbit = (mean + farther, *derivatives), Orbit(mean, farther)
         else:
             polar = self.cam.polar(placement.angle, placement.ray)
-        self._set(placement, place(placement.ray, *polar), polar)
+        self._enter(placement, place(placement.ray, *polar), polar)
         placement.courses["A"] = Course(orbit=orbit, departure=departure(placement.ray, *polar[1:]))
 
     def closure(self, placement):
@@ -194,9 +194,9 @@ class CamRoller(checks.Checked, Group):
         """Place the block at joints computed in another way."""
         joint = joints["A"]
         radius, slope, outward = (dot(vector_or_zero(part), placement.ray) for part in joint)
-        self._set(placement, joint, (radius, slope, outward + radius))
+        self._enter(placement, joint, (radius, slope, outward + radius))
 
-    def _set(self, placement, joint, polar):
+    def _enter(self, placement, joint, polar):
         placement.joints["A"] = joint
         placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
         placement.details["cam"] = polar

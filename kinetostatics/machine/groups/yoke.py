@@ -127,7 +127,7 @@ class YokeGroup(checks.Checked, Group):
     block: Link = Link()
     label: str = ""
 
-    def _slot_across(self):
+    def _parallel_slot_problem(self):
         """Yield the problem of a slot parallel to the guide."""
         if checks.has_known_values(self.slot_angle) and np.any(
             parallel := np.abs(np.sin(self.slot_angle)) < MIN_SLOT_SINE
@@ -144,7 +144,7 @@ class YokeGroup(checks.Checked, Group):
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
         "yoke group",
-        _slot_across,
+        _parallel_slot_problem,
         guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         slot_angle=checks.Number("rad"),
         **rules_of_parts(("slider", "block"), "on", "pin"),
