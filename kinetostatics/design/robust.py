@@ -1,7 +1,7 @@
 """Quantiles of an output over the spread of a design's numbers, with exact derivatives.
 
-Each sample is the design with its own deviations, from a scrambled Sobol sequence that is the same for every design.
-The quantile is the mean of ordered samples by Harrell and Davis (1982), smooth in the design.
+Each sample is the design plus deviations of its numbers. These come from one scrambled Sobol sequence, the same for
+every design. The quantile is the weighted mean of the ordered samples (Harrell and Davis, 1982), smooth in the design.
 """
 
 import copy
@@ -31,19 +31,19 @@ MAX_SAMPLES = 2**20
 
 @dataclass(frozen=True)
 class Spread:
-    """Distributions of numbers and the quantile of an output that counts; for `optimise`, `torque_free_cam`.
+    """Deviations of a design's numbers, and the quantile of an output to optimise; for `optimise`, `torque_free_cam`.
 
     Parameters
     ----------
     quantile : float
-        Between 0 and 1: for an output to maximise a low one such as 0.05.
+        Between 0 and 1; a low one, such as 0.05, for an output to maximise.
     spreads : mapping of path to text
         Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
         0 % +- 0.5 %". Only deviations from the median count, so the texts of a case's [tolerances] fit.
     samples : int
-        Of the search; a power of two.
+        Number of samples in the search; a power of two.
     trim : float
-        Share of the design's crank speed within which each machine runs at its best speed.
+        Range of speed adjustment relative to the design's crank speed; each machine runs at its best speed within it.
     seed : int
         Of the scrambled Sobol sequence.
 
@@ -89,7 +89,7 @@ class Spread:
 
 
 def samples_problem(samples):
-    """What is wrong with a number of samples, as a sentence, or None."""
+    """Sentence on an invalid number of samples, or None."""
     whole = isinstance(samples, int) and 1 < samples <= MAX_SAMPLES
     if whole and not samples & (samples - 1):
         return None
@@ -97,14 +97,14 @@ def samples_problem(samples):
 
 
 def spread_problem(name, value):
-    """What is wrong with what must be a `Spread`, or None."""
+    """Sentence on a value that is no `Spread`, or None."""
     if isinstance(value, Spread):
         return None
     return f'{name} must be a Spread, as ks.design.Spread(0.05, {{"slider.mass": ...}}), got {checks.shown(value)}'
 
 
 def deviations(spread, known, count):
-    """Paths whose deviations are relative to their value, and deviations (count,) by path."""
+    """Set of paths with relative deviations, and a dict of path to deviations (count,), relative or in SI."""
     from scipy.stats import qmc
 
     found = spreads.distributions(spread.spreads)
@@ -124,7 +124,7 @@ def deviations(spread, known, count):
 
 
 def harrell_davis_weights(quantile, count):
-    """Weights of the ordered samples in a quantile (Harrell and Davis)."""
+    """Weights (count,) of the ordered samples in a quantile (Harrell and Davis)."""
     from scipy.special import betainc
 
     first, second = (count + 1) * quantile, (count + 1) * (1.0 - quantile)
@@ -140,7 +140,10 @@ GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 class SampledOutput:
-    """An output of a design over its spread; deviations apply to the scene's own numbers, one by one."""
+    """An output of a design over its spread: each number of the scene gets its own deviation in each sample.
+
+    A call returns the quantile and its derivatives, `outputs` the output of each sample.
+    """
 
     def __init__(self, problem, output, spread, sign, samples=None):
         self.problem, self.spread, self.sign = problem, spread, sign
@@ -159,6 +162,7 @@ class SampledOutput:
             self._require_trim()
 
     def _set_output(self, output):
+        """Compile the program of an output and keep what depends on it."""
         scene = scene_of(self.problem.source)
         zeros = [path for path in self.paths if self._nominal[path] == 0.0]
         self.unit, self.ratio = output.unit, output.ratio
@@ -173,7 +177,7 @@ class SampledOutput:
         """Limits that keep all samples within load tables over travel, if the spread moves sliders."""
         limits = []
         for limit in table_limits(scene_of(self.problem.source)):
-            # of the sample nearest to the limit or farthest beyond it; samples shared
+            # all weight on one ordered sample, nearest to the limit or farthest beyond it; the copy shares deviations
             worst = copy.copy(self)
             worst._set_output(limit.output)
             worst.weights = np.zeros(self.count)
@@ -183,7 +187,7 @@ class SampledOutput:
         return tuple(limits)
 
     def __call__(self, values):
-        """The quantile, and its derivatives by the numbers that vary."""
+        """The quantile, and its derivatives (n,) by the numbers that vary."""
         try:
             found, slopes = self._values_and_derivatives(values)
         except KinetostaticsError:  # a machine within the spread that cannot be built
@@ -192,11 +196,11 @@ class SampledOutput:
         return self.weights @ found[order], self.weights @ slopes[order]
 
     def outputs(self, values):
-        """The output of each sample."""
+        """The output of each sample, (samples,)."""
         return self._values_and_derivatives(values)[0]
 
     def _values_and_derivatives(self, values):
-        """The output of each sample, and its derivatives (samples, n)."""
+        """The output of each sample, (samples,), and its derivatives (samples, n)."""
         design, changes = self._design_numbers(values) if self._design_numbers else ({}, np.zeros((0, 0)))
         padded, parts = np.zeros((len(self.paths), 1, changes.shape[1])), []
         padded[: len(changes), 0] = changes
@@ -206,7 +210,7 @@ class SampledOutput:
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
     def _numbers(self, design, part):
-        """Numbers of some samples by path (samples, 1), and their derivatives by the design's own (paths, samples)."""
+        """Numbers (samples, 1) of some samples by path, and their derivatives (paths, samples) by the design's own."""
         numbers, rises = {}, []
         for path in self.paths:
             value = design.get(path, self._nominal[path])
@@ -217,7 +221,7 @@ class SampledOutput:
         return numbers, np.array(rises)
 
     def _block_outputs(self, numbers, changes):
-        """Output of some samples, with derivatives (samples, n)."""
+        """The output of some samples, (samples,), and its derivatives (samples, n)."""
         if self._has_kinks:
             curves, above = self._piecewise_curves(numbers, changes), self._reference_outputs(numbers)
         else:
@@ -251,7 +255,7 @@ class SampledOutput:
         return found
 
     def _curves(self, numbers, changes, angle=None):
-        """Values (samples, N) and derivatives (samples, n, N), at the crank angles of all or of each."""
+        """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""
         quantity, angle = self.output.quantity, self.angle if angle is None else angle
         shape = (*self._vector, len(next(iter(numbers.values()))), angle.shape[-1])
         values, slopes = np.broadcast_to(self.program(angle, numbers)[quantity], shape), np.zeros((0, *shape))
@@ -265,7 +269,7 @@ class SampledOutput:
         return values, np.moveaxis(slopes, 0, 1)
 
     def _reference_outputs(self, numbers):
-        """The reference's output for each sample."""
+        """The reference's output for each sample, (samples,); None unless the output is a ratio."""
         if not self.output.ratio:
             return None
         reference, plain = self._reference_scene(numbers), without_ratio(self.output)
@@ -275,7 +279,7 @@ class SampledOutput:
         return np.broadcast_to(found, len(next(iter(numbers.values()))))
 
     def _reduced(self, curves):
-        """The output, not its ratio, of curves (samples, N)."""
+        """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
         return without_ratio(self.output).estimated(curves, self.turns)[0]
 
     def _reference_curves(self, numbers):
@@ -286,12 +290,13 @@ class SampledOutput:
         )
 
     def _reference_scene(self, numbers):
+        """The reference with the samples' crank speed and numbers that spread, where it has them too."""
         reference = scene_of(self.problem.reference)
         known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
         return reference.varied({path: numbers[path] for path in known})
 
     def _best_speed_curves(self, numbers, changes):
-        """Curves at the speed within the trim at which each sample's output is best, and the reference's output."""
+        """Curves, their derivatives, and the reference's output, at the best speed of each sample within the trim."""
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes) for at in (slow, fast))
         below, above = (self._reference_curves(at) if self.output.ratio else None for at in (slow, fast))
@@ -307,7 +312,7 @@ class SampledOutput:
         return _interpolate(low, high, share), _interpolate(low_slopes, high_slopes, share[..., None]), compared
 
     def _at_speed(self, numbers, share):
-        """Numbers of samples at a share of the design's speed."""
+        """Numbers of samples with the crank speed at a multiple of the design's."""
         return numbers | {SPEED: np.full_like(numbers[SPEED], self._nominal[SPEED] * share)}
 
     def _require_trim(self):
@@ -330,13 +335,13 @@ class SampledOutput:
 
 
 def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
-    """An output of machines as they are made and run.
+    """An output of machines whose numbers deviate from the design's.
 
     Parameters
     ----------
     source, variant, reference
-        As for `optimise`; of a design that was found, its `.scene` and `.reference`. The reference takes those of the
-        numbers that spread that it has too.
+        As for `optimise`; for an optimised design pass its `.scene` and `.reference`. The reference gets the same
+        deviations, where it has the same number.
     output : str
     spread : Spread
     samples : int
@@ -350,7 +355,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     Raises
     ------
     ParameterError
-        What is asked for cannot be read, or names what the machine has not; machines within the spread have no value.
+        An argument is invalid or names a number that the machine lacks; or machines within the spread have no value.
     AssemblyError
         The machine itself does not close all round the turn.
 
@@ -384,7 +389,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
 
 
 def quantile(scene, reference, output, spread, sign):
-    """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
+    """The quantile of a scene's output over a spread; NaN where a machine within it cannot be built."""
     try:
         sampled = _fixed_scene_output(scene, reference, output, spread, sign)
         return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
@@ -393,7 +398,7 @@ def quantile(scene, reference, output, spread, sign):
 
 
 def _fixed_scene_output(scene, reference, output, spread, sign, samples=None):
-    """An output of a fixed scene over a spread."""
+    """`SampledOutput` of a scene with no number that varies, so it has no derivatives."""
     bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
     return SampledOutput(bare, output, spread, sign, samples)
 
