@@ -1,10 +1,10 @@
 """Reductions over a turn with kinks and jumps, of many designs, by polynomials on the pieces between them.
 
-Each design's turn is split at its kinks and evenly besides. A quantity is smooth on a piece, so a few values give its
-peaks, also those at kinks, and its integrals. No value is taken at a kink, so rounding of its crank angle does not
-matter. The last terms of the series, and the gap to the neighbours where pieces join, estimate the error; `refined`
-halves pieces until these errors are small: also undeclared kinks, as of friction in a pin whose reaction passes near
-zero, are smooth on pieces that are small enough.
+Each design's turn is split at its kinks and into even parts. A quantity is smooth on a piece, so a few values give its
+peaks, also those at kinks, and its integrals. No value is computed at a kink, so rounding of its crank angle does not
+matter. The error estimate of a piece is the larger of two: the missing terms of its series, and the gaps between its
+ends and the neighbouring pieces. `refined` halves pieces until their errors are small. It also resolves undeclared
+kinks, such as the rounded one of pin friction where the reaction passes near zero: short pieces are smooth there.
 """
 
 from dataclasses import replace
@@ -18,30 +18,30 @@ from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 
 STEP = 0.25
 PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
-"""Places on a piece, from -1 to 1, between which peaks are sought."""
+"""Sample points on a piece, in its coordinate from -1 to 1; Newton's iteration for a peak starts at the highest one."""
 _VANDER = np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NODES.size - 1).astype(np.longdouble)
 SERIES = np.linalg.inv(_VANDER.astype(float))
 SERIES = (SERIES @ (2.0 * np.eye(NODES.size) - _VANDER @ SERIES)).astype(float)
-"""Coefficients of the polynomial over these places from values at the nodes."""
+"""Matrix (powers, nodes) from values at the nodes to the power coefficients of a piece, in its coordinate -1 to 1."""
 _LEGENDRE = np.polynomial.legendre.legvander(2.0 * NODES - 1.0, NODES.size - 1)
-LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
-"""The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
-MIN_REST = 0.1
-"""Least estimate of the missing terms relative to the last ones: smooth last terms may hide a kink."""
-MAX_REST = 4.0
-"""Largest sum of all missing terms relative to the first of them: at a kink they hardly decrease."""
+LAST_LEGENDRE = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
+"""Matrix (4, nodes) from values at the nodes to the last four Legendre coefficients of a piece."""
+MIN_DECAY_RATIO = 0.1
+"""Least ratio of the first missing terms to the last known ones in the error estimate; a kink may hide in less."""
+TAIL_FACTOR = 4.0
+"""Sum of all missing terms relative to the first of them, in the error estimate; at a kink they decrease slowly."""
 NEWTON_STEPS = 6
-"""Newton's steps to a peak or zero that is known to a quarter of half a piece."""
-EMPTY_WIDTH = 1e-12
+"""Newton steps to a peak or zero at most `STEP` away from the start."""
+MIN_WIDTH = 1e-12
 """Width, rad, below which a piece is dropped: both ends are the same kink."""
-NARROWEST = 1e-9
-"""Width of a piece, rad, below which a change on it is a jump: its values are those at the nodes."""
-GOAL = 1e-8
+JUMP_WIDTH = 1e-9
+"""Width, rad, below which a piece is not halved: its values at the nodes count as a jump, without error."""
+MAX_OUTPUT_ERROR = 1e-8
 """Largest error of an output relative to the largest value of its quantity."""
-EXPECTED_ROUGH = 8
+TYPICAL_UNCERTAIN_PIECES = 8
 """Typical number of uncertain pieces that share the error of an integral."""
-MAX_ADDED = 720
-"""Pieces of a turn that halving adds to a design at most."""
+MAX_ADDED_PIECES = 720
+"""Most pieces per turn that halving adds to a design."""
 
 
 class Pieces(NamedTuple):
@@ -52,7 +52,7 @@ class Pieces(NamedTuple):
     start, width : array (designs, P)
         Start and width of each piece, rad; empty ones come last.
     joined : array (designs, P) of bool
-        Whether values are continuous at the start of a piece, from the piece before, or from the last one.
+        True where values are continuous from the piece before; for the first piece, from the last one.
     period : float
     """
 
@@ -86,11 +86,11 @@ class Pieces(NamedTuple):
         width = np.diff(edges)
         widest = width.argmax(axis=1)[:, None]
         inside = np.take_along_axis(edges[:, :-1] + 0.5 * width, widest, axis=1)
-        real = width >= EMPTY_WIDTH
+        real = width >= MIN_WIDTH
         last = np.cumsum(jumping, axis=1)
-        before = np.maximum.accumulate(np.where(real, np.arange(1, width.shape[1] + 1), 0), axis=1)  # ends of pieces
-        before = np.column_stack([np.zeros(len(kinks), dtype=int), before])
-        passed = np.take_along_axis(last - jumping, before, axis=1)  # jumps before the end of the piece before
+        before = np.maximum.accumulate(np.where(real, np.arange(1, width.shape[1] + 1), 0), axis=1)
+        before = np.column_stack([np.zeros(len(kinks), dtype=int), before])  # edge at the end of the last real piece
+        passed = np.take_along_axis(last - jumping, before, axis=1)  # jumps before that edge
         wrapped = last[:, -1:] - passed[:, -1:]
         joined = last[:, :-1] == np.where(before[:, :-1] > 0, passed[:, :-1], -wrapped)
         first = (~real).argsort(axis=1, kind="stable")
@@ -123,14 +123,15 @@ class Pieces(NamedTuple):
         return found, is_rough(output, found, error, lambda rough: size[rough])
 
     def of_peaks(self, values, signs, vector):
-        """Error estimate (designs, P) that each piece adds to the highest values, and to the lowest with sign -1.0.
+        """Error estimate (designs, P) of each piece's peak, in the quantity's unit; 0 where it cannot be the extreme.
 
-        Zero where neither may lie. The magnitude of a vector has corners at zero, but its square has none.
+        `signs` lists 1.0 for the largest value, -1.0 for the smallest. The values of a `vector` are magnitudes; their
+        squares give the series, since a magnitude has a corner at zero.
         """
         values = self._by_node(values)
         values = values * values if vector else values
-        series, error = self._series(values), self._errors(values)
-        samples = np.stack([_at(series, place) for place in PLACES])
+        series, error = self._series_with_jumps(values), self._errors(values)
+        samples = np.stack([_evaluate(series, place) for place in PLACES])
         room = error + STEP**2 / 8.0 * sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
         found = np.zeros(error.shape)
         for sign in signs:
@@ -142,16 +143,17 @@ class Pieces(NamedTuple):
         return found
 
     def of_integrals(self, values):
-        """Error estimate (designs, P) that each piece adds to the mean."""
+        """Error estimate (designs, P) of the mean over the period from each piece, in the unit of the quantity."""
         return self._errors(self._by_node(values)) * self.width / self.period
 
     def _by_node(self, values):
+        """Values (designs, N) as array (nodes, designs, P)."""
         return np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
 
-    def _series(self, values):
-        """`_series` of each piece; on pieces below `NARROWEST` a line from the smallest to the largest value."""
-        series = _series(values)
-        narrow = (self.width > 0.0) & (self.width < NARROWEST)
+    def _series_with_jumps(self, values):
+        """Coefficients (powers, designs, P); a piece narrower than `JUMP_WIDTH` gets a line between its extremes."""
+        series = _coefficients(values)
+        narrow = (self.width > 0.0) & (self.width < JUMP_WIDTH)
         if narrow.any():
             low, high = values.min(axis=0)[narrow], values.max(axis=0)[narrow]
             series[:, narrow] = 0.0
@@ -159,12 +161,12 @@ class Pieces(NamedTuple):
         return series
 
     def _errors(self, values):
-        """Error estimate of the polynomial of each piece (designs, P): missing terms, and gaps to its neighbours.
+        """Error estimate (designs, P) of the polynomial of each piece: the missing terms or the gaps to its neighbours.
 
-        The missing terms go on decreasing as the last ones do. Those count in pairs, one even and one odd: where a kink
-        lies so that one vanishes, the other does not.
+        The missing terms are assumed to decrease as the last four coefficients do. Coefficients are combined in pairs,
+        one even and one odd, since a kink can make one of them vanish, but not both.
         """
-        series = _series(values)
+        series = _coefficients(values)
         even, odd = sum(series[2::2], series[0]), sum(series[3::2], series[1])
         first, last = even - odd, even + odd
         count = np.maximum((self.width > 0.0).sum(axis=1), 1)[:, None] - 1
@@ -172,18 +174,18 @@ class Pieces(NamedTuple):
         gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
-        terms = [_weighted(weights, values) for weights in LAST]
+        terms = [_weighted_sum(weights, values) for weights in LAST_LEGENDRE]
         former, latter = np.hypot(*terms[:2]), np.hypot(*terms[2:])
         with np.errstate(divide="ignore", invalid="ignore"):
-            rest = MAX_REST * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_REST, 1.0)
-        return np.where(self.width < NARROWEST, 0.0, np.maximum(rest, np.maximum(gap, after)))
+            rest = TAIL_FACTOR * latter * np.clip(np.nan_to_num(latter / former, nan=1.0), MIN_DECAY_RATIO, 1.0)
+        return np.where(self.width < JUMP_WIDTH, 0.0, np.maximum(rest, np.maximum(gap, after)))
 
     def _peaks(self, reduction, values, vector):
-        """Number of each design, and the height of its peak."""
-        series = self._series(values * values if vector else values)
+        """Reduction (designs,) of peaks, crank angles in rad for `OVER_THE_ANGLE`, and the height of the peak."""
+        series = self._series_with_jumps(values * values if vector else values)
         heights, angles = [], []
         for sign in signs(reduction):
-            height, piece, place = _highest(sign * series)
+            height, piece, place = _global_maximum(sign * series)
             design = np.arange(len(piece))
             angle = self.start[design, piece] + self.width[design, piece] * (0.5 + 0.5 * place)
             height = sign * height
@@ -195,37 +197,39 @@ class Pieces(NamedTuple):
         return found, found
 
     def _mean(self, output, values, vector):
+        """Mean, rms or amplitude of a harmonic over the period, (designs,)."""
         kind, order = output.reduction, output.order
         if order is not None:
             angle = order * (self.start + self.width * NODES[:, None, None])
-            parts = (self._sum(values * wave(angle)) for wave in (np.cos, np.sin))
+            parts = (self._period_mean(values * wave(angle)) for wave in (np.cos, np.sin))
             return np.hypot(*parts) * (1.0 if order == 0 else 2.0)
         if kind == "rms":
-            return np.sqrt(self._sum(values * values))
-        return self._sum(values if kind == "mean" or vector else _mean_sizes(values))
+            return np.sqrt(self._period_mean(values * values))
+        return self._period_mean(values if kind == "mean" or vector else _mean_magnitudes(values))
 
-    def _sum(self, values):
-        """Mean over the period of values at the nodes, or of one value per piece; empty pieces add nothing."""
-        parts = _weighted(WEIGHTS, values) if len(values) == NODES.size else values[0]
+    def _period_mean(self, values):
+        """Mean over the period, (designs,), of values (nodes, designs, P) or of piece means (1, designs, P)."""
+        parts = _weighted_sum(WEIGHTS, values) if len(values) == NODES.size else values[0]
         return np.cumsum(self.width * parts, axis=1)[:, -1] / self.period
 
     def _swing(self, values):
-        """Range of the integral of values less their mean; J for a torque."""
-        series = _series(values)
-        series[0] -= self._sum(values)[:, None]
+        """Range (designs,) of the integral of values less their mean over the crank angle; J for a torque."""
+        series = _coefficients(values)
+        series[0] -= self._period_mean(values)[:, None]
         inner = _integral(series) * (0.5 * self.width)
-        gained = np.cumsum(_at(inner, 1.0) - _at(inner, -1.0), axis=1)
-        inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _at(inner, -1.0)
-        return _highest(inner)[0] + _highest(-inner)[0]
+        gained = np.cumsum(_evaluate(inner, 1.0) - _evaluate(inner, -1.0), axis=1)
+        inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _evaluate(inner, -1.0)
+        return _global_maximum(inner)[0] + _global_maximum(-inner)[0]
 
 
-def _weighted(weights, values):
+def _weighted_sum(weights, values):
+    """Sum over the nodes of values (nodes, ...) times weights (nodes,)."""
     return sum(weight * row for weight, row in zip(weights, values, strict=True))
 
 
-def _series(values):
-    """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes (nodes, ...)."""
-    return np.stack([_weighted(weights, values) for weights in SERIES])
+def _coefficients(values):
+    """Power coefficients (powers, ...) of each piece in its coordinate -1 to 1, from values (nodes, ...)."""
+    return np.stack([_weighted_sum(weights, values) for weights in SERIES])
 
 
 def _integral(series):
@@ -233,40 +237,42 @@ def _integral(series):
     return np.stack([0.0 * series[0], *(row / power for power, row in enumerate(series, 1))])
 
 
-def _slope(series):
+def _derivative(series):
+    """Coefficients of the derivative by the coordinate of the piece."""
     return [power * row for power, row in enumerate(series)][1:]
 
 
-def _at(series, place):
-    """Values of polynomials, each at its place."""
+def _evaluate(series, place):
+    """Values of polynomials at a coordinate of their piece, one for all or one each."""
     value = series[-1]
     for row in series[-2::-1]:
         value = row + value * place
     return value
 
 
-def _newton(function, slope, place, low, high):
-    """Zero of a polynomial near a place, between `low` and `high`."""
+def _find_zero(function, slope, place, low, high):
+    """Zero of a polynomial with derivative `slope` near a coordinate, within [low, high]."""
     for _ in range(NEWTON_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = place - _at(function, place) / _at(slope, place)
+            step = place - _evaluate(function, place) / _evaluate(slope, place)
         place = np.where(np.isnan(step), place, np.clip(step, low, high))
     return place
 
 
-def _highest(series):
-    """Largest value of the polynomials (terms, designs, pieces) of each design, its piece, and its place there.
+def _global_maximum(series):
+    """Largest value over the pieces of each design, its piece, and its coordinate there, each (designs,).
 
-    Only pieces on which a value may exceed those at `PLACES` are refined.
+    `series` has shape (powers, designs, pieces). Newton's iteration runs only on pieces whose peak may exceed all
+    samples at `PLACES`.
     """
-    samples = np.stack([_at(series, place) for place in PLACES])
+    samples = np.stack([_evaluate(series, place) for place in PLACES])
     top = samples.max(axis=0)
     bend = sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
     design, piece = np.nonzero(top + STEP**2 / 8.0 * bend >= top.max(axis=1, keepdims=True))
     own, first = series[:, design, piece], PLACES[samples[:, design, piece].argmax(axis=0)]
-    slope = _slope(own)
-    place = _newton(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
-    height = _at(own, place)
+    slope = _derivative(own)
+    place = _find_zero(slope, _derivative(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
+    height = _evaluate(own, place)
     place = np.where(height >= top[design, piece], place, first)
     height = np.maximum(height, top[design, piece])
     highest = np.full(len(top), -np.inf)
@@ -280,30 +286,32 @@ def _highest(series):
     return found[0], pieces, found[1]
 
 
-def _mean_sizes(values):
+def _mean_magnitudes(values):
     """Mean magnitude on each piece (1, designs, pieces), also where the sign changes on it."""
-    found, series = np.abs(_weighted(WEIGHTS, values)), _series(values)
-    samples = np.stack([_at(series, place) for place in PLACES])
+    found, series = np.abs(_weighted_sum(WEIGHTS, values)), _coefficients(values)
+    samples = np.stack([_evaluate(series, place) for place in PLACES])
     design, piece = np.nonzero(np.signbit(samples).any(axis=0) & ~np.signbit(samples).all(axis=0))
     own = series[:, design, piece]
-    slope, integral = _slope(own), _integral(own)
+    slope, integral = _derivative(own), _integral(own)
     total = np.zeros(design.size)
     for low in PLACES[:-1]:
         high = low + STEP
-        one, other = _at(own, low), _at(own, high)
+        one, other = _evaluate(own, low), _evaluate(own, high)
         changes = np.signbit(one) != np.signbit(other)
         with np.errstate(divide="ignore", invalid="ignore"):
             line = np.where(changes, low + STEP * one / (one - other), low)
-        zero = np.where(changes, _newton(own, slope, line, low, high), low)
-        total += np.abs(_at(integral, zero) - _at(integral, low)) + np.abs(_at(integral, high) - _at(integral, zero))
+        zero = np.where(changes, _find_zero(own, slope, line, low, high), low)
+        at_low, at_zero, at_high = (_evaluate(integral, place) for place in (low, zero, high))
+        total += np.abs(at_zero - at_low) + np.abs(at_high - at_zero)
     found[design, piece] = 0.5 * total
     return found[None]
 
 
-def refined(pieces, values, outputs, evaluate, goal=GOAL):
-    """Yield parts of the designs: which, their pieces, and values by quantity, halved until the outputs are certain.
+def refined(pieces, values, outputs, evaluate, goal=MAX_OUTPUT_ERROR):
+    """Halve pieces until the outputs are certain; yield designs as they finish.
 
-    A design that would need more than `MAX_ADDED` further pieces is given up.
+    Each yield has the indices of some designs, their `Pieces`, and a dict of quantity to values (designs, P, nodes). A
+    design that needs more than `MAX_ADDED_PIECES` per turn is yielded with the pieces it has.
 
     Parameters
     ----------
@@ -317,7 +325,7 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
         Largest error of an output relative to the largest value of its quantity.
     """
     designs, first = np.arange(len(pieces.start)), (pieces.width > 0.0).sum(axis=1)
-    most = first + MAX_ADDED * round(pieces.period / TURN)
+    most = first + MAX_ADDED_PIECES * round(pieces.period / TURN)
     values = {name: rows.reshape(*pieces.start.shape, NODES.size) for name, rows in values.items()}
     vectors = {output.quantity: vector for output, vector in outputs}
     peaks: dict[str, set[float]] = {name: set() for name in vectors}
@@ -332,8 +340,8 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
                 if peaks[name]:
                     halved |= pieces.of_peaks(values[name], peaks[name], vector) > goal * size
                 if name in integrals:
-                    halved |= pieces.of_integrals(values[name]) > goal / EXPECTED_ROUGH * size
-        halved &= pieces.width >= NARROWEST
+                    halved |= pieces.of_integrals(values[name]) > goal / TYPICAL_UNCERTAIN_PIECES * size
+        halved &= pieces.width >= JUMP_WIDTH
         count = (pieces.width > 0.0).sum(axis=1) + halved.sum(axis=1)
         going = halved.any(axis=1) & (count <= most[designs])
         if not going.all():
@@ -341,11 +349,11 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
         designs, pieces, halved = designs[going], pieces.some(going), halved[going]
         values = {name: rows[going] for name, rows in values.items()}
         if designs.size:
-            pieces, values = _halved(pieces, values, halved, lambda angle, own=designs: evaluate(own, angle))
+            pieces, values = _halve(pieces, values, halved, lambda angle, own=designs: evaluate(own, angle))
 
 
-def _halved(pieces, values, halved, evaluate):
-    """Pieces with those marked in `halved` halved, and values; each design has some. Halves are evaluated."""
+def _halve(pieces, values, halved, evaluate):
+    """Pieces after halving those marked in `halved`, at least one per design, and values; only halves are evaluated."""
     design, piece = np.nonzero(pieces.width > 0.0)
     parts = 1 + halved[design, piece]
     second = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts) == 1

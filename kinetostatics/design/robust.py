@@ -1,7 +1,7 @@
 """Quantiles of an output over the spread of a design's numbers, with exact derivatives.
 
-Each sample is the design with its own deviations, from a scrambled Sobol sequence that is the same for every design.
-The quantile is the mean of ordered samples by Harrell and Davis (1982), smooth in the design.
+Each sample is the design plus deviations of its numbers. These come from one scrambled Sobol sequence, the same for
+every design. The quantile is the weighted mean of the ordered samples (Harrell and Davis, 1982), smooth in the design.
 """
 
 import copy
@@ -31,19 +31,19 @@ MAX_SAMPLES = 2**20
 
 @dataclass(frozen=True)
 class Spread:
-    """Distributions of numbers and the quantile of an output that counts; for `optimise`, `torque_free_cam`.
+    """Deviations of a design's numbers, and the quantile of an output to optimise; for `optimise`, `torque_free_cam`.
 
     Parameters
     ----------
     quantile : float
-        Between 0 and 1: for an output to maximise a low one such as 0.05.
+        Between 0 and 1; a low one, such as 0.05, for an output to maximise.
     spreads : mapping of path to text
         Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
         0 % +- 0.5 %". Only deviations from the median count, so the texts of a case's [tolerances] fit.
     samples : int
-        Of the search; a power of two.
+        Number of samples in the search; a power of two.
     trim : float
-        Share of the design's crank speed within which each machine runs at its best speed.
+        Range of speed adjustment relative to the design's crank speed; each machine runs at its best speed within it.
     seed : int
         Of the scrambled Sobol sequence.
 
@@ -89,7 +89,7 @@ class Spread:
 
 
 def samples_problem(samples):
-    """What is wrong with a number of samples, as a sentence, or None."""
+    """Sentence on an invalid number of samples, or None."""
     whole = isinstance(samples, int) and 1 < samples <= MAX_SAMPLES
     if whole and not samples & (samples - 1):
         return None
@@ -97,14 +97,14 @@ def samples_problem(samples):
 
 
 def spread_problem(name, value):
-    """What is wrong with what must be a `Spread`, or None."""
+    """Sentence on a value that is no `Spread`, or None."""
     if isinstance(value, Spread):
         return None
     return f'{name} must be a Spread, as ks.design.Spread(0.05, {{"slider.mass": ...}}), got {checks.shown(value)}'
 
 
 def deviations(spread, known, count):
-    """Paths whose deviations are relative to their value, and deviations (count,) by path."""
+    """Set of paths with relative deviations, and a dict of path to deviations (count,), relative or in SI."""
     from scipy.stats import qmc
 
     found = spreads.distributions(spread.spreads)
@@ -124,14 +124,14 @@ def deviations(spread, known, count):
 
 
 def harrell_davis_weights(quantile, count):
-    """Weights of the ordered samples in a quantile (Harrell and Davis)."""
+    """Weights (count,) of the ordered samples in a quantile (Harrell and Davis)."""
     from scipy.special import betainc
 
     first, second = (count + 1) * quantile, (count + 1) * (1.0 - quantile)
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES, BLOCK_SIZE = 180, 16
+ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
 GOLDEN_STEPS = 30
@@ -140,27 +140,31 @@ GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 class SampledOutput:
-    """An output of a design over its spread; deviations apply to the scene's own numbers, one by one."""
+    """An output of a design over its spread: each number of the scene gets its own deviation in each sample.
+
+    A call returns the quantile and its derivatives, `outputs` the output of each sample.
+    """
 
     def __init__(self, problem, output, spread, sign, samples=None):
         self.problem, self.spread, self.sign = problem, spread, sign
         scene = scene_of(problem.source)
         checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
         self.count = spread.samples if samples is None else samples
-        self._shares, self._deviations = deviations(spread, scene.units, self.count)
-        self.angle, self.turns = np.linspace(0.0, scene.period, ANGLES, endpoint=False), turns_of(scene)
-        self._derived: Any = DerivedNumbers(problem.source, problem.names) if problem.names else None
-        designed = self._derived.paths if self._derived else ()
+        self._relative_paths, self._deviations = deviations(spread, scene.units, self.count)
+        self.angle, self.turns = np.linspace(0.0, scene.period, ANGLES_PER_SAMPLE, endpoint=False), turns_of(scene)
+        self._design_numbers: Any = DerivedNumbers(problem.source, problem.names) if problem.names else None
+        designed = self._design_numbers.paths if self._design_numbers else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
-        self._own = scene.parameters
-        self._take_output(output)
+        self._nominal = scene.parameters
+        self._set_output(output)
         self.weights = harrell_davis_weights(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
 
-    def _take_output(self, output):
+    def _set_output(self, output):
+        """Compile the program of an output and keep what depends on it."""
         scene = scene_of(self.problem.source)
-        zeros = [path for path in self.paths if self._own[path] == 0.0]
+        zeros = [path for path in self.paths if self._nominal[path] == 0.0]
         self.unit, self.ratio = output.unit, output.ratio
         self.output, self.program = output, compiled(scene, output.quantity, zeros, self.problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
@@ -173,9 +177,9 @@ class SampledOutput:
         """Limits that keep all samples within load tables over travel, if the spread moves sliders."""
         limits = []
         for limit in table_limits(scene_of(self.problem.source)):
-            # of the sample nearest to the limit or farthest beyond it; samples shared
+            # all weight on one ordered sample, nearest to the limit or farthest beyond it; the copy shares deviations
             worst = copy.copy(self)
-            worst._take_output(limit.output)
+            worst._set_output(limit.output)
             worst.weights = np.zeros(self.count)
             worst.weights[-1 if limit.relation == "<=" else 0] = 1.0
             if any(map(worst.program.depends_on, self.spread.spreads)):
@@ -183,48 +187,48 @@ class SampledOutput:
         return tuple(limits)
 
     def __call__(self, values):
-        """The quantile, and its derivatives by the numbers that vary."""
+        """The quantile, and its derivatives (n,) by the numbers that vary."""
         try:
-            found, slopes = self._sampled(values)
+            found, slopes = self._values_and_derivatives(values)
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return np.nan, np.full(values.size, np.nan)
         order = np.argsort(found)
         return self.weights @ found[order], self.weights @ slopes[order]
 
     def outputs(self, values):
-        """The output of each sample."""
-        return self._sampled(values)[0]
+        """The output of each sample, (samples,)."""
+        return self._values_and_derivatives(values)[0]
 
-    def _sampled(self, values):
-        """The output of each sample, and its derivatives (samples, n)."""
-        design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
+    def _values_and_derivatives(self, values):
+        """The output of each sample, (samples,), and its derivatives (samples, n)."""
+        design, changes = self._design_numbers(values) if self._design_numbers else ({}, np.zeros((0, 0)))
         padded, parts = np.zeros((len(self.paths), 1, changes.shape[1])), []
         padded[: len(changes), 0] = changes
-        for start in range(0, self.count, BLOCK_SIZE):
-            numbers, rises = self._numbers(design, slice(start, start + BLOCK_SIZE))
-            parts.append(self._part(numbers, rises[:, :, None] * padded))
+        for start in range(0, self.count, SAMPLES_PER_BLOCK):
+            numbers, rises = self._numbers(design, slice(start, start + SAMPLES_PER_BLOCK))
+            parts.append(self._block_outputs(numbers, rises[:, :, None] * padded))
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
     def _numbers(self, design, part):
-        """Numbers of some samples by path (samples, 1), and their derivatives by the design's own (paths, samples)."""
+        """Numbers (samples, 1) of some samples by path, and their derivatives (paths, samples) by the design's own."""
         numbers, rises = {}, []
         for path in self.paths:
-            value = design.get(path, self._own[path])
+            value = design.get(path, self._nominal[path])
             deviation = self._deviations.get(path, np.zeros(self.count))[part]
-            share = path in self._shares
+            share = path in self._relative_paths
             rises.append(1.0 + deviation if share else np.ones(deviation.size))
             numbers[path] = (value * (1.0 + deviation) if share else value + deviation)[:, None]
         return numbers, np.array(rises)
 
-    def _part(self, numbers, changes):
-        """Output of some samples, with derivatives (samples, n)."""
+    def _block_outputs(self, numbers, changes):
+        """The output of some samples, (samples,), and its derivatives (samples, n)."""
         if self._has_kinks:
-            curves, above = self._on_pieces(numbers, changes), self._above(numbers)
+            curves, above = self._piecewise_curves(numbers, changes), self._reference_outputs(numbers)
         else:
             if self.spread.trim:
-                *pair, above = self._trimmed(numbers, changes)
+                *pair, above = self._best_speed_curves(numbers, changes)
             else:
-                pair, above = self._curves(numbers, changes), self._above(numbers)
+                pair, above = self._curves(numbers, changes), self._reference_outputs(numbers)
             curves = [measures.Curve(values, slopes, self.turns) for values, slopes in zip(*pair, strict=True)]
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
@@ -234,7 +238,7 @@ class SampledOutput:
             found[place], rows[place] = value, row
         return found, rows
 
-    def _on_pieces(self, numbers, changes):
+    def _piecewise_curves(self, numbers, changes):
         """Curves of some samples, each on pieces between its own kinks."""
         output = without_ratio(self.output)
         found: list[Any] = [None] * len(next(iter(numbers.values())))
@@ -243,7 +247,7 @@ class SampledOutput:
             some = {path: values[samples] for path, values in numbers.items()}
             values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
             slopes = np.zeros((len(samples), 0, *shape))
-            if self._derived:
+            if self._design_numbers:
                 values, slopes = self._curves(some, changes[:, samples], pieces.angle)
             for place, sample in enumerate(samples):
                 parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
@@ -251,12 +255,12 @@ class SampledOutput:
         return found
 
     def _curves(self, numbers, changes, angle=None):
-        """Values (samples, N) and derivatives (samples, n, N), at the crank angles of all or of each."""
+        """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""
         quantity, angle = self.output.quantity, self.angle if angle is None else angle
         shape = (*self._vector, len(next(iter(numbers.values()))), angle.shape[-1])
         values, slopes = np.broadcast_to(self.program(angle, numbers)[quantity], shape), np.zeros((0, *shape))
-        if self._derived:
-            found = self.program.derivatives(angle, self._derived.paths, numbers)[quantity]
+        if self._design_numbers:
+            found = self.program.derivatives(angle, self._design_numbers.paths, numbers)[quantity]
             by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
             slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
         if self._vector:
@@ -264,37 +268,38 @@ class SampledOutput:
             return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
         return values, np.moveaxis(slopes, 0, 1)
 
-    def _above(self, numbers):
-        """The reference's output for each sample."""
+    def _reference_outputs(self, numbers):
+        """The reference's output for each sample, (samples,); None unless the output is a ratio."""
         if not self.output.ratio:
             return None
-        reference, plain = self._reference(numbers), without_ratio(self.output)
+        reference, plain = self._reference_scene(numbers), without_ratio(self.output)
         if not has_kinks(unchecked_turn(reference, 1), plain.quantity):
-            return self._reduced(self._of_reference(numbers))
+            return self._reduced(self._reference_curves(numbers))
         found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
         return np.broadcast_to(found, len(next(iter(numbers.values()))))
 
     def _reduced(self, curves):
-        """The output, not its ratio, of curves (samples, N)."""
+        """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
         return without_ratio(self.output).estimated(curves, self.turns)[0]
 
-    def _of_reference(self, numbers):
+    def _reference_curves(self, numbers):
         """Curves of the reference (samples, N), with the deviations of the numbers that it shares."""
-        found = self._reference(numbers).solve(self.angle)
+        found = self._reference_scene(numbers).solve(self.angle)
         return np.broadcast_to(
             values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
         )
 
-    def _reference(self, numbers):
+    def _reference_scene(self, numbers):
+        """The reference with the samples' crank speed and numbers that spread, where it has them too."""
         reference = scene_of(self.problem.reference)
         known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
         return reference.varied({path: numbers[path] for path in known})
 
-    def _trimmed(self, numbers, changes):
-        """Curves at the speed within the trim at which each sample's output is best, and the reference's output."""
+    def _best_speed_curves(self, numbers, changes):
+        """Curves, their derivatives, and the reference's output, at the best speed of each sample within the trim."""
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes) for at in (slow, fast))
-        below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
+        below, above = (self._reference_curves(at) if self.output.ratio else None for at in (slow, fast))
 
         def outputs(share):
             found = self._reduced(_interpolate(low, high, share[:, None]))
@@ -307,8 +312,8 @@ class SampledOutput:
         return _interpolate(low, high, share), _interpolate(low_slopes, high_slopes, share[..., None]), compared
 
     def _at_speed(self, numbers, share):
-        """Numbers of samples at a share of the design's speed."""
-        return numbers | {SPEED: np.full_like(numbers[SPEED], self._own[SPEED] * share)}
+        """Numbers of samples with the crank speed at a multiple of the design's."""
+        return numbers | {SPEED: np.full_like(numbers[SPEED], self._nominal[SPEED] * share)}
 
     def _require_trim(self):
         """Refuse trim for outputs that are not linear in the squared speed; three speeds test it."""
@@ -330,13 +335,13 @@ class SampledOutput:
 
 
 def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
-    """An output of machines as they are made and run.
+    """An output of machines whose numbers deviate from the design's.
 
     Parameters
     ----------
     source, variant, reference
-        As for `optimise`; of a design that was found, its `.scene` and `.reference`. The reference takes those of the
-        numbers that spread that it has too.
+        As for `optimise`; for an optimised design pass its `.scene` and `.reference`. The reference gets the same
+        deviations, where it has the same number.
     output : str
     spread : Spread
     samples : int
@@ -350,7 +355,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     Raises
     ------
     ParameterError
-        What is asked for cannot be read, or names what the machine has not; machines within the spread have no value.
+        An argument is invalid or names a number that the machine lacks; or machines within the spread have no value.
     AssemblyError
         The machine itself does not close all round the turn.
 
@@ -370,7 +375,8 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     item, compared = choose_design(source, variant, reference)
     text = parse_output(output, scene_of(item))
     assembly.require_turn(scene_of(item).mechanism)
-    found = _sampled_scene(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    sampled = _fixed_scene_output(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples)
+    found = sampled.outputs(np.empty(0))
     without = np.count_nonzero(np.isnan(found))
     checks.require(
         "over_spread",
@@ -383,16 +389,16 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
 
 
 def quantile(scene, reference, output, spread, sign):
-    """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
+    """The quantile of a scene's output over a spread; NaN where a machine within it cannot be built."""
     try:
-        sampled = _sampled_scene(scene, reference, output, spread, sign)
+        sampled = _fixed_scene_output(scene, reference, output, spread, sign)
         return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
     except KinetostaticsError:
         return np.nan
 
 
-def _sampled_scene(scene, reference, output, spread, sign, samples=None):
-    """An output of a fixed scene over a spread."""
+def _fixed_scene_output(scene, reference, output, spread, sign, samples=None):
+    """`SampledOutput` of a scene with no number that varies, so it has no derivatives."""
     bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
     return SampledOutput(bare, output, spread, sign, samples)
 

@@ -1,8 +1,8 @@
-"""Derivatives of recorded outputs, as further nodes of the same graph: exact, and compiled like all else.
+"""Exact derivatives of recorded outputs, as further nodes of the same graph, which engines compile with it.
 
-Forward, the slope of every node along one parameter; in reverse, the slope of one output along every node (Griewank and
-Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). Forward costs a sweep for each parameter, in reverse one
-for each output; the shorter way is taken.
+Forward mode gives the derivative of every node by one parameter, reverse mode that of one output by every node
+(Griewank and Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). `gradients` uses the mode with fewer
+sweeps: one per parameter forward, one per output in reverse.
 """
 
 import operator
@@ -35,12 +35,12 @@ def gradients(graph, outputs, parameters):
 def tangents(graph, outputs, slopes):
     """Derivatives of outputs along one direction, a tuple of nodes or numbers.
 
-    `slopes` is a mapping of inputs to their own derivatives along it, nodes or numbers; others have none.
+    `slopes` maps inputs to their own derivatives along it, nodes or numbers; inputs that it lacks have derivative 0.
     """
     slopes = dict(slopes)
     for node in needed(outputs):
         parts = [
-            _times(partial, slopes[argument])
+            _product(partial, slopes[argument])
             for argument, partial in _partials(graph, node, slopes)
             if argument in slopes
         ]
@@ -49,11 +49,11 @@ def tangents(graph, outputs, slopes):
     return tuple(slopes.get(output, 0.0) for output in outputs)
 
 
-def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
+def adjoints(graph, output, wanted, seed=1.0, stop_gradient_slope=0.0, ends=frozenset()):
     """Derivatives of one output by each of the wanted nodes that it depends on: a dict of nodes or numbers.
 
-    They are times `seed`. `held` is the derivative of `arithmetic.stop_gradient`, which is 1 for rounding errors; nodes
-    among `ends` count as independent.
+    They are multiplied by `seed`. `stop_gradient_slope` is the derivative of `arithmetic.stop_gradient`: 0 for
+    sensitivities, 1 for rounding errors. Nodes among `ends` count as independent.
     """
     parts: dict[Node, list] = {output: [seed]}
     found = {}
@@ -62,28 +62,29 @@ def adjoints(graph, output, wanted, seed=1.0, held=0.0, ends=frozenset()):
             whole = found[node] = reduce(operator.add, parts[node])
             if node in ends:
                 continue
-            if node.operation == "held" and held:
-                parts.setdefault(node.arguments[0], []).append(held * whole)
+            if node.operation == "held" and stop_gradient_slope:
+                parts.setdefault(node.arguments[0], []).append(stop_gradient_slope * whole)
             for argument, partial in _partials(graph, node, wanted):
-                parts.setdefault(argument, []).append(_times(partial, whole))
+                parts.setdefault(argument, []).append(_product(partial, whole))
     return found
 
 
-def _times(one, other):
+def _product(one, other):
+    """Product that records a negation for a factor -1.0."""
     if isinstance(one, float) and one == -1.0:
         return -other
     return one * other
 
 
 def _partials(graph, node, wanted):
-    """Pairs of an argument among those wanted, and the derivative of the node by it."""
-    if node.operation not in _RULES:
+    """Pairs of a wanted argument and the derivative of the node by it, a list."""
+    if node.operation not in _PARTIAL_DERIVATIVES:
         return []
-    partials = _RULES[node.operation](graph, node, *node.arguments)
+    partials = _PARTIAL_DERIVATIVES[node.operation](graph, node, *node.arguments)
     return [pair for pair in zip(node.arguments, partials, strict=True) if pair[0] in wanted]
 
 
-_RULES: dict[str, Callable[..., tuple]] = {
+_PARTIAL_DERIVATIVES: dict[str, Callable[..., tuple]] = {
     "+": lambda graph, node, left, right: (1.0, 1.0),
     "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
     "total": lambda graph, node, *parts: (1.0,) * len(parts),
@@ -97,7 +98,8 @@ _RULES: dict[str, Callable[..., tuple]] = {
     "root": lambda graph, node, square, unit: (0.5 / node, 0.0),
     "divisor": lambda graph, node, root, unit: (1.0, 0.0),
 }
-"""By operation: its derivatives by its arguments. Guards against rounding act only where there is no digit left."""
+"""By operation: its derivatives by its arguments. Those by the guards of "root" and "divisor" are 0, since a guard acts
+only where rounding leaves no correct digit."""
 
 
 _FUNCTIONS: dict[str, Any] = BY_DESIGN | {
@@ -111,9 +113,10 @@ _FUNCTIONS: dict[str, Any] = BY_DESIGN | {
 
 
 class Evaluation:
-    """Outputs of a graph on arrays that broadcast, operation by operation: for few calls, which repay no source.
+    """Outputs of a graph on arrays that broadcast, by NumPy operation by operation.
 
-    Each array is let go after its last use, so that the next one finds its memory in the cache.
+    It suits a few calls, where writing and compiling source costs more than it saves. Each array is released after its
+    last use, so the next one reuses memory that is still in the cache.
     """
 
     def __init__(self, outputs):

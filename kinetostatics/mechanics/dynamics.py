@@ -202,7 +202,11 @@ class Dynamics(Motion):
         return self._scalar(reduce(larger, self._friction_list("residuals"), 0.0))
 
     def reaction(self, joint):
-        """Reaction at a joint, (2, ..., N), N."""
+        """Reaction at a joint, (2, ..., N), N.
+
+        Its sign follows from its pair: it acts on the `link` of a `machine.links.Turning` or `Sliding`;
+        `machine.group.Part.outputs` puts that into words, and the kernel `resolve` of the group keeps to it.
+        """
         return self.as_vector(self._look_up("reaction", joint, self.resolved.reactions))
 
     def scalar(self, name):

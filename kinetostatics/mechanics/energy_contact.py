@@ -26,12 +26,18 @@ from .load_values import evaluate_load, slider_push
 
 def reduced_inertia(motion):
     """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
-    return _sum(_inertia(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    return _sum(
+        _reduced_inertia_of_link(motion.placement.links[name], link.body)
+        for name, link in motion.mechanism.links.items()
+    )
 
 
 def reduced_inertia_slope(motion):
     """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-    slopes = (_slope(motion.placement.links[name], link.body) for name, link in motion.mechanism.links.items())
+    slopes = (
+        _reduced_inertia_slope_of_link(motion.placement.links[name], link.body)
+        for name, link in motion.mechanism.links.items()
+    )
     return product(2.0, _sum(slopes))
 
 
@@ -42,21 +48,23 @@ def kinetic_energy(motion):
 
 
 def potential_energy(motion):
-    """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
+    """Potential energy of weight and springs, (..., N), J; that of weight is 0 at the height of O.
 
-    Loads without potential, as process forces and dampers, count nothing.
+    Loads without a potential, such as process forces and dampers, contribute nothing.
     """
     return _sum(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
 
 
 def load_torque(motion):
-    """Torque on the crank that balances weight and loads at their speed, without any inertia, (..., N), N m.
+    """Torque on the crank that balances weight and loads, without inertia, (..., N), N m.
+
+    Dampers and other loads by speed act at the scene's crank speed.
 
     With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
     """
     links = motion.placement.links
     weights = (
-        product(link.body.mass, work(motion.gravity, first_at(links[name], _to_centre(links[name], link.body))))
+        product(link.body.mass, work(motion.gravity, first_at(links[name], _centre_arm(links[name], link.body))))
         for name, link in motion.mechanism.links.items()
     )
     return minus(None, plus(_sum(weights), motion.load_work))
@@ -75,17 +83,20 @@ def _sum(parts):
     return reduce(plus, parts, None)
 
 
-def _to_centre(motion, body):
+def _centre_arm(motion, body):
+    """Vector from the reference joint to the mass centre, m; None where they coincide."""
     return arm(motion.direction, body.along, body.across)
 
 
-def _inertia(motion, body):
-    first = first_at(motion, _to_centre(motion, body))
+def _reduced_inertia_of_link(motion, body):
+    """Reduced inertia of one link, kg m2."""
+    first = first_at(motion, _centre_arm(motion, body))
     return plus(product(body.mass, work(first, first)), product(body.inertia, product(motion.ratio, motion.ratio)))
 
 
-def _slope(motion, body):
-    to_centre = _to_centre(motion, body)
+def _reduced_inertia_slope_of_link(motion, body):
+    """Half the derivative of the reduced inertia of one link by the crank angle, kg m2."""
+    to_centre = _centre_arm(motion, body)
     moving = work(first_at(motion, to_centre), second_at(motion, to_centre))
     return plus(product(body.mass, moving), product(body.inertia, product(motion.ratio, motion.ratio_slope)))
 
@@ -110,7 +121,7 @@ def pressure(dynamics, name):
 
 
 def refusals(solution):
-    """Sentences on rollers that undercut the side of a cam that carries them."""
+    """List of problems, one for each roller that undercuts the side of the cam that carries it."""
     if not solution.kind.answer(_has_contacts):
         return []
     dynamics, found = solution.dynamics, []

@@ -60,7 +60,10 @@ def length(a):
 
 
 def length_with_error(a):
-    """Length of a vector, never zero, and its rounding error; exact, with error None, along an axis."""
+    """Length of a vector and its rounding error; along an axis the length is exact and the error None.
+
+    Elsewhere a negligible offset keeps the length from 0.
+    """
     x, y = map(none_if_zero, a)
     if x is None or y is None:
         return abs(number_or_zero(y if x is None else x)), None

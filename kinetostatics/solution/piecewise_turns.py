@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.kinks import design_kinks
-from ..cycle.pieces import GOAL, Pieces, refined
+from ..cycle.pieces import MAX_OUTPUT_ERROR, Pieces, refined
 from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import KINK_TOLERANCE
@@ -64,7 +64,8 @@ class PiecewiseTurns(NamedTuple):
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
         found, jumps, rest = design_kinks(solution, straight)
         found = np.broadcast_to(found, (count, found.shape[1]))
-        return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
+        pieces = Pieces.of(found, solution.period, angles, order, jumps)
+        return cls(scene, count, pieces, max(MAX_OUTPUT_ERROR, rest), engine)
 
     def values(self, names, designs, angle):
         """Values (D, N) by quantity, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""

@@ -3,6 +3,8 @@
 `needs` runs every combination of simplifications, counts the operations at each crank angle, and names the cheapest
 combination within the tolerance. Errors may cancel, so a simplification that alone changes too much is still tried
 beside others, unless there are too many models.
+
+`simplifications` makes each of them, such as "no spring", from a solution.
 """
 
 import itertools

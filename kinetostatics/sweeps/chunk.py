@@ -1,9 +1,9 @@
 """The computation of a chunk of designs: one batch, reduced to a row of numbers for each design.
 
-Designs that cannot be built or solved are separated, each with its reason; the others stay one batch. The loop over
-designs and crank angles runs block by block, so that values over the turn stay in the cache. `dry_run` computes one
-design before the sweep to choose engine and crank angles. Designs whose outputs the crank angles do not resolve are
-computed again with twice as many.
+`_compute_designs` separates designs that cannot be built or solved, each with its reason; the others stay one batch.
+The loop over designs and crank angles runs block by block, so that values over the turn stay in the cache. `dry_run`
+computes one design before the sweep to choose engine and crank angles. Designs whose outputs the crank angles do not
+resolve are computed again with twice as many.
 """
 
 import math

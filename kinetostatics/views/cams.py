@@ -10,7 +10,7 @@ from ..numbers import checks
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
 
 POINTS_PER_TURN = 1440
-"""Crank angles of drawn curves."""
+"""Crank angles of a drawn curve over one turn."""
 ANGLES_RULE = {"angles": checks.Number("deg", table=True)}
 RADIUS_RULE = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
 LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
@@ -99,7 +99,7 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
         limit = (1.0 if side == "disk" else -1.0) / radius
         ax.axhline(limit, label=f"undercut by the roller, {side}", **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _label_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
+    return _label_axes(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
 
 def cam_pressure_angle(cams, largest=None, ax=None):
@@ -126,7 +126,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     for limit in () if largest is None else (-largest, largest):
         ax.axhline(np.degrees(limit), **LIMIT_STYLE)
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _label_turn(ax, "pressure angle [deg]", len(named) > 1)
+    return _label_axes(ax, "pressure angle [deg]", len(named) > 1)
 
 
 def contact_pressure(contacts, ax=None):
@@ -135,7 +135,7 @@ def contact_pressure(contacts, ax=None):
     Parameters
     ----------
     contacts : Contact or mapping of label to Contact
-        As of ``ks.design.contact``.
+        From ``ks.design.contact``.
     ax : Axes, optional
 
     Examples
@@ -159,7 +159,7 @@ def contact_pressure(contacts, ax=None):
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
     ax.set_ylim(bottom=0.0)
-    return _label_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
+    return _label_axes(ax, "Hertz pressure [MPa]", len(named) > 1)
 
 
 def law_motion(laws, ax=None):
@@ -168,7 +168,7 @@ def law_motion(laws, ax=None):
     Parameters
     ----------
     laws : Law or mapping of label to Law
-        Of the whole turn, as of ``ks.laws``.
+        Each over the whole turn, for example from ``ks.laws``.
     ax : sequence of 4 Axes, optional
 
     Returns
@@ -197,20 +197,21 @@ def law_motion(laws, ax=None):
     texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
     for part, text in zip(four, texts, strict=True):
         part.set_ylabel(text)
-    _label_turn(four[-1], texts[-1], False)
+    _label_axes(four[-1], texts[-1], False)
     if len(named) > 1:
         four[0].legend(frameon=False, fontsize="small")
     return four
 
 
 def draw_each_over_turn(ax, named, value, points=POINTS_PER_TURN):
-    """Draw a value of each item over the crank angle; ``value(item, angle)`` gives it at the angles of a turn."""
+    """Draw ``value(item, angle)`` of each item over a turn of the crank; `angle` is an array, rad."""
     angle = np.linspace(0.0, 2 * np.pi, points + 1)
     for name, item, style in with_line_styles(named):
         ax.plot(np.degrees(angle), value(item, angle), linestyle=style, label=name)
 
 
-def _label_turn(ax, text, legend):
+def _label_axes(ax, text, legend):
+    """Label the crank angle in degrees and the value `text`, and draw a legend if asked for; returns the Axes."""
     ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:
@@ -227,13 +228,14 @@ def _items_by_label(items, owner, problem):
 
 
 def _cam_problem(cam):
-    """Problem with an object that must be a cam, or None."""
+    """Sentence on an object that is no cam, or None."""
     if not isinstance(cam, type) and all(hasattr(cam, name) for name in ("radius", "profile", "curvature_radius")):
         return None
     return f"must be one of ks.cams, got {checks.shown(cam)}"
 
 
 def _contact_problem(found):
+    """Sentence on an object that is no `Contact`, or None."""
     if hasattr(found, "largest_pressure"):
         return None
     return f"must be a Contact, as of ks.design.contact, got {checks.shown(found)}"

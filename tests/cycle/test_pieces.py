@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cycle.kinks import design_kinks, has_kinks, sign_changes
-from kinetostatics.cycle.pieces import GOAL, MAX_ADDED, Pieces, refined
+from kinetostatics.cycle.pieces import MAX_ADDED_PIECES, MAX_OUTPUT_ERROR, Pieces, refined
 from kinetostatics.cycle.reductions import parsed
 from support.every import every
 
@@ -138,7 +138,7 @@ def test_jump_between_bend_and_edge_is_no_peak():
 PLACE = np.array([[1.2345], [3.2109], [5.0]])
 
 
-def run(text, function, count=3, vector=False, goal=GOAL, angles=192):
+def run(text, function, count=3, vector=False, goal=MAX_OUTPUT_ERROR, angles=192):
     """Numbers of designs, whether they are rough, and how many pieces each has."""
     output = parsed(text)
     pieces = Pieces.of(np.full((count, 1), np.nan), TURN, angles, output.order or 0)
@@ -196,7 +196,7 @@ def test_where_everything_bends_it_is_said():
     _, peak, _ = run("largest O", rough_one)
     assert rough.all()
     assert peak.all()
-    assert pieces.max() <= 24 + MAX_ADDED
+    assert pieces.max() <= 24 + MAX_ADDED_PIECES
 
 
 # Where loads and friction of designs bend

@@ -146,7 +146,7 @@ class CamRoller(checks.Checked, Group):
 
     @cached_property
     def tightest(self):
-        """Smallest radius of curvature of the pitch curve, on a grid, m; None if it is not plain numbers."""
+        """Smallest radius of curvature of the pitch curve, on a grid, m; None for recorded numbers or enclosures."""
         with np.errstate(divide="ignore"):
             curved = abs(1.0 / polar_curvature(*self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
@@ -172,7 +172,7 @@ class CamRoller(checks.Checked, Group):
             polar, orbit = (mean + farther, *derivatives), Orbit(mean, farther)
         else:
             polar = self.cam.polar(placement.angle, placement.ray)
-        self._set(placement, place(placement.ray, *polar), polar)
+        self._enter(placement, place(placement.ray, *polar), polar)
         placement.courses["A"] = Course(orbit=orbit, departure=departure(placement.ray, *polar[1:]))
 
     def closure(self, placement):
@@ -191,12 +191,13 @@ class CamRoller(checks.Checked, Group):
         return Resolved({}, forces, {"crank": on_crank})
 
     def follow(self, placement, joints):
-        """Place the block at joints computed in another way."""
+        """Place the block at a joint A that another method computed."""
         joint = joints["A"]
         radius, slope, outward = (dot(vector_or_zero(part), placement.ray) for part in joint)
-        self._set(placement, joint, (radius, slope, outward + radius))
+        self._enter(placement, joint, (radius, slope, outward + radius))
 
-    def _set(self, placement, joint, polar):
+    def _enter(self, placement, joint, polar):
+        """Add joint A, the block, and `polar` = r, r', r'' to a placement."""
         placement.joints["A"] = joint
         placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
         placement.details["cam"] = polar

@@ -1,5 +1,8 @@
 """The branch of a group on a crank: through change points, close to a limit position, or by the plain kernel.
 
+The user chooses the assembly mode by the field `assembly` of a group, +1, -1, "open" or "crossed". `Branch.side` is its
+sign, which the kernels take.
+
 `Branch` keeps two facts of the structure: `passage`, the kind of change points that the branch passes, and `is_close`,
 whether the group comes so close to a limit position that `near_dead_centre` saves digits.
 """

@@ -60,11 +60,11 @@ def place(joint, guide, slot_angle):
 
 
 def resolve(motion, guide, block_load, slider_load, push):
-    """Forces on the block at its joint and of the ground on the slider; slot's and guide's numbers (kernel).
+    """Reactions, vectors at `on` and of the guide; scalars, force and moment of slot and of guide (kernel).
 
-    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
-    the demands of further groups. The slider's balance along the guide gives the slot force, which stands across the
-    slot; the block hands its couple to the slot, the slider both to the guide.
+    `push` is the applied force along the guide. Each load is the wrench of all other loads about the link's reference
+    joint, with the demands of groups further out. Equilibrium of the slider along the guide gives the slot force, which
+    acts across the slot. The slot takes the couple on the block, the guide those on block and slider.
     """
     cosine, sine = motion.slot
     along, across = rotate_back(vector_or_zero(slider_load.force), guide.direction)
@@ -127,8 +127,8 @@ class YokeGroup(checks.Checked, Group):
     block: Link = Link()
     label: str = ""
 
-    def _slot_across(self):
-        """Yield the problem of a slot parallel to the guide."""
+    def _parallel_slot_problem(self):
+        """Yield the problem of designs whose slot is parallel to the guide."""
         if checks.has_known_values(self.slot_angle) and np.any(
             parallel := np.abs(np.sin(self.slot_angle)) < MIN_SLOT_SINE
         ):
@@ -144,7 +144,7 @@ class YokeGroup(checks.Checked, Group):
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
         "yoke group",
-        _slot_across,
+        _parallel_slot_problem,
         guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
         slot_angle=checks.Number("rad"),
         **rules_of_parts(("slider", "block"), "on", "pin"),
@@ -193,7 +193,7 @@ class YokeGroup(checks.Checked, Group):
         return f"the slot of the {self.called('slider')} must not be parallel to its guide"
 
     def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
+        """Coordinate of the pin along the guide less a free position, m, without first rounding the coordinate."""
         motion = self.placed(placement)
         along = rotate_back(placement.joints[self.on].position, self.guide.line.direction)[0]
         return (along - free_position) - motion.slot[0] / motion.slot[1] * motion.rise

@@ -1,7 +1,7 @@
-"""The independent path of the certified reference: mpmath with formulas of its own, all forces from one linear system.
+"""Independent check of the certified reference: mpmath numbers, own formulas, all forces from one linear system.
 
-It knows only joints and bodies of the mechanism: positions by angles, velocities and accelerations as difference
-quotients of positions, all forces together from the Newton-Euler equations. A plane vector is a complex number.
+It reads only joints and bodies of the mechanism. Positions follow from angles, velocities and accelerations from
+difference quotients of positions, all forces from the Newton-Euler equations. A plane vector is a complex number.
 """
 
 from collections.abc import Iterable
@@ -32,7 +32,10 @@ from .enclosures import on_arb, require_library, require_one_design
 
 
 class Posture:
-    """Positions of joints and links at a crank angle."""
+    """Positions of joints and directions of links at a crank angle, in mpmath numbers of one design.
+
+    Attributes are the module `mp`, the `mechanism`, and the `index` of the crank angle in the solution.
+    """
 
     mp: Any
     mechanism: Any
@@ -46,14 +49,14 @@ class Posture:
         return self.mp.mpc(*map(self.number, pair))
 
     def along(self, guide):
-        """Unit vector of a guide, by its exact angle or by the direction through two points."""
+        """Unit vector of a guide, from its angle or, for a guide through two points, from their difference."""
         if guide.exact is None:
             return self.mp.expj(self.number(guide.angle))
         direction = self.vector(guide.exact)
         return direction / abs(direction)
 
     def table(self, angle):
-        """Joints, mass centres and directions of links at a crank angle."""
+        """Positions at a crank angle: complex by kind and name, ("joint", "centre" or "direction", name), m or 1."""
         ray = self.mp.expj(angle)
         self._angle = angle
         joints, links = {"O": self.mp.mpc(0)}, {"crank": ("O", ray)}
@@ -170,7 +173,7 @@ class Posture:
         if isinstance(cam, Circle):  # sine rule in the triangle of O, centre and A
             centre, radius = self.vector(cam.centre), self.number(cam.pitch_radius)
             return centre + radius * mp.expj(angle - mp.asin(cross(mp.expj(angle), centre) / radius))
-        if isinstance(cam, CosineLaw):  # coupler of critical length: signed root
+        if isinstance(cam, CosineLaw):  # its coupler length lets the two branches of the root join smoothly
             a, b = self.number(cam.amplitude), self.number(cam.mean)
             turning = mp.acos((mp.sqrt(b * b + 8 * a * a) - b) / (4 * a))
             length = (b + a * mp.cos(turning)) * mp.sin(turning)
@@ -195,7 +198,12 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     """Components of a quantity at some of a solution's crank angles, a tuple of arrays (n,) of `mpmath.mpf`.
 
     `digits` are those of the result; the working precision is far higher, as derivatives are difference quotients.
-    `NotGivenError`: no independent formulas for a group or cam, no such quantity, or friction that does not settle.
+
+    Raises
+    ------
+    NotGivenError
+        A group or cam has no independent formulas, the mechanism has no such quantity, or the iteration of friction
+        does not converge.
     """
     mp = require_library("mpmath").mp
     require_one_design(solution)
@@ -206,7 +214,7 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
 
 
 def working_digits(digits):
-    """Working precision for second differences with a step of 10^-(2 digits), which lose 4 digits for each digit."""
+    """Working digits: second differences with step 10^-(2 digits) lose 4 digits for each digit of the result."""
     return 6 * digits + 60
 
 
@@ -230,7 +238,7 @@ class Machine(Posture, LoadForces):
         self.acceleration = {key: (ahead[key] - 2 * here[key] + back[key]) / h**2 for key in here}
 
     def components(self, quantity):
-        """Components of a quantity, by name."""
+        """Components of a quantity by name: (x, y) of a vector, a tuple of one number otherwise."""
         tables, here = (self.position, self.velocity, self.acceleration), self.position
         found = {
             slider + ending: dot(here["direction", slider], table["joint", self.mechanism.references[slider]])
@@ -251,7 +259,7 @@ class Machine(Posture, LoadForces):
     # Forces, from the equations of all bodies at once
 
     def forces(self):
-        """Complex reactions, and scalar forces and moments, by name."""
+        """Forces by name: complex reactions, N, and scalar forces, N, and moments, N m."""
         mp, links, unknowns = self.mp, self.mechanism.links, self.unknowns()
         matrix = mp.matrix(3 * len(links), len(unknowns))
         for column, (_, force, moment, at, on, by) in enumerate(unknowns):
@@ -292,7 +300,10 @@ class Machine(Posture, LoadForces):
         }
 
     def enter(self, matrix, column, effects):
-        """Add effects to the three equations of their links, with moments about the mass centre; none to the frame."""
+        """Add effects, (link, force, point, couple), to the three equations of their links; the frame has none.
+
+        The third equation is that of moments about the mass centre.
+        """
         rows = {name: 3 * place for place, name in enumerate(self.mechanism.links)}
         for link, force, at, couple in effects:
             if link in rows:
@@ -302,7 +313,7 @@ class Machine(Posture, LoadForces):
                 matrix[row + 2, column] += couple + cross(at - self.position["centre", link], self.mp.mpc(force))
 
     def unknowns(self):
-        """Unit wrenches of the unknowns: name, force, moment, point, link acted on, acting link."""
+        """Unknowns, a list: name, unit force, unit moment, point, the link acted on, the acting link."""
         none = self.mp.mpc(0)
         at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
         found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", FRAME)]
@@ -326,7 +337,7 @@ class Machine(Posture, LoadForces):
         return axis, 0, at - dot(axis, way) * left(axis)
 
     def value(self, item):
-        """Force or moment of a load, N or N m; that of a table or the user's own code by the function itself."""
+        """Force or moment of a load, N or N m; tables and users' functions are evaluated on arb numbers."""
         if has_no_user_code(item):
             return self.number(item.value_now)
         flint = require_library("flint")
