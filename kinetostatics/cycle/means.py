@@ -15,12 +15,6 @@ from .extremes import extrema, warning
 from .piecewise import Pieces
 from .turn import MAX_CONDITION, require_single
 
-_HALF = np.array([0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363]) / 2
-NODES = 0.5 + np.concatenate([-_HALF[::-1], _HALF])
-"""Gauss points, relative to a panel (Abramowitz and Stegun, table 25.4)."""
-_HALF = np.array([0.362683783378362, 0.31370664587788727, 0.22238103445337448, 0.10122853629037626]) / 2
-WEIGHTS = np.concatenate([_HALF[::-1], _HALF])
-"""Their weights, right to the last digit: those of `numpy.polynomial` are off by up to 72 `UNIT_ROUNDOFF`."""
 SPLIT_TOLERANCE = 1e-14
 """Error of the integral over a piece, relative to the whole and divided by the pieces, at which it is resolved."""
 WARNING_ERROR = 1e-9
@@ -71,7 +65,7 @@ class MeanErrors(NamedTuple):
     Attributes
     ----------
     rounding : float
-        Proven bound on the rounding error: distance from the same sum, of the same nodes and panels, in exact
+        Proven bound on the rounding error: distance from the same sum, of the same points and pieces, in exact
         arithmetic.
     quadrature : float
         Estimate of the distance of that sum from the integral mean.

@@ -83,6 +83,8 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
         after = stop + (pieces.edges[later[0]] - stop) % turn.period
         left = limits[(limits >= before - ANGLE_TOLERANCE) & (limits <= start + ANGLE_TOLERANCE)][-1:]
         right = limits[(limits <= after + ANGLE_TOLERANCE) & (limits >= stop - ANGLE_TOLERANCE)][:1]
+        if left.size and np.array_equal(left, right):  # nothing but rounding beside a limit position
+            continue
         own = np.isin(owner, run)
         here = start + np.mod(angle[own] - start, turn.period)
         inside = (here > start + ANGLE_TOLERANCE) & (here < stop - ANGLE_TOLERANCE)

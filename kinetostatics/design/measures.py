@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.means import NODES, WEIGHTS
 from ..cycle.peaks import REACH, THROUGH
-from ..cycle.pieces import NEWTON_STEPS, PLACES, SERIES
+from ..cycle.pieces import NEWTON_STEPS, NODES, PLACES, SERIES, WEIGHTS
 from ..cycle.reductions import gained
 
 SECTORS = 72

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import has_kinks
-from ..cycle.means import NODES
+from ..cycle.pieces import NODES
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_scene

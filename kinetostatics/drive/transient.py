@@ -138,15 +138,12 @@ def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=
 
 def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """Driven machine, flywheel, crank angle and speed at the start, all checked."""
-    found = checks.single_numbers(
-        owner,
-        from_angle=(from_angle, "rad", {}),
-        from_speed=(from_speed, "rad/s", {}),
-        flywheel=(flywheel, "kg*m**2", {"low": 0.0}),
-    )
-    angle, speed, inertia = found.values()
-    too_far = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
-    checks.require(owner, too_far if abs(angle) > MAX_ANGLE else None)
+    angle, wrong = checks.single_number("from_angle", from_angle, "rad")
+    if not wrong and abs(angle) > MAX_ANGLE:
+        wrong = f"from_angle must be at most {MAX_ANGLE:g} rad in size, got {angle:g}; take whole turns off"
+    speed, wrong_speed = checks.single_number("from_speed", from_speed, "rad/s")
+    inertia, wrong_inertia = checks.single_number("flywheel", flywheel, "kg*m**2", low=0.0)
+    checks.require(owner, wrong, wrong_speed, wrong_inertia)
     for hint in plausibility.single_angle_hints(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
     driven = DrivenMachine(owner, scene, motor, inertia, engine)

@@ -161,7 +161,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     Parameters
     ----------
     structure : tuple
-        Structure of a mechanism, crank speed, crank acceleration and loads, see `parameter_tree.taken_apart`.
+        Structure of a mechanism, crank speed, crank acceleration and loads, see `parameter_tree.flatten`.
     quantities : sequence of str or None
         Names, see `quantities.components`; None: closure and all results of the groups.
     sizes : bool

@@ -125,6 +125,9 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         else 'no spreads are given, nor has the case file any for this variant, in "tolerances"'
         if is_case(case)
         else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
+        None
+        if isinstance(spreads, Mapping | None)
+        else f"spreads must be a dict of parameter to text or quantities, got {checks.shown(spreads)}",
         None if power else f"count must be a power of two, got {count!r}",
         None if folder is None else folder_problem(folder),
     )

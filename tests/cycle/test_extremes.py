@@ -85,6 +85,18 @@ def test_extremes_are_in_order_of_angle_and_alternate():
     assert np.all(np.diff(found.value)[:-1] * np.diff(found.value)[1:] < 0)
 
 
+@every("lengths", [(0.1, 0.4, 0.4, 0.1), (0.1, 0.4, 0.1, 0.4)])
+def test_reactions_without_bound_are_maxima(lengths):
+    """At the change points that a deltoid and a parallelogram pass."""
+    crank, coupler, rocker, ground = lengths
+    links = {"coupler": ks.Link(3.0, 0.2, 0.05), "rocker": ks.Link(2.0, 0.1, 0.05)}
+    mechanism = ks.four_bar(crank, coupler, rocker, rocker_pivot=(ground, 0.0), assembly="open", **links)
+    with pytest.warns(ks.ConditionWarning, match="grows without bound"):
+        found = ks.extremes(ks.Scene(mechanism, 20.0, loads=[ks.Gravity()]).solve(8), "A")
+    assert np.isinf(found.value).sum() == 2
+    assert_array_equal(found.maximum, [True, False] * 3)
+
+
 def test_extremes_ignore_the_solved_angles():
     few, many = (ks.extremes(Machine("plain").solve(angle), "balancing_torque") for angle in (0.0, ANGLES))
     assert_array_equal(few.angle, many.angle)

@@ -160,7 +160,10 @@ CALLS = {
     "angle in words": (lambda: ks.linkage.chain_unit_angle("up"), "angle must be a number"),
     "precision of none": (lambda: ks.precision.case_study(None, "out"), "case must be a Case"),
     "figures of none": (lambda: draw_case(None, "out"), "case must be a Case"),
-    "spreads in a list": (lambda: ks.tolerances(SAW, "rms O", ["a"]), "spreads must be a dict"),
+    "spreads in a list": (
+        lambda: ks.tolerances(SAW, "rms O", ["a"]),
+        "tolerances: spreads must be a dict of parameter",
+    ),
 }
 
 

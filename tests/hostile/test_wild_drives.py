@@ -281,6 +281,11 @@ OTHERS = {
         ks.ParameterError,
         r"from_angle must be at most 1e\+06 rad in size",
     ),
+    "coast from an angle without digits and a speed in words": (
+        lambda: coast(scene(), 1.0, 1e15, "fast", 0.1),
+        ks.ParameterError,
+        r"from_angle must be at most 1e\+06 rad in size.*from_speed must be a number",
+    ),
     "a negative flywheel later": (
         lambda: steady(scene(), kloss(), 1.0).with_flywheel(-1.0),
         ks.ParameterError,

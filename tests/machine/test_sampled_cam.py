@@ -56,10 +56,21 @@ def test_sampled_cam_drives_like_its_circle():
     assert_equal({name: sampled[name] for name in names}, {name: exact[name] for name in names}, tolerance=1e-9)
 
 
-def test_too_few_points_for_harmonics_warn():
+@pytest.mark.parametrize("make", [ks.cams.Sampled, ks.laws.table])
+@pytest.mark.parametrize("noise", [None, 0.1])
+def test_too_few_points_for_harmonics_warn(make, noise):
     angle = 2 * np.pi * np.arange(12) / 12
-    with pytest.warns(UserWarning, match="12 points are too coarse or too noisy: r'' is uncertain by up to"):
-        ks.cams.Sampled(angle, 0.3 + 0.05 * np.cos(4 * angle))
+    with pytest.warns(UserWarning, match="points are too coarse|the noise stated") as caught:
+        make(angle, 0.3 + 0.05 * np.cos(4 * angle), noise)
+    assert "12 points are too coarse or too noisy" in str(caught[-1].message)
+    assert len({(item.filename, item.lineno) for item in caught}) == 1  # the caller's line
+    assert caught[-1].filename == __file__
+
+
+def test_radii_of_a_table_are_its_samples():
+    angle = 2 * np.pi * np.arange(360) / 360
+    cam = ks.cams.Sampled(angle, 0.3 + 0.01 * np.cos(angle))
+    assert cam.samples is cam.values
 
 
 # What a table's own noise does to the forces

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
-from kinetostatics.cycle.means import NODES, WEIGHTS
+from kinetostatics.cycle.pieces import NODES, WEIGHTS
 from kinetostatics.machine.loads import value_of
 from kinetostatics.mechanics.quantities import component_sizes
 from support.case_files import shipped

@@ -104,6 +104,11 @@ class Sampled(TurnTable, Cam):
         return cls(angle, radius, noise)
 
     @property
+    def samples(self):
+        """Radii of the table, m: its `values`."""
+        return self.values
+
+    @property
     def lengths(self):
         """Length that defines the pitch curve, its largest radius, m."""
         return (self.values.max(),)

@@ -71,7 +71,8 @@ class TurnTable:
                 f"{angle.size} points are too coarse or too noisy: {self.SECOND} is uncertain by up to "
                 f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
                 f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, "
-                f"write more digits{remedy}"
+                f"write more digits{remedy}",
+                stacklevel=4,
             )
 
     def _test_noise(self):
@@ -87,11 +88,12 @@ class TurnTable:
             self._warn(
                 f"the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the {scatter:.3g} m by which "
                 f"the {self.VALUE} values scatter; "
-                + ("what is no noise is smoothed away too" if more else "noise is left in the curve")
+                + ("what is no noise is smoothed away too" if more else "noise is left in the curve"),
+                stacklevel=5,
             )
 
-    def _warn(self, text):
-        warnings.warn(f"{self.OWNER}: {text}", stacklevel=5)
+    def _warn(self, text, stacklevel):
+        warnings.warn(f"{self.OWNER}: {text}", stacklevel=stacklevel)
 
     @cached_property
     def splines(self):
