@@ -259,18 +259,24 @@ def _resolved(turn, quantity, good, floor, scale):
             return np.full(len(pieces.half), floor[0])
         return np.interp(pieces.checked, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
 
+    def steep(pieces, values):
+        """What the rounding of crank angles makes of steep values, as on the flank of a step."""
+        rise = np.nan_to_num(np.ptp(values[..., 1:-1], axis=-1)).max(axis=0)
+        return rise / (2.0 * pieces.half[:, 0]) * np.spacing(turn.period)
+
     def unresolved(pieces, errors, values):
         finite = np.isfinite(values[0, :, 1:-1])
         open_part = finite.any(axis=1) & ~finite.all(axis=1) & (2.0 * pieces.half[:, 0] > MIN_OPEN_WIDTH)
         with np.errstate(invalid="ignore"):
-            return (errors > TAIL_SHARE * scale * rounding(pieces)).any(axis=0) | open_part
+            floors = TAIL_SHARE * scale * rounding(pieces) + steep(pieces, values)
+            return (errors > floors).any(axis=0) | open_part
 
     def evaluate(angle):
         return turn.evaluate(function, angle.ravel()).reshape(-1, *angle.shape)
 
     first = np.where(good, function(turn.at), np.nan)[:, turn.points]
     pieces, known, rough = turn.pieces.resolved(first, evaluate, unresolved)
-    return pieces, known, rough, rounding(pieces)
+    return pieces, known, rough, rounding(pieces) + 2.0 * steep(pieces, known) / scale
 
 
 def _require_repeating(turn, function, size):
