@@ -16,7 +16,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
-from .turn import require_single
+from .turn import MAX_WIDTH, require_single
 from .turning_points import extrema_of, paths, turning_points
 
 PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
@@ -27,6 +27,10 @@ MAX_ORDINARY_CONDITION = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
 TAIL_SHARE = 0.2
 """Size of the last coefficients of a series, relative to the rounding of the quantity, that is rounding."""
+FUNCTION_STEP = np.radians(0.25)
+"""Crank angle, rad, between values of a function of the user's that are compared with its series."""
+MISSED = 1e-9
+"""Their difference, relative to the largest value, that counts: between its points a piece has missed a pulse."""
 MIN_OPEN_WIDTH = 0.005
 """Width of a piece, rad, that is no longer halved where only a part of its values is finite."""
 SHOWN = ("smallest", "smallest at [deg]", "largest", "largest at [deg]")
@@ -110,8 +114,8 @@ def extremes(solution, quantity):
 
     The turn is split at the kinks of loads, friction and laws of cams, and the quantity is a Chebyshev series on each
     piece, halved until the series is exact to rounding; the zeros of its slope are evaluated by the mechanism itself.
-    Load functions that declare no kinks are evaluated every twentieth of a degree at first. At a jump the extrema are
-    the values on its two sides.
+    Load functions that declare no kinks are evaluated every twentieth of a degree at first, a `quantity` that is a
+    function every quarter of a degree. At a jump the extrema are the values on its two sides.
 
     Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
     each side replace them, also at the ends of gaps.
@@ -208,7 +212,7 @@ def largest_of(found):
 
 def _extrema(solution, turn, quantity):
     def function(at):
-        return values(at, quantity)
+        return np.asarray(values(at, quantity))
 
     is_function = callable(quantity)
     position, own = unit_of(solution, quantity) == "m", None if is_function else solution
@@ -225,7 +229,7 @@ def _extrema(solution, turn, quantity):
             _require_repeating(turn, function, float(np.max(np.abs(samples), initial=0.0)))
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _size_and_rounding(turn, quantity, samples, good, position)
-        if not turn.limits.size and np.ptp(samples) <= floor[0]:
+        if not is_function and not turn.limits.size and np.ptp(samples) <= floor[0]:
             return _constant(name, float(np.max(samples)), left_out, own)
         root_of_force = not is_function and of_scene(solution)[quantity].kind == "contact"
         scale = 2.0 * size if root_of_force else 1.0
@@ -259,18 +263,36 @@ def _resolved(turn, quantity, good, floor, scale):
             return np.full(len(pieces.half), floor[0])
         return np.interp(pieces.checked, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
 
+    def steep(pieces, values):
+        """What the rounding of crank angles makes of steep values, as on the flank of a step."""
+        rise = np.nan_to_num(np.ptp(values[..., 1:-1], axis=-1)).max(axis=0)
+        return rise / (2.0 * pieces.half[:, 0]) * np.spacing(turn.period)
+
     def unresolved(pieces, errors, values):
         finite = np.isfinite(values[0, :, 1:-1])
         open_part = finite.any(axis=1) & ~finite.all(axis=1) & (2.0 * pieces.half[:, 0] > MIN_OPEN_WIDTH)
         with np.errstate(invalid="ignore"):
-            return (errors > TAIL_SHARE * scale * rounding(pieces)).any(axis=0) | open_part
+            floors = TAIL_SHARE * scale * rounding(pieces) + steep(pieces, values)
+            return (errors > floors).any(axis=0) | open_part | (missed(pieces, values) if callable(quantity) else False)
+
+    def missed(pieces, values):
+        """Whether the function differs from its series between the points of a piece."""
+        asked = 2.0 * pieces.half[:, 0] > FUNCTION_STEP * pieces.count
+        asked &= np.isfinite(values[0, :, 1:-1]).all(axis=1)
+        if asked.any():
+            places = np.linspace(-1.0, 1.0, 2 + int(MAX_WIDTH / FUNCTION_STEP))[1:-1]
+            middle = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[asked]
+            angle = middle[:, None] + pieces.half[asked] * places
+            misfit = np.abs(evaluate(angle)[0] - pieces.evaluate(pieces.series(values[0, :, 1:-1]), angle))
+            asked[asked] = ~(misfit <= MISSED * np.nanmax(np.abs(values))).all(axis=1)
+        return asked
 
     def evaluate(angle):
         return turn.evaluate(function, angle.ravel()).reshape(-1, *angle.shape)
 
     first = np.where(good, function(turn.at), np.nan)[:, turn.points]
     pieces, known, rough = turn.pieces.resolved(first, evaluate, unresolved)
-    return pieces, known, rough, rounding(pieces)
+    return pieces, known, rough, rounding(pieces) + 2.0 * steep(pieces, known) / scale
 
 
 def _require_repeating(turn, function, size):

@@ -117,10 +117,11 @@ def _rough_candidates(turn, pieces, values, rough, function):
     """The same on unresolved pieces, by minimisation around points that are higher or lower than those beside them."""
     angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
     rises, falls = ((value > np.roll(value, k)).astype(int) - (value < np.roll(value, k)) for k in (1, -1))
-    top = np.flatnonzero((rises * falls > 0) & np.repeat(rough, pieces.count + 2))
+    side = rises + falls  # of two equal points each has one
+    top = np.flatnonzero((rises * falls >= 0) & (side != 0) & np.repeat(rough, pieces.count + 2))
     if not top.size:
         return np.empty(0), top
-    sign, around = -rises[top], np.stack([top - 1, top, top + 1])
+    sign, around = -np.sign(side[top]), np.stack([top - 1, top, top + 1])
     brackets = angle[around % angle.size] + turn.period * (around // angle.size)
     found = find_minima(lambda at, place: sign[place] * turn.evaluate(function, at), brackets, relative=0.0, tiny=0.0)
     return np.where(np.isnan(found), angle[top], found), top // (pieces.count + 2)

@@ -315,6 +315,43 @@ def test_all_parts_find_a_narrow_pulse_of_a_function():
     assert ks.drive.flywheel(scene(10.0), 0.02).energy == pytest.approx(work, rel=0.05)
 
 
+def test_a_narrow_pulse_of_a_function_of_the_solution_is_found():
+    """0.5 deg wide, of a quantity that is constant elsewhere; the function may return a list."""
+    solution = ks.solve(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 0.0, crank_speed=10.0)
+    for place in np.linspace(0.1, 6.1, 40):
+        found = ks.extremes(solution, lambda at, place=place: list(1.0 * (abs(at.crank_angle - place) < 0.0044)))
+        assert found.value.tolist() in ([1.0, 0.0], [0.0, 1.0])
+
+
+def test_a_step_within_rounding_of_crank_angles_adds_no_extrema():
+    """Two rows 1e-9 rad apart: on the flank values are rounded as crank angles are."""
+    step = ks.Table([0.0, 2.0, 2 * np.pi - 1e-9, 2 * np.pi], [-247.6, 234.3, 234.3, -247.6])
+    yoke = ks.scotch_yoke(0.1, slider=ks.Link(5.0), block=ks.Link(20.0, 0.02, 0.05), crank=ks.Link(2.0, 0.03, 0.01))
+    solution = ks.solve(yoke, 0.0, crank_speed=2.0, loads=[ks.Gravity(), ks.ProcessForce(step)])
+    for name in ("balancing_torque", "O", "A"):
+        found = ks.extremes(solution, name)
+        assert np.all(found.maximum != np.roll(found.maximum, 1))
+        assert len(found) < 10
+
+
+def test_extrema_near_limit_positions_are_found_in_each_turn():
+    """A lever whose block nearly meets its pivot, under a torque of two turns with many rows on the crank."""
+    rows = np.linspace(0.0, 4 * np.pi, 51)
+    torque = ks.Table(rows, 1e-3 * np.cos(7.0 * rows), period=4 * np.pi)
+    lever = ks.slotted_lever(
+        2.12e-4,
+        pivot=(0.0, -2.3327e-4),
+        crank=ks.Link(2.7, 1.5e-6, 3.4e-8),
+        lever=ks.Link(2.6, 1.5e-5, 1.4e-7),
+        block=ks.Link(1.9, 4e-5, 2.5e-8),
+    )
+    solution = ks.solve(lever, 0.0, crank_speed=-50.0, loads=[ks.Torque(torque, on="crank")])
+    for name in ("O", "A", "O2"):
+        found = ks.extremes(solution, name)
+        assert found.maximum.tolist() == [False, True] * 4
+        assert_allclose(found.angle[4:] - found.angle[:4], 2 * np.pi, atol=1e-8)
+
+
 # Where sampled values turn
 
 
