@@ -191,14 +191,10 @@ class PartedCurve(NamedTuple):
         sector = np.minimum((angle.ravel() / self.pieces.period * sectors).astype(int), sectors - 1)
         order, best = np.argsort(heights, axis=None, kind="stable"), np.zeros(sectors, dtype=int)
         best[sector[order]] = order
-        piece, place = np.divmod(best, PLACES.size)
-        series = side * (SERIES @ values[piece].T)
+        piece, at = self._refined(heights, side, energy, *np.divmod(best, PLACES.size))
         if energy:
-            series[0] -= side * np.sum(width * WEIGHTS * values) / self.pieces.period
-            at = _peaks(np.polynomial.polynomial.polyint(series), PLACES[place])
             weights = np.stack([self._gain(*pair) for pair in zip(piece, at, strict=True)])
             return side * np.tensordot(weights, values, 2), side * np.tensordot(slopes, weights, ([1, 2], [1, 2]))
-        at = _peaks(series, PLACES[place])
         weights = at[:, None] ** POWERS @ SERIES
         found = side * np.sum(weights * values[piece], axis=1)
         changes = side * np.einsum("npk,pk->np", slopes[:, piece], weights)
@@ -208,6 +204,24 @@ class PartedCurve(NamedTuple):
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
             return side * height, changes / (2.0 * height)
         return found, changes
+
+    def _refined(self, heights, side, energy, piece, sample):
+        """Pieces and places (sectors,) of the peaks around samples; at an end of a piece, on the better side of it."""
+        values = self.values**2 if self.vector and not energy else self.values
+        mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period if energy else 0.0
+        last, count = PLACES.size - 1, np.count_nonzero(self.pieces.width[0])
+        step = np.where(sample == last, 1, np.where(sample == 0, -1, 0))
+        candidates = (piece, sample), ((piece + step) % count, np.where(step, last - sample, sample))
+        found = []
+        for piece, sample in candidates:
+            series = side * (SERIES @ values[piece].T)
+            if energy:
+                series[0] -= side * mean
+                series = np.polynomial.polynomial.polyint(series) * (0.5 * self.pieces.width[0, piece])
+            at = _peaks(series, PLACES[sample])
+            found.append((heights[piece, sample] + _at(series, at) - _at(series, PLACES[sample]), piece, at))
+        (height, piece, at), (other, *beside) = found
+        return tuple(np.where(other > height, two, one) for one, two in zip((piece, at), beside, strict=True))
 
     def _gain(self, piece, place):
         """Weights (P, nodes) of the values in that integral, at a place of a piece."""
