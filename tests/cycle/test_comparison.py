@@ -36,7 +36,7 @@ def test_extremum_of_rounding_is_shown_as_zero():
     found = ks.compare(working, idle)
     (row,) = np.flatnonzero(np.abs(found.torque_extremes[0].value) < 1e-6)
     table, other = found.frame(), ks.compare(working, working).frame()
-    assert 0 < np.abs(found.torque_extremes[0].value[row]) < 1e-11
+    assert 0 < np.abs(found.torque_extremes[0].value[row]) < 1e-9  # rounding of 2e4 N m
     assert table.loc[f"torque extremum {row + 1}", "reference"] == 0.0
     assert np.isnan(other.loc[f"torque extremum {row + 1}", "ratio"])
     others = [f"torque extremum {k + 1}" for k in range(len(found.torque_extremum_ratios)) if k != row]

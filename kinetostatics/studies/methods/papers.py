@@ -136,8 +136,12 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     gamma = to_pivot - np.arccos((square + c * c - h * h) / (2 * a * c))
     f5 = r * np.sin(phi) / (b - r * np.cos(phi))
     psi = -np.arctan(f5) + np.arccos((square + h * h - c * c) / (2 * a * h)) - np.arctan(pivot_x / h)
-    pivot = pivot_x, -rocker_length
-    (_, coupler_rate, _), (_, rocker_rate, _) = four_bar_by_atan_acos(r, c, h, pivot, 1, np.pi / 2 - angle)
+
+    turning = -(b * np.cos(phi) - r) / square
+    p, q = square + c * c - h * h, square + h * h - c * c
+    closing = b * np.sin(phi) / square
+    coupler_rate = r * (turning + closing * (2 * square - p) / np.sqrt(4 * square * c * c - p * p))
+    rocker_rate = r * (turning + closing * (q - 2 * square) / np.sqrt(4 * square * h * h - q * q))
     return gamma, psi, coupler_rate, rocker_rate
 
 
