@@ -127,7 +127,7 @@ class Losses:
 
     def power(self, at):
         """Lost by friction and dampers at the crank angles of a solution, W."""
-        return sum(power(at) for power in self.powers.values())
+        return sum((power(at) for power in self.powers.values()), np.zeros(at.crank_angle.shape))
 
     def __str__(self):
         if np.isnan(self.efficiency):

@@ -32,6 +32,11 @@ CAM = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.01, 0.0)), 0.4, coupler=ks.Lin
 CAM_ALL = JOINTS | {"slot": ks.SlotFriction(0.1), "cam": ks.RollerFriction(0.01, 0.02, 0.04)}
 
 
+def test_a_machine_without_friction_has_a_table_of_no_losses():
+    table = ks.solve(YOKE, 0.0, crank_speed=SPEED, loads=ks.Gravity()).losses.frame()
+    assert table.loc["all", ["mean [W]", "largest [W]", "per turn [J]"]].eq(0.0).all()
+
+
 @pytest.mark.parametrize("speed", [SPEED, -SPEED])
 def test_guide_losses_are_closed_form(speed):
     found = yoke(speed=speed).losses

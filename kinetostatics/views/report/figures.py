@@ -73,7 +73,8 @@ def curves_over(names, curves, label, height=300):
 
 
 def _period(angle):
-    return float(angle[-1] - angle[0] + np.max(np.diff(angle))) if len(angle) > 1 else 360.0
+    """Period of crank angles over whole turns, degrees; the last step, after the last angle, is not among them."""
+    return 360.0 * max(1, round((angle[-1] - angle[0] + np.max(np.diff(angle))) / 360.0)) if len(angle) > 1 else 360.0
 
 
 def hodograph(solutions, name, height=420):

@@ -40,6 +40,14 @@ def test_report_curve_is_the_solutions():
     assert set(found["variant"]) == {"cam-cosine"}
 
 
+def test_axis_of_a_turn_ends_at_360_degrees():
+    """Crank angles of peaks stand between the even ones: no step is that from the last angle to the next turn."""
+    angle = np.append(np.arange(0.0, 360.0, 1.0), 359.4)
+    plot = figures.curves_over(["saw"], {0: (angle, np.cos(np.radians(angle)))}, "torque [N m]")
+    assert plot.x_range.end == 360.0
+    assert plot.below[0].ticker.ticks[1] == 45.0
+
+
 @pytest.mark.slow
 def test_shorter_periods_are_repeated():
     found = lines(figures.over_turn(subject("v_twin").solutions, "balancing_torque"))
