@@ -44,6 +44,6 @@ def texts(svg):
 
 
 def strokes(svg):
-    """Coordinates in a picture, and what stands between them."""
-    body = svg.partition("</metadata>")[2]
+    """Coordinates in a picture, and what stands between them; names of clip paths depend on the last bits of these."""
+    body = re.sub(r"\bp[0-9a-f]{10}\b", "clip", svg.partition("</metadata>")[2])
     return np.array(NUMBER.findall(body), dtype=float), NUMBER.split(body)

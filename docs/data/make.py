@@ -59,7 +59,7 @@ class Machine(Drawn):
         super().__init__(kind, seed, scale=0.0)
         acceleration, direction = self.real(4.0, 12.0), self.real(-3.0, 3.0)
         gravity = ks.Gravity(acceleration, direction)
-        self.scene = ks.Scene(self.mechanism, self.speed, self.acceleration, (gravity, *self.loads))
+        self.scene = ks.Scene(self.scene.mechanism, self.speed, self.acceleration, (gravity, *self.loads))
         self.system.gravity = mp.mpf(acceleration) * mp.expj(direction)
 
     def real(self, low, high):
