@@ -47,7 +47,7 @@ def _member(name):
 
 def _scalar(name, text):
     """Force or moment that the forces of a mechanism have by a name."""
-    return property(lambda self: self.scalar(name), doc=text)
+    return property(lambda self: self._checked(name, 3) if name in self._values else self.scalar(name), doc=text)
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,7 +237,7 @@ class Solution(Certainty, Motion):
         >>> print(f"{s.reaction('guide')[1, 90]:.0f} N")  # upward, by the ground on the slider at 90 deg
         702 N
         """
-        return self._force("reaction", joint, self.reactions)
+        return self._force("reaction", joint, True)
 
     @property
     def scalars(self):
@@ -250,7 +250,7 @@ class Solution(Certainty, Motion):
         "balancing_torque", "guide_force", "guide_moment", "cam_force", "slot_force", "slot_moment", "cylinder_force",
         "cylinder_moment", "contact_force" ...
         """
-        return self._force("quantity", name, self.scalars)
+        return self._force("quantity", name, False)
 
     balancing_torque = _scalar(
         "balancing_torque",
@@ -498,16 +498,22 @@ class Solution(Certainty, Motion):
     def _values(self):
         return {}
 
-    def _force(self, kind, name, names):
-        """A force by name; warns once where it grows without bound at a change point that is passed."""
-        self._look_up(kind, name, dict.fromkeys(names))
+    def _force(self, kind, name, vector):
+        """A force by name, once known without looking up its name."""
+        known = self._values.get(name) if isinstance(name, str) and name != "closure" else None
+        if known is None or (np.ndim(known) > len(self.shape)) != vector:
+            self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
+        return self._checked(name, 4)
+
+    def _checked(self, name, stacklevel):
+        """A force; warns once where it grows without bound at a change point that is passed."""
         found = self._found(name)
         if self.mechanism.passes and not self.silent and self.mechanism.grows(name):
             is_plain = isinstance(found, np.ndarray) and found.dtype == float
             text = assembly.unbounded_force_problem(self, name, found) if is_plain else None
             if text:
                 object.__setattr__(self, "silent", True)
-                warnings.warn(text, ConditionWarning, stacklevel=3)
+                warnings.warn(text, ConditionWarning, stacklevel=stacklevel)
         return found
 
     def _at_joint(self, joint, ending):
