@@ -47,7 +47,7 @@ def _member(name):
 
 def _scalar(name, text):
     """Force or moment that the forces of a mechanism have by a name."""
-    return property(lambda self: self._checked(name, 3) if name in self._values else self.scalar(name), doc=text)
+    return property(lambda self: self._force_value(name, 3) if name in self._values else self.scalar(name), doc=text)
 
 
 @dataclass(frozen=True, eq=False)
@@ -503,9 +503,9 @@ class Solution(Certainty, Motion):
         known = self._values.get(name) if isinstance(name, str) and name != "closure" else None
         if known is None or (np.ndim(known) > len(self.shape)) != vector:
             self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
-        return self._checked(name, 4)
+        return self._force_value(name, 4)
 
-    def _checked(self, name, stacklevel):
+    def _force_value(self, name, stacklevel):
         """A force; warns once where it grows without bound at a change point that is passed."""
         found = self._found(name)
         if self.mechanism.passes and not self.silent and self.mechanism.grows(name):

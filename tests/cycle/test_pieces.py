@@ -184,7 +184,7 @@ def test_undeclared_jump_is_seen_from_both_sides():
     for text, truth in {"largest O": 2.0, "smallest O": 0.5, "range O": 1.5}.items():
         numbers, rough, _ = run(text, step)
         assert not rough.any()
-        np.testing.assert_allclose(numbers, truth, rtol=1e-13)
+        np.testing.assert_allclose(numbers, truth, rtol=2e-14)
     numbers, rough, _ = run("mean O", step)
     assert not rough.any()
     np.testing.assert_allclose(numbers, 0.5 + 1.5 * (PLACE[:, 0] - 1.0) / TURN, rtol=0, atol=1e-8)
