@@ -191,7 +191,7 @@ class PartedCurve(NamedTuple):
         sector = np.minimum((angle.ravel() / self.pieces.period * sectors).astype(int), sectors - 1)
         order, best = np.argsort(heights, axis=None, kind="stable"), np.zeros(sectors, dtype=int)
         best[sector[order]] = order
-        piece, at = self._refined(heights, side, energy, *np.divmod(best, PLACES.size))
+        piece, at = self._peaks_at(heights, side, energy, *np.divmod(best, PLACES.size))
         if energy:
             weights = np.stack([self._gain(*pair) for pair in zip(piece, at, strict=True)])
             return side * np.tensordot(weights, values, 2), side * np.tensordot(slopes, weights, ([1, 2], [1, 2]))
@@ -205,23 +205,25 @@ class PartedCurve(NamedTuple):
             return side * height, changes / (2.0 * height)
         return found, changes
 
-    def _refined(self, heights, side, energy, piece, sample):
-        """Pieces and places (sectors,) of the peaks around samples; at an end of a piece, on the better side of it."""
+    def _peaks_at(self, heights, side, energy, piece, sample):
+        """Piece and place (sectors,) of the peak at each sample; at the end of a piece the higher peak of both sides."""
         values = self.values**2 if self.vector and not energy else self.values
         mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period if energy else 0.0
         last, count = PLACES.size - 1, np.count_nonzero(self.pieces.width[0])
         step = np.where(sample == last, 1, np.where(sample == 0, -1, 0))
-        candidates = (piece, sample), ((piece + step) % count, np.where(step, last - sample, sample))
-        found = []
-        for piece, sample in candidates:
+        beside, other = (piece + step) % count, np.where(step, last - sample, sample)
+
+        def peak(piece, place, height):
             series = side * (SERIES @ values[piece].T)
             if energy:
                 series[0] -= side * mean
                 series = np.polynomial.polynomial.polyint(series) * (0.5 * self.pieces.width[0, piece])
-            at = _peaks(series, PLACES[sample])
-            found.append((heights[piece, sample] + _at(series, at) - _at(series, PLACES[sample]), piece, at))
-        (height, piece, at), (other, *beside) = found
-        return tuple(np.where(other > height, two, one) for one, two in zip((piece, at), beside, strict=True))
+            at = _peaks(series, place)
+            return height + _at(series, at) - _at(series, place), at
+
+        height, at = peak(piece, PLACES[sample], heights[piece, sample])
+        higher, there = peak(beside, PLACES[other], heights[beside, other])
+        return np.where(higher > height, beside, piece), np.where(higher > height, there, at)
 
     def _gain(self, piece, place):
         """Weights (P, nodes) of the values in that integral, at a place of a piece."""
