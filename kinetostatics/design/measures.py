@@ -206,7 +206,7 @@ class PartedCurve(NamedTuple):
         return found, changes
 
     def _peaks_at(self, heights, side, energy, piece, sample):
-        """Piece and place (sectors,) of the peak at each sample; at the end of a piece the higher peak of both sides."""
+        """Piece and place (sectors,) of the peak at each sample; at the end of a piece the higher of both sides."""
         values = self.values**2 if self.vector and not energy else self.values
         mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period if energy else 0.0
         last, count = PLACES.size - 1, np.count_nonzero(self.pieces.width[0])
