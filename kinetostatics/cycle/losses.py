@@ -23,7 +23,7 @@ import numpy as np
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics.energy_contact import work_of
-from ..mechanics.load_values import title_of
+from ..mechanics.load_values import numbered_titles
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
 from .extremes import extrema, largest_of
@@ -172,12 +172,8 @@ def losses(solution) -> Losses:
     at = turn.at.at(turn.angle[turn.usable])
     if not np.all(np.asarray(at.crank_speed)):
         raise ParameterError("losses: the crank stands still, so no power flows; give a crank_speed")
-    items: dict[str, Any] = {}  # by title; loads of one title get numbers
-    for item in solution.loads:
-        if not hasattr(item, "potential"):
-            title = title_of(item)
-            count = sum(name.partition(" #")[0] == title for name in items)
-            items[f"{title} #{count + 1}" if count else title] = item
+    own = [item for item in solution.loads if not hasattr(item, "potential")]
+    items = dict(zip(numbered_titles(own), own, strict=True))
     dampers = {name: item for name, item in items.items() if getattr(item, "DISSIPATES", False)}
     loads = {name: item for name, item in items.items() if name not in dampers}
     lost: dict[str, Any] = {joint: methodcaller("friction_loss_at", joint) for joint in solution.friction}
