@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, undeclared_functions
+from ..cycle.kinks import undeclared_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError
 from ..machine.loads import TURN
@@ -31,7 +31,7 @@ NO_ANGLES = np.empty(0)
 
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    widest = 4.0 * FUNCTION_STEP if undeclared_functions(driven.scene.loads) else MAX_WIDTH
+    widest = 4.0 * driven.scene.resolution if undeclared_functions(driven.scene.loads) else MAX_WIDTH
     edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), widest)
     pieces, kinks = Pieces(edges, point_count(edges)), NO_ANGLES
     for _ in range(MAX_ROUNDS):
