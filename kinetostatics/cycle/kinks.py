@@ -112,8 +112,8 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
         angles = (angles[..., None] + starts).reshape(len(angles), -1)
         sources.append((angles, np.repeat(jumps, starts.size)[None]))
         largest_left_out = max(largest_left_out, left_out)
-    for item in undeclared_functions(solution.loads):
-        angles = FunctionSamples.of(item, solution).rough_places
+    for function in samples_of_functions(solution):
+        angles = function.rough_places
         sources.append((angles, np.zeros(angles.shape, dtype=bool)))
     designs = max(len(angles) for angles, _ in sources)
     rows = ([np.broadcast_to(part, (designs, part.shape[1])) for part in row] for row in zip(*sources, strict=True))
@@ -128,10 +128,10 @@ def kinks_and_jumps(solution, samples):
     kinks change between their samples.
     """
     kinks, jumps = declared_kinks(solution)
-    functions = [FunctionSamples.of(item, solution) for item in undeclared_functions(solution.loads)]
+    functions = samples_of_functions(solution)
     for function in functions:
         kinks = np.union1d(kinks, function.rough_places)
-    for text in () if solution.silent else missed_feature_hints(solution, functions):
+    for text in () if solution.silent else missed_feature_hints(functions):
         warnings.warn(HintWarning(solution.mechanism.name, text), stacklevel=3)
     if not solution.friction.acting:
         return kinks, jumps
@@ -231,20 +231,25 @@ class ResolutionCheck:
 
 def check_resolution(solution, step):
     """`ResolutionCheck` of all load functions without kinks, sampled at a finer step, rad."""
-    missed = [FunctionSamples.of(item, solution).missed(step) for item in undeclared_functions(solution.loads)]
+    missed = [function.missed(step) for function in samples_of_functions(solution)]
     return ResolutionCheck(solution.resolution, step, tuple(found for found in missed if found.angle.size))
 
 
-def missed_feature_hints(solution, functions=None):
-    """Sentences on load functions that change midway between their samples."""
-    if functions is None:
-        functions = [FunctionSamples.of(item, solution) for item in undeclared_functions(solution.loads)]
-    for found in (function.missed(solution.resolution) for function in functions):
+def missed_feature_hints(functions):
+    """Sentences on sampled load functions that change midway between their samples."""
+    for function in functions:
+        step = function.solution.resolution
+        found = function.missed(step)
         if found.angle.size:
             yield (
-                f"a load function without `kinks` changes between its samples every {_degrees(solution.resolution)} "
-                f"deg, {found}; declare its `kinks`, give a ks.Table, or a finer `resolution`"
+                f"a load function without `kinks` changes between its samples every {_degrees(step)} deg, {found}; "
+                "declare its `kinks`, give a ks.Table, or a finer `resolution`"
             )
+
+
+def samples_of_functions(solution):
+    """`FunctionSamples` of the load functions without kinks, a list."""
+    return [FunctionSamples.of(item, solution) for item in undeclared_functions(solution.loads)]
 
 
 class FunctionSamples(NamedTuple):

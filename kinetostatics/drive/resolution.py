@@ -8,10 +8,11 @@ import math
 
 import numpy as np
 
-from ..cycle.kinks import undeclared_functions
+from ..cycle.kinks import FUNCTION_STEP, samples_of_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError
 from ..machine.loads import TURN
+from ..numbers.parameter_tree import replace_unchecked
 
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
@@ -31,8 +32,11 @@ NO_ANGLES = np.empty(0)
 
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    widest = 4.0 * driven.scene.resolution if undeclared_functions(driven.scene.loads) else MAX_WIDTH
-    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), widest)
+    running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
+    rough = [function.rough_places.ravel() for function in samples_of_functions(running)]
+    fixed = np.unique(np.concatenate([[0.0], driven.kinks, *rough, [driven.period]]))
+    widest = 4.0 * FUNCTION_STEP if rough else MAX_WIDTH  # a function may jump elsewhere at another speed
+    edges = edges_between(fixed, widest)
     pieces, kinks = Pieces(edges, point_count(edges)), NO_ANGLES
     for _ in range(MAX_ROUNDS):
         forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
@@ -45,7 +49,7 @@ def resolved(driven, speed):
     if np.any(width < 1e-6 * driven.period) or len(width) > MAX_PIECES:
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
-        edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
+        edges = np.unique(np.concatenate([fixed, kinks, jumps]))
         again = _halve_unresolved(driven, Pieces(edges_between(edges, widest), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
     return _split_at_jumps(driven, pieces, speed), kinks

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks, missed_feature_hints, resolution_note
+from ..cycle.kinks import has_kinks, missed_feature_hints, resolution_note, samples_of_functions
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
@@ -233,7 +233,7 @@ def dry_run(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
-        texts = *scene_hints(solutions[0]), *missed_feature_hints(solutions[0])
+        texts = *scene_hints(solutions[0]), *missed_feature_hints(samples_of_functions(solutions[0]))
         hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in texts)
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine, streams = _engine_of(pairs, engines)
