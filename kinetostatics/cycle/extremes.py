@@ -15,7 +15,7 @@ from ..mechanics.quantities import Quantity, components, largest_term, of_scene,
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
-from .kinks import resolution_note
+from .kinks import resolution_note, with_resolution
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turn import MAX_WIDTH, require_single
 from .turning_points import extrema_of, paths, turning_points
@@ -357,10 +357,7 @@ def extremes_frame(solution):
     ConditionWarning
         Once for all quantities: values around some crank angles have no correct digit, or grow without bound there.
     """
-    found = frames(extremes_by_name(solution))[0]
-    if note := resolution_note(solution):
-        found.attrs["resolution"] = note
-    return found
+    return with_resolution(frames(extremes_by_name(solution))[0], solution)
 
 
 def frames(rows):

@@ -81,6 +81,13 @@ def resolution_note(scene, name=None):
     )
 
 
+def with_resolution(table, *scenes):
+    """A pandas DataFrame with the `resolution_note` of scenes or solutions in its `attrs`, if there is one."""
+    if notes := dict.fromkeys(filter(None, map(resolution_note, scenes))):
+        table.attrs["resolution"] = "; ".join(notes)
+    return table
+
+
 def _degrees(angle):
     return f"{np.degrees(angle):.4g}"
 
@@ -131,7 +138,7 @@ def kinks_and_jumps(solution, samples):
     functions = samples_of_functions(solution)
     for function in functions:
         kinks = np.union1d(kinks, function.rough_places)
-    for text in () if solution.silent else missed_feature_hints(functions):
+    for text in () if solution.silent else check_resolution(solution, functions, solution.resolution).hints:
         warnings.warn(HintWarning(solution.mechanism.name, text), stacklevel=3)
     if not solution.friction.acting:
         return kinks, jumps
@@ -216,6 +223,13 @@ class ResolutionCheck:
     step: float
     missed: tuple[MissedFeatures, ...]
 
+    @property
+    def hints(self):
+        """A sentence on each load with missed features, and the remedy."""
+        head = f"a load function without `kinks` changes between its samples every {_degrees(self.resolution)} deg"
+        remedy = "declare its `kinks`, give a ks.Table, or a finer `resolution`"
+        return tuple(f"{head}, {found}; {remedy}" for found in self.missed)
+
     def __len__(self):
         return sum(len(item.angle) for item in self.missed)
 
@@ -229,22 +243,10 @@ class ResolutionCheck:
         return "\n  ".join([f"{head} features {width}, so missed:", *map(str, self.missed)]) + ">"
 
 
-def check_resolution(solution, step):
-    """`ResolutionCheck` of all load functions without kinks, sampled at a finer step, rad."""
-    missed = [function.missed(step) for function in samples_of_functions(solution)]
+def check_resolution(solution, functions, step):
+    """`ResolutionCheck` of sampled load functions of a solution, at a finer step, rad."""
+    missed = [function.missed(step) for function in functions]
     return ResolutionCheck(solution.resolution, step, tuple(found for found in missed if found.angle.size))
-
-
-def missed_feature_hints(functions):
-    """Sentences on sampled load functions that change midway between their samples."""
-    for function in functions:
-        step = function.solution.resolution
-        found = function.missed(step)
-        if found.angle.size:
-            yield (
-                f"a load function without `kinks` changes between its samples every {_degrees(step)} deg, {found}; "
-                "declare its `kinks`, give a ks.Table, or a finer `resolution`"
-            )
 
 
 def samples_of_functions(solution):

@@ -27,6 +27,7 @@ from ..mechanics.load_values import numbered_titles
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
 from .extremes import extrema, largest_of
+from .kinks import resolution_note, with_resolution
 from .means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from .rounding import PLACED, zeroed
 
@@ -123,7 +124,8 @@ class Losses:
         with np.errstate(invalid="ignore"):
             share = 100.0 * mean / self.total
         columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": degrees}
-        return pd.DataFrame(columns | {"per turn [J]": mean * self.turn_time}, pd.Index(names, name="lost at"))
+        columns |= {"per turn [J]": mean * self.turn_time}
+        return with_resolution(pd.DataFrame(columns, pd.Index(names, name="lost at")), self.solution)
 
     def power(self, at):
         """Lost by friction and dampers at the crank angles of a solution, W."""
@@ -138,7 +140,7 @@ class Losses:
         )
 
     def __repr__(self):
-        return f"<Losses: {self}>"
+        return f"<Losses: {'; '.join(filter(None, [str(self), resolution_note(self.solution)]))}>"
 
 
 def lose(*solutions):

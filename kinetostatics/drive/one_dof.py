@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import declared_kinks, missed_feature_hints, samples_of_functions
+from ..cycle.kinks import declared_kinks
 from ..engines.numba_backend import numba_available
 from ..errors import AssemblyError, DriveError, HintWarning, NotGivenError
 from ..machine.friction import NO_FRICTION
@@ -92,7 +92,7 @@ class DrivenMachine:
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
         checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
         self.period = self.scene.period
-        for text in missed_feature_hints(samples_of_functions(self.scene.unsolved(np.zeros(1)))):
+        for text in self.scene.check_resolution().hints:
             warnings.warn(HintWarning(owner, text), stacklevel=3)
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import resolution_note
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
@@ -89,12 +90,12 @@ class Trajectory:
     _ends: np.ndarray = field(repr=False)
 
     def __repr__(self):
-        last = self.events[-1]
+        last, note = self.events[-1], resolution_note(self.scene)
         turns = (self.crank_angle[-1] - self.crank_angle[0]) / TURN
         return (
             f"<Trajectory: {self.scene.mechanism.name}, {self.time[-1]:.9g} s, {turns:.6g} turns, {last.name} at "
             f"{math.degrees(last.crank_angle):.6g} deg with {self.speed[-1]:.9g} rad/s, "
-            f"energy drift {self.energy_drift:.2g} J>"
+            f"energy drift {self.energy_drift:.2g} J{note and '; '}{note}>"
         )
 
     def at(self, time):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, check_resolution, function_step
+from ..cycle.kinks import FUNCTION_STEP, check_resolution, function_step, samples_of_functions
 from ..engines.engines import COMPILED, FASTEST, is_plain
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
@@ -178,7 +178,7 @@ class Scene(Parameters):
         """All fields by name."""
         return {name: getattr(self, name) for name in PARTS}
 
-    def check_resolution(self, step):
+    def check_resolution(self, step=None):
         """Look for features of load functions without `kinks` that the resolution misses.
 
         Every such function is sampled at the crank angles of `step`, and compared with what its samples at the
@@ -186,8 +186,8 @@ class Scene(Parameters):
 
         Parameters
         ----------
-        step : float
-            rad, at most the resolution: ``np.radians(0.005)``.
+        step : float, optional
+            rad, at most the resolution: ``np.radians(0.005)``. By default the resolution, midway between the samples.
 
         Returns
         -------
@@ -208,8 +208,9 @@ class Scene(Parameters):
         >>> pump.check_resolution(np.radians(0.005))
         <ResolutionCheck every 0.005 deg: no feature narrower than 0.05 deg found>
         """
-        step = function_step("check_resolution", "step", step, self.resolution)
-        return check_resolution(self.unsolved(np.zeros(1)), step)
+        step = function_step("check_resolution", "step", self.resolution if step is None else step, self.resolution)
+        solution = self.unsolved(np.zeros(1))
+        return check_resolution(solution, samples_of_functions(solution), step)
 
     def turn(self, angles):
         """Even crank angles over one period from 0, end excluded; anything but a whole number is returned as it is."""

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks, missed_feature_hints, resolution_note, samples_of_functions
+from ..cycle.kinks import has_kinks, resolution_note
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
@@ -228,13 +228,13 @@ def dry_run(job, designs, engines):
                 for name in quantity_names(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
+            missed = scenes[0].check_resolution().hints
         except QuantityError:
             raise
         except Exception:
             continue
         checks.require("sweep", *problems)
-        texts = *scene_hints(solutions[0]), *missed_feature_hints(samples_of_functions(solutions[0]))
-        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in texts)
+        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in (*scene_hints(solutions[0]), *missed))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine, streams = _engine_of(pairs, engines)
         kinked = any(has_kinks(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
