@@ -182,13 +182,10 @@ class MissedFeatures(NamedTuple):
     size: np.ndarray
 
     def __str__(self):
-        places = [f"{size:.4g} {self.unit} at {angle:.7g} deg" for angle, size in zip(*self._shown, strict=True)]
-        more = f" and {len(self.angle) - len(places)} more" if len(self.angle) > len(places) else ""
-        return f"{self.load}: {', '.join(places)}{more}"
-
-    @property
-    def _shown(self):
-        return np.degrees(self.angle[:MAX_SHOWN_FEATURES]), self.size[:MAX_SHOWN_FEATURES]
+        every = zip(self.size, np.degrees(self.angle), strict=True)
+        texts = [f"{size:.4g} {self.unit} at {angle:.7g} deg" for size, angle in every]
+        more = f" and {len(texts) - MAX_SHOWN_FEATURES} more" if len(texts) > MAX_SHOWN_FEATURES else ""
+        return ", ".join(texts[:MAX_SHOWN_FEATURES]) + more
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +212,7 @@ class ResolutionCheck:
     ...     return np.where(abs(np.degrees(q.crank_angle) - 100.525) < 0.01, -4e4, 0.0)
     >>> scene = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(2.0)), 30.0, loads=ks.ProcessForce(knock))
     >>> scene.check_resolution(np.radians(0.005))
-    <ResolutionCheck every 0.005 deg: features narrower than 0.05 deg, so missed:
+    <ResolutionCheck every 0.005 deg: features narrower than 0.05 deg
       ProcessForce on 'slider': -4e+04 N at 100.5175 deg>
     """
 
@@ -228,19 +225,18 @@ class ResolutionCheck:
         """A sentence on each load with missed features, and the remedy."""
         head = f"a load function without `kinks` changes between its samples every {_degrees(self.resolution)} deg"
         remedy = "declare its `kinks`, give a ks.Table, or a finer `resolution`"
-        return tuple(f"{head}, {found}; {remedy}" for found in self.missed)
+        return tuple(f"{head}, {found.load}: {found}; {remedy}" for found in self.missed)
 
     def __len__(self):
         return sum(len(item.angle) for item in self.missed)
 
     def __repr__(self):
-        head, width = (
-            f"<ResolutionCheck every {_degrees(self.step)} deg:",
-            f"narrower than {_degrees(self.resolution)} deg",
-        )
-        if not self.missed:
-            return f"{head} no feature {width} found>"
-        return "\n  ".join([f"{head} features {width}, so missed:", *map(str, self.missed)]) + ">"
+        found = f"{'' if self.missed else 'no '}features narrower than {_degrees(self.resolution)} deg"
+        lines = [
+            f"<ResolutionCheck every {_degrees(self.step)} deg: {found}",
+            *(f"{item.load}: {item}" for item in self.missed),
+        ]
+        return "\n  ".join(lines) + ">"
 
 
 def check_resolution(solution, functions, step):
@@ -296,22 +292,20 @@ class FunctionSamples(NamedTuple):
         return pad_rows(design, len(self.value), self.angle[place])[0]
 
     def missed(self, step):
-        """`MissedFeatures` at crank angles a finer step apart: values far from the cubic through four samples."""
+        """`MissedFeatures` at crank angles a finer step apart: where values differ from Bessel's interpolation formula.
+
+        Differences up to the fourth differences of the samples around are expected, so jumps that these show are none.
+        """
         count = round(self.solution.period / step)
         angle = (np.arange(count) + 0.5) * (self.solution.period / count)
         share, place = np.modf(angle / self.angle[1])
         place = place.astype(int)
-        weights = (
-            -share * (share - 1.0) * (share - 2.0) / 6.0,
-            (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
-            -(share + 1.0) * share * (share - 2.0) / 2.0,
-            (share + 1.0) * share * (share - 1.0) / 6.0,
-        )
-        cubic = sum(weight * _beside(self.value, at)[:, place] for at, weight in enumerate(weights, -1))
-        excess = _values_of(self.item, self.solution, angle) - cubic
+        before, low, high, after = (_beside(self.value, at)[:, place] for at in range(-1, 3))
+        expected = low + share * (high - low) - 0.25 * share * (1.0 - share) * (before - low - high + after)
+        excess = _values_of(self.item, self.solution, angle) - expected
         rough = np.max([_beside(self.change, at) for at in range(-2, 4)], axis=0)
         excess = np.where(abs(excess) > (self.negligible + rough)[:, place], excess, 0.0)
-        excess = excess[abs(excess).argmax(axis=0), np.arange(count)]
+        excess = excess[abs(excess).argmax(axis=0), np.arange(count)]  # of the design where it is largest
         found = np.flatnonzero(excess)
         runs = np.split(found, np.flatnonzero(np.diff(found) > 1) + 1) if found.size else []
         tops = np.array([run[abs(excess[run]).argmax()] for run in runs], dtype=int)

@@ -206,7 +206,7 @@ class Scene(Parameters):
         >>> work = ks.ProcessForce(lambda q: -200.0 * (q.slider_velocity > 0.0))
         >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=work)
         >>> pump.check_resolution(np.radians(0.005))
-        <ResolutionCheck every 0.005 deg: no feature narrower than 0.05 deg found>
+        <ResolutionCheck every 0.005 deg: no features narrower than 0.05 deg>
         """
         step = function_step("check_resolution", "step", self.resolution if step is None else step, self.resolution)
         solution = self.unsolved(np.zeros(1))

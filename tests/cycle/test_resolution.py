@@ -190,7 +190,7 @@ def test_nothing_is_missed_of_what_the_samples_show(function):
     ks.extremes(scene(function).solve(1), "O")
     found = scene(function).check_resolution(np.radians(0.005))
     assert len(found) == 0
-    assert repr(found) == "<ResolutionCheck every 0.005 deg: no feature narrower than 0.05 deg found>"
+    assert repr(found) == "<ResolutionCheck every 0.005 deg: no features narrower than 0.05 deg>"
 
 
 @pytest.mark.parametrize("force", [-1e6, 2e3])
