@@ -10,14 +10,13 @@ known beforehand (`slip_direction`), so friction is smooth between the angles at
 """
 
 import math
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..cycle.kinks import declared_kinks
 from ..engines.numba_backend import numba_available
-from ..errors import AssemblyError, DriveError, HintWarning, NotGivenError
+from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
 from ..machine.loads import Table, has_no_user_code, value_of
@@ -92,8 +91,6 @@ class DrivenMachine:
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
         checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
         self.period = self.scene.period
-        for text in self.scene.check_resolution().hints:
-            warnings.warn(HintWarning(owner, text), stacklevel=3)
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         self._engine, self._compiled = engine, engine == "compiled"

@@ -5,12 +5,13 @@ repeat until they stop moving. An error d of an edge changes the result by about
 """
 
 import math
+import warnings
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, samples_of_functions
+from ..cycle.kinks import FUNCTION_STEP, check_resolution, samples_of_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
-from ..errors import DriveError
+from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
 from ..numbers.parameter_tree import replace_unchecked
 
@@ -31,9 +32,13 @@ NO_ANGLES = np.empty(0)
 
 
 def resolved(driven, speed):
-    """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
+    """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction.
+
+    Warns of load functions without `kinks` that change between their samples.
+    """
     running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
-    rough = [function.rough_places.ravel() for function in samples_of_functions(running)]
+    functions = samples_of_functions(running)
+    rough = [function.rough_places.ravel() for function in functions]
     fixed = np.unique(np.concatenate([[0.0], driven.kinks, *rough, [driven.period]]))
     widest = 4.0 * FUNCTION_STEP if rough else MAX_WIDTH  # a function may jump elsewhere at another speed
     edges = edges_between(fixed, widest)
@@ -52,6 +57,8 @@ def resolved(driven, speed):
         edges = np.unique(np.concatenate([fixed, kinks, jumps]))
         again = _halve_unresolved(driven, Pieces(edges_between(edges, widest), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
+    for text in check_resolution(running, functions, running.resolution).hints:
+        warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
     return _split_at_jumps(driven, pieces, speed), kinks
 
 

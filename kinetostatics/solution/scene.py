@@ -17,6 +17,7 @@ from ..machine import plausibility
 from ..machine.loads import KINDS, MAX_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.load_values import require_pure
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.arithmetic import concrete_array
@@ -197,7 +198,7 @@ class Scene(Parameters):
         Raises
         ------
         ParameterError
-            The step is larger than the resolution, or less than 1e-5 rad.
+            The step is larger than the resolution, or less than 1e-5 rad; or a function is not pure.
 
         Examples
         --------
@@ -210,6 +211,7 @@ class Scene(Parameters):
         """
         step = function_step("check_resolution", "step", self.resolution if step is None else step, self.resolution)
         solution = self.unsolved(np.zeros(1))
+        require_pure(solution)
         return check_resolution(solution, samples_of_functions(solution), step)
 
     def turn(self, angles):

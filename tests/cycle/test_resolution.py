@@ -165,6 +165,7 @@ def test_finer_look_warns_with_crank_angle_and_remedy():
         lambda: ks.extremes(MIDWAY.solve(1), "O"),
         lambda: swept(MIDWAY, "largest O"),
         lambda: ks.drive.flywheel(MIDWAY, 0.02),
+        lambda: ks.drive.coast(MIDWAY, flywheel=5.0, from_speed=30.0, until=0.05),
     ):
         with pytest.warns(ks.HintWarning, match=text):
             act()
@@ -253,3 +254,9 @@ def test_check_refuses_a_coarser_step():
     assert NARROW.check_resolution().step == NARROW.resolution
     with pytest.raises(ks.ParameterError, match=r"step must lie between 1e-05 and 0.0008727 rad \(0.05 deg\), got 0.1"):
         NARROW.check_resolution(0.1)
+
+
+def test_check_refuses_functions_that_are_not_pure():
+    numbers = iter(range(10**6))
+    with pytest.raises(ks.ParameterError, match="must be pure"):
+        scene(lambda q: float(next(numbers))).check_resolution()
