@@ -211,6 +211,8 @@ def test_check_finds_what_is_narrower(force):
     exact = ks.extremes(known.solve(1), "B").range[1]
     assert ks.extremes(fine.solve(1), "B").range[1] == pytest.approx(exact, rel=1e-9)
     assert swept(fine, "largest B") == pytest.approx(exact, rel=SWEEP)
+    energy = ks.drive.flywheel(known, 0.02).energy
+    assert ks.drive.flywheel(fine, 0.02).energy == pytest.approx(energy, rel=1e-9)
 
 
 def test_check_looks_at_every_design():
