@@ -287,7 +287,7 @@ def _resolved(turn, quantity, good, floor, scale):
             asked[asked] = ~(misfit <= MISSED * np.nanmax(np.abs(values))).all(axis=1)
         return asked
 
-    def evaluate(angle):
+    def evaluate(angle, _=None):
         return turn.evaluate(function, angle.ravel()).reshape(-1, *angle.shape)
 
     first = np.where(good, function(turn.at), np.nan)[:, turn.points]
