@@ -42,8 +42,8 @@ class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
     `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes,
-    `risen` to that of integrals from -1. `check` goes from values at the points to the last coefficients, and to
-    values and slopes at both ends.
+    `risen` to that of integrals from -1. `check` goes from values at the points to the last coefficients, and
+    to values and slopes at both ends.
     """
 
     points: np.ndarray
@@ -161,16 +161,18 @@ class Pieces:
 
     def integral(self, values):
         """Integral from the start of its piece to each point."""
-        return self.half * (values @ rule(self.count).integral.T)
+        return self.half * product(values, rule(self.count).integral)
 
     def whole(self, values):
         """Integral over each piece."""
-        return self.half[:, 0] * (values @ rule(self.count).weights)
+        return self.half[:, 0] * product(values, rule(self.count).weights[None])[..., 0]
 
     def before(self, parts):
         """Sum over the earlier pieces of the same design."""
-        found = np.concatenate([[0.0], np.cumsum(parts)[:-1]])
-        return found - found[self.firsts][self.owner]
+        number = np.arange(len(parts)) - self.firsts[self.owner]
+        rows = np.zeros((self.firsts.size, number.max() + 2))
+        rows[self.owner, number + 1] = parts
+        return rows.cumsum(axis=1)[self.owner, number]
 
     def integrated(self, values):
         """Integral from the first edge to each point."""
@@ -182,7 +184,7 @@ class Pieces:
 
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""
-        return rule(self.count).series @ values.T
+        return product(values, rule(self.count).series).T
 
     def smoothed(self, values):
         """Values of the lower half of each series; the upper half of difference quotients is noise."""
@@ -197,7 +199,7 @@ class Pieces:
 
     def tails(self, values):
         """Size of the last coefficients of each piece, (..., pieces)."""
-        return np.abs(values @ rule(self.count).series[-TAIL_TERMS:].T).max(axis=-1)
+        return np.abs(product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
 
     def tail(self, values):
         """The same relative to the largest value of all."""
@@ -215,22 +217,31 @@ class Pieces:
         """Weights (K, points) of the values at the points of a piece in those at places from -1 to 1."""
         return waves(self.count, place).T @ rule(self.count).series
 
+    def weights_up_to(self, place):
+        """The same in the integrals from -1 to places."""
+        own = rule(self.count)
+        return product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
+
+    def summits(self, values, pieces):
+        """Heights, pieces and places of the turning points and both ends of some pieces."""
+        series = self.series(values[pieces])
+        place, own = self._zeros(product(series.T, rule(self.count).derived).T)
+        place, own = (
+            np.append(np.repeat([-1.0, 1.0], len(pieces)), place),
+            np.append(np.tile(np.arange(len(pieces)), 2), own),
+        )
+        return np.einsum("np,np->p", series[:, own], waves(self.count, place)), pieces[own], place
+
     def peaks(self, values):
         """Highest value of each design, its piece, and its place there, each (designs,); NaN where a value is.
 
         A series cannot exceed the sum of the sizes of its terms; only pieces that may exceed all points are examined.
         """
-        series = self.series(values)
+        series, known = self.series(values), self.largest_of(values.max(axis=1))
         most = series[0] + np.abs(series[1:]).sum(axis=0)
-        known = self.largest_of(values.max(axis=1))
-        rival = np.flatnonzero(most >= known[self.owner])
-        place, own = self._turns(series[:, rival])
-        ends = np.repeat([-1.0, 1.0], rival.size)
-        place, piece = np.append(ends, place), np.concatenate([rival, rival, rival[own]])
-        height = np.einsum("np,np->p", series[:, piece], waves(self.count, place))
-        order = np.lexsort((height, self.owner[piece]))
-        design, last = np.unique(self.owner[piece][order][::-1], return_index=True)
-        best = order[order.size - 1 - last]
+        height, piece, place = self.summits(values, np.flatnonzero(most >= known[self.owner]))
+        best = highest(height, self.owner[piece])
+        design = self.owner[piece[best]]
         found, pieces = np.full((2, known.size), np.nan), np.zeros(known.size, dtype=int)
         found[:, design], pieces[design] = (height[best], place[best]), piece[best]
         return found[0], pieces, found[1]
@@ -307,7 +318,9 @@ class Pieces:
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
-        series = self._derived(np.where(large, series, 0.0), 2)
+        series = [np.where(large, series, 0.0)]
+        series += [rule(self.count).derived @ series[0]]
+        series += [rule(self.count).derived @ series[1]]
         slopes = _slope_of_size if len(values) == 2 else _slope
         slope, bend = slopes(*(rule(self.count).many @ rows for rows in series))
         moves = (np.ptp(values, axis=2) > level).any(axis=0)
@@ -319,22 +332,11 @@ class Pieces:
         """Places from -1 to 1, and their pieces, at which a function (pieces, points) changes its sign."""
         return self._zeros(self.series(values))
 
-    def _turns(self, series):
-        """Places, and pieces, at which functions given by their series (points, pieces) turn."""
-        return self._zeros(rule(self.count).derived @ series)
-
     def _zeros(self, series):
-        series = self._derived(series[None], 1)
-        value, slope = (rule(self.count).many @ rows[0] for rows in series)
+        series = [series[None], product(series.T, rule(self.count).derived).T[None]]
+        value, slope = (product(rows[0].T, rule(self.count).many).T for rows in series)
         everywhere = np.ones(value.shape[1], bool)
         return self._roots(value, slope, everywhere, lambda *parts: [part[0] for part in parts], series)
-
-    def _derived(self, series, order):
-        """Series and those of their derivatives up to an order; places from -1 to 1."""
-        found = [series]
-        for _ in range(order):
-            found.append(rule(self.count).derived @ found[-1])
-        return found
 
     def _roots(self, dense, slope, asked, function, series):
         """Places and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
@@ -370,13 +372,24 @@ class Pieces:
         return place, piece
 
 
+def product(values, matrix):
+    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on those beside it."""
+    return np.einsum("...n,mn->...m", values, matrix)
+
+
+def highest(height, group):
+    """Index of the highest of each group."""
+    order = np.lexsort((height, group))
+    return order[np.flatnonzero(np.diff(group[order], append=np.max(group, initial=0) + 1))]
+
+
 def waves(count, place):
     """Chebyshev polynomials (count, K) at places from -1 to 1."""
     return np.cos(np.arange(count)[:, None] * np.arccos(place))
 
 
 def _errors(values, half, count):
-    found = values[..., 1:-1] @ rule(count).check.T
+    found = product(values[..., 1:-1], rule(count).check)
     shift = JUMP_OFFSET / half * [1.0, -1.0]
     misfit = found[..., TAIL_TERMS:-2] + shift * found[..., -2:] - values[..., [0, -1]]
     return np.fmax(np.abs(found[..., :TAIL_TERMS]).max(axis=-1), np.abs(misfit).max(axis=-1))

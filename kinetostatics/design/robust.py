@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import has_kinks
-from ..cycle.pieces import NODES
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
@@ -223,7 +222,8 @@ class SampledOutput:
     def _block_outputs(self, numbers, changes):
         """The output of some samples, (samples,), and its derivatives (samples, n)."""
         if self._has_kinks:
-            curves, above = self._piecewise_curves(numbers, changes), self._reference_outputs(numbers)
+            curves: Any = list(self._piecewise_curves(numbers, changes))
+            above = self._reference_outputs(numbers)
         else:
             if self.spread.trim:
                 *pair, above = self._best_speed_curves(numbers, changes)
@@ -239,20 +239,20 @@ class SampledOutput:
         return found, rows
 
     def _piecewise_curves(self, numbers, changes):
-        """Curves of some samples, each on pieces between its own kinks."""
+        """Yield the curve of each of some samples, on pieces between its own kinks."""
         output = without_ratio(self.output)
-        found: list[Any] = [None] * len(next(iter(numbers.values())))
-        parted = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
-        for samples, pieces, told in parted.refined((output,)):
-            some = {path: values[samples] for path, values in numbers.items()}
-            values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
-            slopes = np.zeros((len(samples), 0, *shape))
-            if self._design_numbers:
-                values, slopes = self._curves(some, changes[:, samples], pieces.angle)
-            for place, sample in enumerate(samples):
-                parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
-                found[sample] = measures.PartedCurve(*parts, pieces.some([place]), bool(self._vector))
-        return found
+        turns = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
+        ((_, pieces, known),) = turns.refined((output,))
+        if self._design_numbers:
+            some = {path: values[pieces.owner] for path, values in numbers.items()}
+            values, slopes = self._curves(some, changes[:, pieces.owner], pieces.angle)
+        else:
+            (((_, squared), rows),) = known.items()
+            values = np.sqrt(rows[:, 1:-1]) if squared else rows[:, 1:-1]
+            slopes = np.zeros((len(values), 0, pieces.count))
+        for sample in range(turns.designs):
+            own, mask = pieces.some(np.arange(turns.designs) == sample)
+            yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), own, bool(self._vector))
 
     def _curves(self, numbers, changes, angle=None):
         """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""
@@ -264,8 +264,7 @@ class SampledOutput:
             by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
             slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
         if self._vector:
-            curve = [measures.size(values[:, place], slopes[:, :, place]) for place in range(shape[-2])]
-            return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
+            values, slopes = measures.size(values, slopes)
         return values, np.moveaxis(slopes, 0, 1)
 
     def _reference_outputs(self, numbers):
