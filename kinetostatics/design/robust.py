@@ -130,9 +130,11 @@ def harrell_davis_weights(quantile, count):
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 16
+ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 32
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
+MAX_CACHED_BLOCKS = 64
+"""Blocks of samples whose curves of the reference are kept: a search asks for them again with each design."""
 GOLDEN_STEPS = 30
 """Golden-section steps of the trimmed speed: to a millionth of the range."""
 GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
@@ -156,6 +158,7 @@ class SampledOutput:
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
         self._nominal = scene.parameters
         self._set_output(output)
+        self._reference_cache: dict = {}
         self.weights = harrell_davis_weights(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
@@ -271,7 +274,8 @@ class SampledOutput:
         """The reference's output for each sample, (samples,); None unless the output is a ratio."""
         if not self.output.ratio:
             return None
-        reference, plain = self._reference_scene(numbers), without_ratio(self.output)
+        reference = scene_of(self.problem.reference).varied(self._shared_numbers(numbers))
+        plain = without_ratio(self.output)
         if not has_kinks(unchecked_turn(reference, 1), plain.quantity):
             return self._reduced(self._reference_curves(numbers))
         found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
@@ -279,20 +283,23 @@ class SampledOutput:
 
     def _reduced(self, curves):
         """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
-        return without_ratio(self.output).estimated(curves, self.turns)[0]
+        return self.output.reduced(curves, self.turns)
 
     def _reference_curves(self, numbers):
         """Curves of the reference (samples, N), with the deviations of the numbers that it shares."""
-        found = self._reference_scene(numbers).solve(self.angle)
-        return np.broadcast_to(
-            values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
-        )
+        shared = self._shared_numbers(numbers)
+        key = self.output.quantity, *((path, values.tobytes()) for path, values in shared.items())
+        if key not in self._reference_cache:
+            found = values_of(scene_of(self.problem.reference).varied(shared).solve(self.angle), self.output.quantity)
+            while len(self._reference_cache) >= MAX_CACHED_BLOCKS:
+                self._reference_cache.pop(next(iter(self._reference_cache)))
+            self._reference_cache[key] = found
+        return np.broadcast_to(self._reference_cache[key], (len(next(iter(numbers.values()))), self.angle.size))
 
-    def _reference_scene(self, numbers):
-        """The reference with the samples' crank speed and numbers that spread, where it has them too."""
-        reference = scene_of(self.problem.reference)
-        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
-        return reference.varied({path: numbers[path] for path in known})
+    def _shared_numbers(self, numbers):
+        """The samples' crank speed and numbers that spread, where the reference has them too."""
+        known = scene_of(self.problem.reference).units
+        return {path: numbers[path] for path in numbers if path in (*self.spread.spreads, SPEED) and path in known}
 
     def _best_speed_curves(self, numbers, changes):
         """Curves, their derivatives, and the reference's output, at the best speed of each sample within the trim."""
