@@ -22,6 +22,8 @@ from ..mechanics.load_values import user_value
 from ..mechanics.quantities import quantity
 from ..numbers.brackets import find_roots
 
+SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
+"""Size of a kink, relative to its load's largest value, that counts, unless a load has more such kinks than that."""
 LOAD_FREE_KINDS = ("slider", "motion", "rate")
 """Kinds of quantities that do not depend on loads."""
 SAMPLES = 720
@@ -55,7 +57,7 @@ def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
 
 
 def design_kinks(solution, tolerance=KINK_TOLERANCE):
-    """Kinks of all designs of a solution, of loads those larger than `tolerance` times the load's largest value.
+    """Kinks of all designs of a solution, of loads with very many those above `tolerance` times its largest value.
 
     Returns their crank angles (1 or designs, K), NaN where a design has fewer; which of them may be jumps, the same
     shape; and the largest kink left out, relative to its load's largest value.
@@ -67,7 +69,9 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
         row, angle = _friction_sign_changes(solution, SAMPLES * round(solution.period / TURN))
         sources.append((angle, row < rates))
     for part in kink_sources(solution.loads):
-        angles, jumps, left_out = significant_kinks(part, solution, tolerance)
+        angles, jumps, left_out = significant_kinks(part, solution, SMALL_KINK)
+        if angles.shape[1] > MAX_SMALL_KINKS:
+            angles, jumps, left_out = significant_kinks(part, solution, tolerance)
         starts = _period_starts(part, solution)
         angles = (angles[..., None] + starts).reshape(len(angles), -1)
         sources.append((angles, np.repeat(jumps, starts.size)[None]))
