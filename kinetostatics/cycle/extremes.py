@@ -15,8 +15,8 @@ from ..mechanics.quantities import Quantity, components, largest_term, of_scene,
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
+from .limit_positions import MAX_WIDTH, require_single
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
-from .turn import MAX_WIDTH, require_single
 from .turning_points import extrema_of, paths, turning_points
 
 PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])

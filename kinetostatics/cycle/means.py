@@ -12,8 +12,8 @@ from ..machine.loads import TURN
 from ..mechanics import jamming
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from .extremes import extrema, warning
+from .limit_positions import MAX_CONDITION, require_single
 from .piecewise import Pieces
-from .turn import MAX_CONDITION, require_single
 
 SPLIT_TOLERANCE = 1e-14
 """Error of the integral over a piece, relative to the whole and divided by the pieces, at which it is resolved."""

@@ -17,10 +17,10 @@ import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
 from ..cycle.kinks import has_kinks
+from ..cycle.limit_positions import NEAR, repeating_problem
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
-from ..cycle.turn import NEAR, repeating_problem
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
