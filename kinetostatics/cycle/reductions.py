@@ -9,6 +9,7 @@ textbooks is nearly swing / (delta omega^2) (`drive.flywheel`).
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -98,7 +99,7 @@ def _swing(values):
     return peak(integral)[0] + peak(integral, -1.0)[0]
 
 
-MEANS = {
+MEANS: dict[str, Callable] = {
     "mean": partial(np.mean, axis=-1),
     "mean_absolute": _mean_absolute,
     "rms": lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1]),

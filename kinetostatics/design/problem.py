@@ -226,8 +226,9 @@ class Problem:
         shape = values.shape[:-1] + angle.shape
         by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
         slopes, values = np.tensordot(changes.T, by_scene, 1), np.broadcast_to(values, shape)
-        found = measures.size(values, slopes) if values.ndim == 2 else (values, slopes)
-        return measures.Curve(*found, self.turns)
+        if values.ndim == 2:
+            values, slopes = measures.size(values, slopes)
+        return measures.Curve(values, slopes, self.turns)
 
     def _zeros(self, scene):
         own = scene.parameters

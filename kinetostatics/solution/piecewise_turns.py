@@ -63,7 +63,7 @@ class PiecewiseTurns(NamedTuple):
         """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
-        found, _, rest = design_kinks(solution, straight)
+        found, rest = design_kinks(solution, straight)
         found, period = np.broadcast_to(found, (count, found.shape[1])), solution.period
         width = min(period * POINTS / angles, TURN / (2 * order or 1))
         return cls(scene, Pieces.between(found, period, width, POINTS), max(MAX_OUTPUT_ERROR, rest), engine)
@@ -80,7 +80,7 @@ class PiecewiseTurns(NamedTuple):
         if count > 1 and leaves.lasting:
             numbers = (part[designs] if np.shape(part)[:1] == (count,) else part for part in leaves.numbers)
             scene = unflatten(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
-            everywhere, own = angle, slice(None)
+            everywhere, own = angle, (slice(None), slice(None))
         else:  # of one design, or a part, as a function, may contain numbers of designs that cannot be separated
             scene, number = self.scene, np.arange(designs.size) - np.searchsorted(designs, designs)
             everywhere = np.broadcast_to(angle[0], (count, number.max() + 1, angle.shape[1])).copy()

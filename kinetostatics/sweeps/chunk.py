@@ -16,8 +16,8 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks
-from ..cycle.limit_positions import NEAR, repeating_problem
+from ..cycle.kinks import has_kinks, repeating_problem
+from ..cycle.limit_positions import NEAR
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
