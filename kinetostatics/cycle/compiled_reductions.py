@@ -11,9 +11,9 @@ from ..engines.codegen import ARGUMENTS, FILLED, GIVEN
 from ..engines.simd_reductions import COLUMNS, edition
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from . import peaks
+from .limit_positions import NEAR
 from .peaks import REACH
 from .reductions import MEAN_TOLERANCE, PEAK_TOLERANCE
-from .turn import NEAR
 
 EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")

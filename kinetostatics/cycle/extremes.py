@@ -16,8 +16,8 @@ from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
 from .kinks import resolution_note, with_resolution
+from .limit_positions import MAX_WIDTH, require_single
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
-from .turn import MAX_WIDTH, require_single
 from .turning_points import extrema_of, paths, turning_points
 
 PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
@@ -294,7 +294,7 @@ def _resolved(turn, quantity, good, floor, scale):
             asked[asked] = ~(misfit <= MISSED * np.nanmax(np.abs(values))).all(axis=1)
         return asked
 
-    def evaluate(angle):
+    def evaluate(angle, _=None):
         return turn.evaluate(function, angle.ravel()).reshape(-1, *angle.shape)
 
     first = np.where(good, function(turn.at), np.nan)[:, turn.points]

@@ -20,6 +20,7 @@ from ..machine.loads import (
     kink_sources,
     kinks_of,
     pad_rows,
+    period_of,
     period_on,
     significant_kinks,
 )
@@ -28,6 +29,8 @@ from ..mechanics.quantities import quantity
 from ..numbers import checks
 from ..numbers.brackets import find_roots
 
+SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
+"""Size of a kink, relative to its load's largest value, that counts, unless a load has more such kinks than that."""
 LOAD_FREE_KINDS = ("slider", "motion", "rate")
 """Kinds of quantities that do not depend on loads."""
 SAMPLES = 720
@@ -44,6 +47,12 @@ MIN_FUNCTION_STEP, MAX_FUNCTION_STEP = 1e-5, math.radians(0.25)
 """Limits of the step, rad: memory, and the widest pulse that may be missed."""
 ROUGHNESS = 1e-5
 """Fourth difference, relative to the largest value, of a function that is not smooth: by default of a 64th harmonic."""
+MAX_PERIODS = 6
+"""Periods after which a function is tested for repetition if it does not repeat after one."""
+REPEAT_TOLERANCE = 1e-6
+"""Difference of a force after a period, relative to its largest value, that counts as rounding."""
+REPEAT_SAMPLES = 1440
+"""Angles of a turn at which a load function is compared a period later."""
 BLOCK_VALUES = 2**20
 """Values of such functions that are computed at a time."""
 MAX_SHOWN_FEATURES = 3
@@ -102,30 +111,24 @@ def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
 
 
 def design_kinks(solution, tolerance=KINK_TOLERANCE):
-    """Kinks of all designs of a solution, of loads those larger than `tolerance` times the load's largest value.
+    """Kinks of all designs of a solution, of loads with very many those above `tolerance` times its largest value.
 
-    Returns their crank angles (1 or designs, K), NaN where a design has fewer; which of them may be jumps, the same
-    shape; and the largest kink left out, relative to its load's largest value.
+    Returns their crank angles (1 or designs, K), NaN where a design has fewer, and the largest kink left out, relative
+    to its load's largest value.
     """
-    law = law_kinks(solution)[None]
-    sources, largest_left_out = [(law, np.isin(law, law_kinks(solution, jumps=True)))], 0.0
+    sources, largest_left_out = [law_kinks(solution)[None]], 0.0
     if solution.friction.acting:
-        rates = len(solution.dynamics.friction_solver.rates) if solution.dynamics.friction_signs else 0
-        row, angle = _friction_sign_changes(solution, SAMPLES * round(solution.period / TURN))
-        sources.append((angle, row < rates))
+        sources.append(_friction_sign_changes(solution, SAMPLES * round(solution.period / TURN))[1])
     for part in kink_sources(solution.loads):
-        angles, jumps, left_out = significant_kinks(part, solution, tolerance)
-        starts = _period_starts(part, solution)
-        angles = (angles[..., None] + starts).reshape(len(angles), -1)
-        sources.append((angles, np.repeat(jumps, starts.size)[None]))
+        angles, _, left_out = significant_kinks(part, solution, SMALL_KINK)
+        if angles.shape[1] > MAX_SMALL_KINKS:
+            angles, _, left_out = significant_kinks(part, solution, tolerance)
+        sources.append((angles[..., None] + _period_starts(part, solution)).reshape(len(angles), -1))
         largest_left_out = max(largest_left_out, left_out)
-    for function in samples_of_functions(solution):
-        angles = function.rough_places
-        sources.append((angles, np.zeros(angles.shape, dtype=bool)))
-    designs = max(len(angles) for angles, _ in sources)
-    rows = ([np.broadcast_to(part, (designs, part.shape[1])) for part in row] for row in zip(*sources, strict=True))
-    angle, jumps = map(np.column_stack, rows)
-    return angle, jumps, largest_left_out
+    sources += [function.rough_places for function in samples_of_functions(solution)]
+    designs = max(map(len, sources))
+    angles = np.column_stack([np.broadcast_to(part, (designs, part.shape[1])) for part in sources])
+    return angles, largest_left_out
 
 
 def kinks_and_jumps(solution, samples):
@@ -413,3 +416,43 @@ def _sign_change_brackets(evaluate, values, angle):
     design, low, high, row = (np.concatenate(parts) for parts in zip(*brackets, strict=True))
     order = np.lexsort((low, row, design))
     return pad_rows(design[order], values.shape[1], low[order], high[order], row[order])
+
+
+def repeating_problem(solution):
+    """Sentence on a load function of one design that differs after its period, or None."""
+    for item in solution.loads:
+        if has_no_user_code(item):
+            continue
+        period = period_of([item], solution.mechanism.turns)
+        angle = np.linspace(0.0, period, round(REPEAT_SAMPLES * period / TURN), endpoint=False) + 1e-3
+
+        def push(turns, item=item, angle=angle, period=period):
+            return np.broadcast_to(user_value(item, solution.at(angle + turns * period)), angle.shape)
+
+        first, other = push(0), push(1)
+        if _repeats(first, other):
+            continue
+        place = int(np.nanargmax(np.abs(other - first)))
+        unit = getattr(item, "UNIT", "N")
+        here, there = (f"{np.degrees(place):.6g} deg" for place in (angle[place], angle[place] + period))
+        found = (
+            f"{title_of(item)}: its function gives {first[place]:.6g} {unit} at crank angle {here}, "
+            f"but {other[place]:.6g} {unit} at {there}"
+        )
+        turns = next((turns for turns in range(2, MAX_PERIODS + 1) if _repeats(first, push(turns))), None)
+        if turns is None:
+            return (
+                f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
+                "np.mod(motion.crank_angle, period), or give the period it has"
+            )
+        whole = turns * period / TURN
+        remedy = f"period={2 * whole:.6g}*pi"
+        if "period" not in vars(item):
+            remedy = f"a Table with {remedy}, or a function with an attribute {remedy}"
+        return f"{found}, and repeats after {whole:.6g} turns only: give {remedy}"
+    return None
+
+
+def _repeats(first, other):
+    with np.errstate(invalid="ignore"):
+        return not np.any(np.abs(first - other) > REPEAT_TOLERANCE * np.fmax.reduce(np.abs(first), initial=0.0))

@@ -12,8 +12,8 @@ from ..machine.loads import TURN
 from ..mechanics import jamming
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from .extremes import extrema, warning
+from .limit_positions import MAX_CONDITION, require_single
 from .piecewise import Pieces
-from .turn import MAX_CONDITION, require_single
 
 SPLIT_TOLERANCE = 1e-14
 """Error of the integral over a piece, relative to the whole and divided by the pieces, at which it is resolved."""
@@ -101,10 +101,10 @@ def _mean_of_absolute_torque(turn):
 
     floor = TERM_ROUNDING * turn.at.at(turn.angle[turn.usable]).largest_torque_term
     _, (error,), pieces, values = means(torque, turn, floor)
-    zeros, _ = pieces.zeros(values[0, :, 1:-1])
-    parts = Pieces(np.unique(np.concatenate([pieces.edges, zeros])), pieces.count)
-    parts, (values,) = pieces.replaced(parts, values, lambda angle: torque(angle.ravel()).reshape(1, *angle.shape))
-    return math.fsum(parts.whole(np.abs(values[:, 1:-1]))) / turn.period, float(error), floor, parts
+    place, piece = pieces.zeros(values[0, :, 1:-1])
+    parts = Pieces(np.union1d(pieces.edges, pieces.angle_at(piece, place)), pieces.count)
+    sizes = np.abs(torque(parts.angle.ravel())).reshape(parts.angle.shape)
+    return math.fsum(parts.whole(sizes)) / turn.period, float(error), floor, parts
 
 
 def energy_per_turn(solution):
@@ -146,7 +146,7 @@ def means(function, turn, floor):
         Rounding of the values.
     """
 
-    def evaluate(angle):
+    def evaluate(angle, _=None):
         return function(angle.ravel()).reshape(-1, *angle.shape)
 
     first = evaluate(turn.pieces.checked)

@@ -19,6 +19,8 @@ POINTS = 24
 """Points of a piece."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
 """The same where there are more edges than a number."""
+TAIL_TERMS = 3
+"""Last coefficients of a series that tell its error."""
 TAIL = 2e-14
 """Size of the last coefficients of a series, relative to its largest value, that is rounding."""
 MAX_HALVINGS = 60
@@ -39,8 +41,9 @@ CHOPPED = 2e-3
 class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
-    `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes;
-    `dense` and `ends` from values at the points to those at the dense places and both ends, `end_slopes` to slopes.
+    `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes,
+    `risen` to that of integrals from -1. `check` goes from values at the points to the last coefficients, and
+    to values and slopes at both ends.
     """
 
     points: np.ndarray
@@ -50,10 +53,9 @@ class Rule(NamedTuple):
     weights: np.ndarray
     places: np.ndarray
     derived: np.ndarray
+    risen: np.ndarray
     many: np.ndarray
-    dense: np.ndarray
-    ends: np.ndarray
-    end_slopes: np.ndarray
+    check: np.ndarray
 
 
 @lru_cache
@@ -61,23 +63,13 @@ def rule(count) -> Rule:
     points = chebyshev.chebpts1(count)
     vander = chebyshev.chebvander(points, count - 1)
     series = vander.T * (np.where(np.arange(count) == 0, 1.0, 2.0) / count)[:, None]
-    whole = chebyshev.chebint(series, lbnd=-1)
+    risen = chebyshev.chebint(np.eye(count), lbnd=-1)
+    derived = np.vstack([chebyshev.chebder(np.eye(count)), np.zeros(count)])
     places = np.cos(np.linspace(np.pi, 0.0, DENSE * count))
     many = chebyshev.chebvander(places, count - 1)
-    derived = np.vstack([chebyshev.chebder(np.eye(count)), np.zeros(count)])
-    return Rule(
-        points,
-        vander,
-        series,
-        chebyshev.chebvander(points, count) @ whole,
-        _weights(count),
-        places,
-        derived,
-        many,
-        many @ series,
-        many[[0, -1]] @ series,
-        many[[0, -1]] @ derived @ series,
-    )
+    check = np.vstack([series[-TAIL_TERMS:], many[[0, -1]] @ series, many[[0, -1]] @ derived @ series])
+    whole = chebyshev.chebvander(points, count) @ risen @ series
+    return Rule(points, vander, series, whole, _weights(count), places, derived, risen, many, check)
 
 
 def _weights(count):
@@ -89,10 +81,49 @@ def _weights(count):
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Pieces of a turn between edges, each with `count` points; values are (pieces, points)."""
+    """Pieces of a period between edges, each with `count` points, of one design or of several.
+
+    Values are (..., pieces, points). Edges rise from the start of the period to its end, those of several designs one
+    design after the other.
+    """
 
     edges: np.ndarray
     count: int
+
+    @classmethod
+    def between(cls, breaks, period, width, count=None):
+        """Pieces of designs between their breaks (designs, K), NaN where one has fewer, none wider than `width`."""
+        ends = np.broadcast_to([0.0, period], (len(breaks), 2))
+        breaks = np.sort(np.column_stack([ends[:, 0], breaks]))
+        kept = (np.diff(breaks, prepend=-1.0) > 4.0 * JUMP_OFFSET) & (breaks < period - 4.0 * JUMP_OFFSET)
+        breaks, kept = np.column_stack([breaks, ends[:, 1]]), np.column_stack([kept, ends[:, 1] > 0.0])
+        edges = edges_between(breaks[kept], width)
+        return cls(edges, count or point_count(edges[: -(-edges.size // len(breaks))]))
+
+    @cached_property
+    def _inside(self):
+        """Whether a piece, not the end of a design, follows each edge but the last."""
+        return np.diff(self.edges) >= 0.0
+
+    @cached_property
+    def low(self):
+        """Start of each piece."""
+        return self.edges[:-1][self._inside]
+
+    @cached_property
+    def high(self):
+        """End of each piece."""
+        return self.edges[1:][self._inside]
+
+    @cached_property
+    def owner(self):
+        """Design of each piece."""
+        return np.cumsum(~self._inside)[self._inside]
+
+    @cached_property
+    def firsts(self):
+        """First piece of each design."""
+        return np.flatnonzero(np.diff(self.owner, prepend=-1))
 
     @property
     def period(self):
@@ -100,25 +131,52 @@ class Pieces:
 
     @cached_property
     def half(self):
-        return 0.5 * np.diff(self.edges)[:, None]
+        return 0.5 * (self.high - self.low)[:, None]
+
+    @cached_property
+    def middle(self):
+        return 0.5 * (self.low + self.high)
 
     @cached_property
     def angle(self):
         """Crank angles of all points."""
-        return 0.5 * (self.edges[:-1] + self.edges[1:])[:, None] + self.half * rule(self.count).points
+        return self.middle[:, None] + self.half * rule(self.count).points
+
+    def angle_at(self, piece, place):
+        """Crank angles at places from -1 to 1 of pieces."""
+        return self.middle[piece] + self.half[piece, 0] * place
+
+    def some(self, designs):
+        """Pieces of the designs in a mask, and the mask of these pieces."""
+        own = np.append(np.cumsum(~self._inside, dtype=int) - ~self._inside, self.owner[-1])  # design of each edge
+        return Pieces(self.edges[designs[own]], self.count), designs[self.owner]
+
+    def sums(self, parts):
+        """Sum over the pieces of each design, (..., designs)."""
+        return np.add.reduceat(parts, self.firsts, axis=-1)
+
+    def largest_of(self, parts):
+        """Largest of the pieces of each design, (..., designs)."""
+        return np.maximum.reduceat(parts, self.firsts, axis=-1)
 
     def integral(self, values):
         """Integral from the start of its piece to each point."""
-        return self.half * (values @ rule(self.count).integral.T)
+        return self.half * product(values, rule(self.count).integral)
 
     def whole(self, values):
         """Integral over each piece."""
-        return self.half[:, 0] * (values @ rule(self.count).weights)
+        return self.half[:, 0] * product(values, rule(self.count).weights[None])[..., 0]
+
+    def before(self, parts):
+        """Sum over the earlier pieces of the same design."""
+        number = np.arange(len(parts)) - self.firsts[self.owner]
+        rows = np.zeros((self.firsts.size, number.max() + 2))
+        rows[self.owner, number + 1] = parts
+        return rows.cumsum(axis=1)[self.owner, number]
 
     def integrated(self, values):
         """Integral from the first edge to each point."""
-        before = np.concatenate([[0.0], np.cumsum(self.whole(values))[:-1]])
-        return self.integral(values) + before[:, None]
+        return self.integral(values) + self.before(self.whole(values))[:, None]
 
     def total(self, values):
         """Integral over all pieces."""
@@ -126,7 +184,7 @@ class Pieces:
 
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""
-        return rule(self.count).series @ values.T
+        return product(values, rule(self.count).series).T
 
     def smoothed(self, values):
         """Values of the lower half of each series; the upper half of difference quotients is noise."""
@@ -141,7 +199,7 @@ class Pieces:
 
     def tails(self, values):
         """Size of the last coefficients of each piece, (..., pieces)."""
-        return np.abs(values @ rule(self.count).series[-3:].T).max(axis=-1)
+        return np.abs(product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
 
     def tail(self, values):
         """The same relative to the largest value of all."""
@@ -152,22 +210,46 @@ class Pieces:
         """Values of a series at crank angles between the first and the last edge."""
         shape, angle = angle.shape, angle.ravel()
         piece = np.clip(np.searchsorted(self.edges, angle, side="right") - 1, 0, len(self.half) - 1)
-        place = (angle - 0.5 * (self.edges[piece] + self.edges[piece + 1])) / self.half[piece, 0]
+        place = (angle - self.middle[piece]) / self.half[piece, 0]
         return chebyshev.chebval(place, series[:, piece], tensor=False).reshape(shape)
 
+    def weights_at(self, place):
+        """Weights (K, points) of the values at the points of a piece in those at places from -1 to 1."""
+        return waves(self.count, place).T @ rule(self.count).series
+
+    def weights_up_to(self, place):
+        """The same in the integrals from -1 to places."""
+        own = rule(self.count)
+        return product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
+
+    def summits(self, values, pieces):
+        """Heights, pieces and places of the turning points and both ends of some pieces."""
+        series = self.series(values[pieces])
+        place, own = self._zeros(product(series.T, rule(self.count).derived).T)
+        place, own = (
+            np.append(np.repeat([-1.0, 1.0], len(pieces)), place),
+            np.append(np.tile(np.arange(len(pieces)), 2), own),
+        )
+        return np.einsum("np,np->p", series[:, own], waves(self.count, place)), pieces[own], place
+
+    def peaks(self, values):
+        """Highest value of each design, its piece, and its place there, each (designs,); NaN where a value is.
+
+        A series cannot exceed the sum of the sizes of its terms; only pieces that may exceed all points are examined.
+        """
+        series, known = self.series(values), self.largest_of(values.max(axis=1))
+        most = series[0] + np.abs(series[1:]).sum(axis=0)
+        height, piece, place = self.summits(values, np.flatnonzero(most >= known[self.owner]))
+        best = highest(height, self.owner[piece])
+        design = self.owner[piece[best]]
+        found, pieces = np.full((2, known.size), np.nan), np.zeros(known.size, dtype=int)
+        found[:, design], pieces[design] = (height[best], place[best]), piece[best]
+        return found[0], pieces, found[1]
+
     def largest(self, values):
-        """Largest value of a function given at the points, and its crank angle."""
-        dense = values @ rule(self.count).dense.T
-        piece, at = np.unravel_index(np.argmax(dense), dense.shape)
-        place = rule(self.count).places[at]
-        series = rule(self.count).series @ values[piece]
-        slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
-        for _ in range(4):
-            curved = chebyshev.chebval(place, bend)
-            if curved < 0.0:
-                place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
-        angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
-        return float(chebyshev.chebval(place, series)), float(angle)
+        """Largest value of a function of one design given at the points, and its crank angle."""
+        height, piece, place = self.peaks(values)
+        return float(height[0]), float(self.angle_at(piece, place)[0])
 
     def peak(self, values):
         """Value of largest size of a function given at the points, with its sign."""
@@ -175,8 +257,8 @@ class Pieces:
 
     def split(self, marked):
         """Pieces, those in the mask `marked` halved."""
-        middle = 0.5 * (self.edges[:-1] + self.edges[1:])[marked]
-        return Pieces(np.sort(np.concatenate([self.edges, middle])), self.count)
+        place = np.flatnonzero(self._inside)[marked] + 1
+        return Pieces(np.insert(self.edges, place, self.middle[marked]), self.count)
 
     @property
     def can_split(self):
@@ -186,47 +268,37 @@ class Pieces:
     @property
     def checked(self):
         """Crank angles (pieces, points + 2) of all points, and beside both ends, where series are checked."""
-        ends = self.edges[:-1] + JUMP_OFFSET, self.edges[1:] - JUMP_OFFSET
-        return np.column_stack([ends[0], self.angle, ends[1]])
+        return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
     def resolved(self, values, evaluate, rough):
-        """Pieces halved until the series of several functions are exact to rounding; these, values, and rough pieces.
+        """Pieces halved until the series of several functions are exact enough; these, values, and rough pieces.
 
         Parameters
         ----------
         values : array (functions, pieces, points + 2)
             At the angles `checked`.
         evaluate : function
-            From crank angles (pieces, points + 2) to values.
+            From crank angles (P, points + 2) and the designs (P,) of these pieces to values.
         rough : function
             From pieces, errors of their series (functions, pieces) and values to a mask of those to halve.
         """
-        pieces, most = self, len(self.half) + MAX_UNRESOLVED * self.period / TURN
+        pieces, errors = self, self.errors(values)
+        most = self.sums(np.ones(len(self.half), int)) + MAX_UNRESOLVED * self.period / TURN
         for _ in range(MAX_HALVINGS):
-            marked = rough(pieces, pieces.errors(values), values) & pieces.can_split
-            if not marked.any() or marked.sum() > most:
+            rough_ones = rough(pieces, errors, values) & pieces.can_split
+            marked = rough_ones & (pieces.sums(rough_ones.astype(int)) <= most)[pieces.owner]
+            if not marked.any():
                 break
-            pieces, values = pieces.replaced(pieces.split(marked), values, evaluate)
-        return pieces, values, marked
+            parts = 1 + marked
+            new, pieces = np.repeat(marked, parts), pieces.split(marked)
+            values, errors = np.repeat(values, parts, axis=1), np.repeat(errors, parts, axis=1)
+            values[:, new] = evaluate(pieces.checked[new], pieces.owner[new])
+            errors[:, new] = _errors(values[:, new], pieces.half[new], self.count)
+        return pieces, values, rough_ones
 
     def errors(self, values):
         """Estimate of the error of each series: last coefficients, and misfit at both ends, (..., pieces)."""
-        own, inner = rule(self.count), values[..., 1:-1]
-        shift = JUMP_OFFSET / self.half * [1.0, -1.0]
-        ends = inner @ own.ends.T + shift * (inner @ own.end_slopes.T)
-        return np.fmax(self.tails(inner), np.abs(ends - values[..., [0, -1]]).max(axis=-1))
-
-    def replaced(self, others, values, evaluate):
-        """Other pieces with values; only those that differ are evaluated."""
-        place = np.searchsorted(self.edges, others.edges[:-1])
-        same = np.isin(others.edges, self.edges)
-        same = same[:-1] & same[1:]
-        same[same] = self.edges[place[same] + 1] == others.edges[1:][same]
-        found = np.empty((len(values), len(same), self.count + 2))
-        found[:, same] = values[:, place[same]]
-        if not same.all():
-            found[:, ~same] = evaluate(others.checked[~same])
-        return others, found
+        return _errors(values, self.half, self.count)
 
     def turning(self, values, level):
         """Crank angles inside pieces at which a function turns, and whether it turns at the start of each piece.
@@ -246,37 +318,36 @@ class Pieces:
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
-        series = self._derived(np.where(large, series, 0.0), 2)
+        series = [np.where(large, series, 0.0)]
+        series += [rule(self.count).derived @ series[0]]
+        series += [rule(self.count).derived @ series[1]]
         slopes = _slope_of_size if len(values) == 2 else _slope
         slope, bend = slopes(*(rule(self.count).many @ rows for rows in series))
         moves = (np.ptp(values, axis=2) > level).any(axis=0)
-        inner = self._roots(slope, bend, moves, slopes, series)
+        place, piece = self._roots(slope, bend, moves, slopes, series)
         rises = np.where(moves, np.sign(slope[[0, -1]]), 0.0)
-        return *inner, np.roll(rises[1], 1) * rises[0] <= 0.0
+        return self.angle_at(piece, place), piece, np.roll(rises[1], 1) * rises[0] <= 0.0
 
     def zeros(self, values):
-        """Crank angles at which a function (pieces, points) changes its sign inside pieces."""
-        series = self._derived(self.series(values)[None], 1)
-        value, slope = (rule(self.count).many @ rows[0] for rows in series)
-        return self._roots(value, slope, np.ones(len(values), bool), lambda *parts: [part[0] for part in parts], series)
+        """Places from -1 to 1, and their pieces, at which a function (pieces, points) changes its sign."""
+        return self._zeros(self.series(values))
 
-    def _derived(self, series, order):
-        """Series and those of their derivatives up to an order; places from -1 to 1."""
-        found = [series]
-        for _ in range(order):
-            found.append(rule(self.count).derived @ found[-1])
-        return found
+    def _zeros(self, series):
+        series = [series[None], product(series.T, rule(self.count).derived).T[None]]
+        value, slope = (product(rows[0].T, rule(self.count).many).T for rows in series)
+        everywhere = np.ones(value.shape[1], bool)
+        return self._roots(value, slope, everywhere, lambda *parts: [part[0] for part in parts], series)
 
     def _roots(self, dense, slope, asked, function, series):
-        """Crank angles and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
+        """Places and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
 
         `function` returns value and slope from the values of all series; two roots between dense places are found too.
         """
-        places, order = rule(self.count).places, np.arange(self.count)[:, None]
+        places = rule(self.count).places
 
         def evaluate(piece, place):
-            waves = np.cos(order * np.arccos(place))
-            return function(*(np.einsum("ckn,kn->cn", rows[:, :, piece], waves) for rows in series))
+            own = waves(self.count, place)
+            return function(*(np.einsum("ckn,kn->cn", rows[:, :, piece], own) for rows in series))
 
         changes = np.signbit(dense[:-1]) != np.signbit(dense[1:])
         at, piece = np.nonzero(changes & asked)
@@ -298,7 +369,30 @@ class Pieces:
                 value, rate = evaluate(piece, place)
                 step = place - value / rate
                 place = np.clip(np.where(np.isfinite(step), step, place), low, high)
-        return 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place, piece
+        return place, piece
+
+
+def product(values, matrix):
+    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on those beside it."""
+    return np.einsum("...n,mn->...m", values, matrix)
+
+
+def highest(height, group):
+    """Index of the highest of each group."""
+    order = np.lexsort((height, group))
+    return order[np.flatnonzero(np.diff(group[order], append=np.max(group, initial=0) + 1))]
+
+
+def waves(count, place):
+    """Chebyshev polynomials (count, K) at places from -1 to 1."""
+    return np.cos(np.arange(count)[:, None] * np.arccos(place))
+
+
+def _errors(values, half, count):
+    found = product(values[..., 1:-1], rule(count).check)
+    shift = JUMP_OFFSET / half * [1.0, -1.0]
+    misfit = found[..., TAIL_TERMS:-2] + shift * found[..., -2:] - values[..., [0, -1]]
+    return np.fmax(np.abs(found[..., :TAIL_TERMS]).max(axis=-1), np.abs(misfit).max(axis=-1))
 
 
 def point_count(edges):

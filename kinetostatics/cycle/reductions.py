@@ -9,6 +9,7 @@ textbooks is nearly swing / (delta omega^2) (`drive.flywheel`).
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -50,23 +51,12 @@ def _peaks(reduction, values):
     return combined_peaks(reduction, signed), error
 
 
-def _with_error(reduction):
-    """Reduction of values (designs, N), and its difference from that of every other value; 0 for odd N."""
-
-    def estimated(values):
-        found = reduction(values)
-        return found, np.abs(reduction(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
-
-    return estimated
-
-
 def _mean_absolute(values):
-    found, error = np.empty((2, len(values)))
+    found = np.empty(len(values))
     for first, some in blocks(values, 8):
-        size, designs = np.abs(some, out=scratch(float, *some.shape)), slice(first, first + len(some))
-        found[designs] = size.mean(axis=-1) - _kink_excess(some)
-        error[designs] = size[:, ::2].mean(axis=-1) - _kink_excess(some[:, ::2]) - found[designs]
-    return found, np.abs(error) * (values.shape[-1] % 2 == 0)
+        size = np.abs(some, out=scratch(float, *some.shape))
+        found[first : first + len(some)] = size.mean(axis=-1) - _kink_excess(some)
+    return found
 
 
 def _kink_excess(values):
@@ -85,12 +75,9 @@ def _kink_excess(values):
 
 
 def _harmonic(order, values):
-    def amplitude(values):
-        angle = 2 * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1]
-        parts = (np.einsum("dn,n->d", values, wave(angle)) for wave in (np.cos, np.sin))
-        return np.hypot(*parts) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
-
-    return amplitude(values), np.abs(amplitude(values[:, ::2]) - amplitude(values))
+    angle = 2 * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1]
+    parts = (np.einsum("dn,n->d", values, wave(angle)) for wave in (np.cos, np.sin))
+    return np.hypot(*parts) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
 
 
 def gained(values):
@@ -112,14 +99,15 @@ def _swing(values):
     return peak(integral)[0] + peak(integral, -1.0)[0]
 
 
-REDUCTIONS = {
-    **{name: partial(_peaks, name) for name in PEAKS},
-    "mean": _with_error(lambda values: values.mean(axis=-1)),
+MEANS: dict[str, Callable] = {
+    "mean": partial(np.mean, axis=-1),
     "mean_absolute": _mean_absolute,
-    "rms": _with_error(lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1])),
-    "swing": _with_error(_swing),
+    "rms": lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1]),
+    "swing": _swing,
 }
-"""By name: function of values (designs, N) evenly over the period to numbers and estimates of their errors."""
+"""By name: function of values (designs, N) evenly over the period to numbers."""
+REDUCTIONS = (*PEAKS, *MEANS)
+"""Names of reductions but harmonics."""
 
 
 @dataclass(frozen=True)
@@ -189,21 +177,28 @@ class Output:
         found = re.fullmatch(r"harmonic_(\d+)", self.reduction)
         return int(found[1]) if found else None
 
-    def reduced(self, values):
-        """Numbers (designs,) from values (designs, N) evenly over a turn; NaN where a value is."""
-        return self.estimated(values)[0]
+    def reduced(self, values, turns=1):
+        """Numbers (designs,) from values (designs, N) evenly over some turns; NaN where a value is."""
+        if self.reduction in PEAKS:
+            return self.with_errors(values, turns)[0]
+        order = self.order
+        found = MEANS[self.reduction](values) if order is None else _harmonic(order * turns, values)
+        return found * turns if self.reduction in OVER_THE_ANGLE else found
+
+    def with_errors(self, values, turns=1):
+        """The same, and estimates of their errors; of means the difference from that of every other value."""
+        if self.reduction in PEAKS:
+            found, error = _peaks(self.reduction, values)
+            return found * turns if self.reduction in OVER_THE_ANGLE else found, error
+        found, resolves = self.reduced(values, turns), values.shape[-1] % 2 == 0 or self.order is not None
+        return found, np.abs(self.reduced(values[:, ::2], turns) - found) * resolves
 
     def estimated(self, values, turns=1):
-        """Numbers (designs,) from values (designs, N) evenly over some turns, and whether the samples are too few."""
-        order = self.order
-        found, error = REDUCTIONS[self.reduction](values) if order is None else _harmonic(order * turns, values)
-        mean = self.reduction not in PEAKS
-
-        def size(rough):
-            return np.abs(values[rough]).max(axis=-1) if mean else np.ptp(values[rough], axis=-1)
-
-        rough = is_rough(self, found, error, size)
-        return found * turns if self.reduction in OVER_THE_ANGLE else found, rough
+        """Numbers as of `reduced`, and whether the samples are too few."""
+        found, error = self.with_errors(values, turns)
+        if self.reduction in PEAKS:
+            return found, is_rough(self, found, error, lambda rough: np.ptp(values[rough], axis=-1))
+        return found, is_rough(self, found, error, lambda rough: np.abs(values[rough]).max(axis=-1))
 
 
 def is_rough(output, found, error, size):

@@ -7,8 +7,8 @@ from numpy.polynomial import chebyshev
 
 from ..numbers.brackets import find_minima
 from .kinks import ANGLE_TOLERANCE
+from .limit_positions import runs
 from .piecewise import JUMP_OFFSET, rule
-from .turn import runs
 
 JUMP_TOLERANCE = 1e-9
 """Difference of the values on both sides of an edge, relative to the largest value, that is no jump."""

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.kinks import resolution_note
-from ..cycle.turn import require_single
+from ..cycle.limit_positions import require_single
 from ..errors import ParameterError
 from ..machine.cams import roller
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak, curvature, highest, surface_curvature

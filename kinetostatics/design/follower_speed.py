@@ -7,7 +7,7 @@ import numpy as np
 
 from ..cycle.extremes import extrema, largest_of
 from ..cycle.kinks import sign_changes
-from ..cycle.turn import require_single
+from ..cycle.limit_positions import require_single
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import Spring

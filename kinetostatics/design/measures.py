@@ -1,9 +1,8 @@
 """Reductions of curves with exact derivatives by the numbers of the design: formulas of `cycle.reductions`.
 
-`Curve` has values evenly over the period, `PartedCurve` on its pieces between bends. There every reduction is, near a
-design, a sum of the values at the nodes with weights: those of the polynomial at the peak, or of the integral. Where a
-peak lies at a kink, which moves with the design, both sides of it tell how: f and its derivatives hold on both, so
-f' dphi + df is the same. Where a curve jumps, the place of the jump is taken as it is.
+`Curve` has values evenly over the period, `PiecewiseCurve` on its pieces between kinks. Where a peak lies at a kink,
+which moves with the design, both sides of it tell how: f and its derivatives hold on both, so f' dphi + df is the same.
+Where a curve jumps, the place of the jump is taken as it is.
 """
 
 from typing import Any, NamedTuple
@@ -11,8 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.peaks import REACH, THROUGH
-from ..cycle.pieces import NEWTON_STEPS, NODES, PLACES, SERIES, WEIGHTS
-from ..cycle.reductions import gained
+from ..cycle.piecewise import highest, rule
+from ..cycle.piecewise_reductions import averaged
+from ..cycle.piecewise_reductions import gained as gained_on
+from ..cycle.reductions import Output, gained
 
 SECTORS = 72
 """Parts of the period whose largest values are limited one by one: where peaks compete, each counts."""
@@ -22,19 +23,14 @@ SIDES = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0)
 """By reduction that is a largest value: which sides of a quantity, or its integral, its extreme is on."""
 _AROUND = np.arange(-REACH, REACH + 1)
 _ORDERS = np.arange(2 * REACH + 1)
-POWERS = np.arange(NODES.size)
-AT = PLACES[:, None] ** POWERS @ SERIES
-"""Weights (places, nodes) of the values at the nodes in those at places on a piece."""
-SLOPE = POWERS[1:] * np.array([[-1.0], [1.0]]) ** (POWERS[1:] - 1) @ SERIES[1:]
-"""The same in the slopes at both ends of a piece, by the place from -1 to 1."""
-GROWN = (PLACES[:, None] ** (POWERS + 1) - (-1.0) ** (POWERS + 1)) / (POWERS + 1) @ SERIES
-"""The same in the integral from the beginning of a piece."""
+JUMP = 1e-6
+"""Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
 LEVEL = 1e-4
 """Change of the slope from one piece to the next, by the largest value over the period, that is no kink."""
 
 
 def reduced(reduction, curve):
-    """Value of a reduction, and its derivatives (n,), of a `Curve` or `PartedCurve`."""
+    """Value of a reduction, and its derivatives (n,), of a `Curve` or `PiecewiseCurve`."""
     if reduction not in SIDES and reduction != "range":
         return curve.averaged(reduction)
     sides = (1.0, -1.0) if reduction == "range" else SIDES[reduction]
@@ -101,11 +97,11 @@ class Curve(NamedTuple):
         return value, np.real(np.conj(amplitude) / (value or 1.0) * (self.slopes @ wave))
 
 
-def size(values, slopes, turns=1) -> Curve:
-    """Magnitude of a vector, from its components (2, N) and their derivatives (n, 2, N)."""
+def size(values, slopes):
+    """Magnitude of a vector, and its derivatives (n, ...), from those of its components (2, ...)."""
     found = np.hypot(*values)
     towards = values / np.maximum(found, np.finfo(float).tiny)
-    return Curve(found, np.einsum("cn,kcn->kn", towards, slopes), turns)
+    return found, np.einsum("c...,kc...->k...", towards, slopes)
 
 
 def _through_peaks(samples):
@@ -145,10 +141,10 @@ def _mean_absolute(values):
     return (abs(values).sum() - excess) / count, weights / count
 
 
-class PartedCurve(NamedTuple):
-    """Values (P, 8) of a quantity at the nodes of pieces of the period, and their derivatives (n, P, 8).
+class PiecewiseCurve(NamedTuple):
+    """Values (P, points) of a quantity on the pieces of one design's period, and their derivatives (n, P, points).
 
-    `pieces` are those of one design; `vector` tells a magnitude, whose square is smooth.
+    `vector` tells a magnitude, whose square is smooth.
     """
 
     values: np.ndarray
@@ -158,126 +154,59 @@ class PartedCurve(NamedTuple):
 
     def averaged(self, reduction):
         """Value of a mean or harmonic, and its derivatives (n,)."""
-        width = self.pieces.width[0, :, None] / self.pieces.period
-        if reduction == "rms":
-            found = np.sqrt(np.sum(width * WEIGHTS * self.values**2))
-            weights = width * WEIGHTS * self.values / (found or 1.0)
-        elif reduction in ("mean", "mean_absolute"):
-            weights = width * (WEIGHTS if reduction == "mean" or self.vector else _signed(self.values))
-            found = np.sum(weights * self.values)
-        else:
-            order = int(reduction.removeprefix("harmonic_"))
-            angle = self.pieces.start[0, :, None] + self.pieces.width[0, :, None] * NODES
-            wave = np.exp(1j * order * angle) * width * WEIGHTS * (1.0 if order == 0 else 2.0)
-            amplitude = np.sum(wave * self.values)
-            found = abs(amplitude)
-            weights = np.real(np.conj(amplitude) / (found or 1.0) * wave)
+        (found,), weights = averaged(self.pieces, Output("", reduction), self.values, self.vector)
         return found, np.tensordot(self.slopes, weights, 2)
 
     def tops(self, side, sectors, energy=False):
         """As `Curve.tops`; the energy is the integral of what the curve is above its mean."""
-        square = self.vector and not energy
+        pieces, square = self.pieces, self.vector and not energy
         values = self.values**2 if square else self.values
         slopes = 2.0 * self.values * self.slopes if square else self.slopes
-        width = self.pieces.width[0, :, None]
-        angle = self.pieces.start[0, :, None] + width * (0.5 + 0.5 * PLACES)
+        piece, place = self._summits(side * (gained_on(pieces, values) if energy else values), sectors)
         if energy:
-            parts = np.sum(width * WEIGHTS * self.values, axis=1, keepdims=True)
-            inner = 0.5 * width * (self.values @ GROWN.T)
-            heights = side * (np.cumsum(parts, axis=0) - parts + inner - angle / self.pieces.period * parts.sum())
-        else:
-            heights = side * (values @ AT.T)
-        heights[self.pieces.width[0] == 0.0] = -np.inf
-        sector = np.minimum((angle.ravel() / self.pieces.period * sectors).astype(int), sectors - 1)
-        order, best = np.argsort(heights, axis=None, kind="stable"), np.zeros(sectors, dtype=int)
-        best[sector[order]] = order
-        piece, at = self._peaks_at(heights, side, energy, *np.divmod(best, PLACES.size))
-        if energy:
-            weights = np.stack([self._gain(*pair) for pair in zip(piece, at, strict=True)])
+            weights = self._weights_of_energy(piece, place)
             return side * np.tensordot(weights, values, 2), side * np.tensordot(slopes, weights, ([1, 2], [1, 2]))
-        weights = at[:, None] ** POWERS @ SERIES
+        weights = pieces.weights_at(place)
         found = side * np.sum(weights * values[piece], axis=1)
         changes = side * np.einsum("npk,pk->np", slopes[:, piece], weights)
-        for part in np.flatnonzero(np.abs(at) == 1.0):
-            changes[:, part] += side * self._moved(values, slopes, piece[part], at[part])
+        for part in np.flatnonzero(np.abs(place) == 1.0):
+            changes[:, part] += side * self._moved(values, slopes, piece[part], place[part])
         if square:
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
             return side * height, changes / (2.0 * height)
         return found, changes
 
-    def _peaks_at(self, heights, side, energy, piece, sample):
-        """Piece and place (sectors,) of the peak at each sample; at the end of a piece the higher of both sides."""
-        values = self.values**2 if self.vector and not energy else self.values
-        mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period if energy else 0.0
-        last, count = PLACES.size - 1, np.count_nonzero(self.pieces.width[0])
-        step = np.where(sample == last, 1, np.where(sample == 0, -1, 0))
-        beside, other = (piece + step) % count, np.where(step, last - sample, sample)
+    def _summits(self, values, sectors):
+        """Piece and place (sectors,) of the highest value in each sector of the period."""
+        pieces = self.pieces
+        height, piece, place = pieces.summits(values, np.flatnonzero(pieces.can_split))
+        sector = pieces.angle_at(piece, place - np.copysign(1e-9, place)) * (sectors / pieces.period)
+        border = np.linspace(0.0, pieces.period, sectors + 1)[1:-1]
+        beside = np.searchsorted(pieces.edges, border, side="right") - 1
+        there = (border - pieces.middle[beside]) / pieces.half[beside, 0]
+        height = np.append(height, np.repeat(np.sum(pieces.weights_at(there) * values[beside], axis=1), 2))
+        piece, place = np.append(piece, np.repeat(beside, 2)), np.append(place, np.repeat(there, 2))
+        best = highest(height, np.append(sector.astype(int), np.arange(1, 2 * sectors - 1) // 2))
+        return piece[best], place[best]
 
-        def peak(piece, place, height):
-            series = side * (SERIES @ values[piece].T)
-            if energy:
-                series[0] -= side * mean
-                series = np.polynomial.polynomial.polyint(series) * (0.5 * self.pieces.width[0, piece])
-            at = _peaks(series, place)
-            return height + _at(series, at) - _at(series, place), at
-
-        height, at = peak(piece, PLACES[sample], heights[piece, sample])
-        higher, there = peak(beside, PLACES[other], heights[beside, other])
-        return np.where(higher > height, beside, piece), np.where(higher > height, there, at)
-
-    def _gain(self, piece, place):
-        """Weights (P, nodes) of the values in that integral, at a place of a piece."""
-        start, width = self.pieces.start[0], self.pieces.width[0]
-        whole = width[:, None] * WEIGHTS
-        found = -(start[piece] + width[piece] * (0.5 + 0.5 * place)) / self.pieces.period * whole
-        found[:piece] += whole[:piece]
-        found[piece] += 0.5 * width[piece] * ((place ** (POWERS + 1) - (-1.0) ** (POWERS + 1)) / (POWERS + 1) @ SERIES)
+    def _weights_of_energy(self, piece, place):
+        """Weights (K, P, points) of the values in that integral, at places of pieces."""
+        pieces = self.pieces
+        whole = pieces.half * rule(pieces.count).weights
+        passed = np.arange(len(whole)) < piece[:, None]
+        found = (passed - pieces.angle_at(piece, place)[:, None] / pieces.period)[..., None] * whole
+        found[np.arange(piece.size), piece] += pieces.half[piece] * pieces.weights_up_to(place)
         return found
 
     def _moved(self, values, slopes, piece, end):
         """What the move of a kink at an end of a piece adds to the derivatives of the value there (n,)."""
         pieces = self.pieces
-        count = int((pieces.width[0] > 0.0).sum())
-        later = piece if end < 0.0 else (piece + 1) % count
-        if not pieces.joined[0, later]:
+        later = piece if end < 0.0 else (piece + 1) % len(values)
+        pair, ends = [later - 1, later], np.array([1.0, -1.0])
+        weights, size = pieces.weights_at(ends), np.abs(values).max()
+        heights = np.sum(weights * values[pair], axis=1)
+        steepness = np.sum(rule(pieces.count).check[[-1, -2]] * values[pair], axis=1) / pieces.half[pair, 0]
+        if abs(np.diff(heights)[0]) > JUMP * size or abs(np.diff(steepness)[0]) < LEVEL * size / pieces.period:
             return np.zeros(len(slopes))
-        earlier = (later - 1) % count
-        sides = []
-        for number, row in ((earlier, 1), (later, 0)):
-            weights = AT[-1 if row else 0]
-            rate = 2.0 / pieces.width[0, number] * (SLOPE[row] @ values[number])
-            sides.append((rate, slopes[:, number] @ weights))
-        (before, one), (after, other) = sides
-        steep = np.abs(values).max() / pieces.period
-        if abs(after - before) < LEVEL * steep:
-            return np.zeros(len(slopes))
-        return (after if end < 0.0 else before) * (one - other) / (after - before)
-
-
-def _peaks(series, places):
-    """Where polynomials (terms, parts) are highest around one of the places each."""
-    step = PLACES[1] - PLACES[0]
-    slope, bend = (np.polynomial.polynomial.polyder(series, order) for order in (1, 2))
-    low, high, at = np.maximum(places - step, -1.0), np.minimum(places + step, 1.0), places
-    for _ in range(NEWTON_STEPS):
-        rise, curved = _at(slope, at), _at(bend, at)
-        at = np.clip(at - np.divide(rise, curved, out=np.zeros_like(at), where=curved < 0.0), low, high)
-    return np.where(_at(series, at) >= _at(series, places), at, places)
-
-
-def _at(series, places):
-    return np.polynomial.polynomial.polyval(places, series, tensor=False)
-
-
-def _signed(values):
-    """Weights (P, nodes) of values in the means of their magnitudes on pieces."""
-    found = np.where(values < 0.0, -1.0, 1.0) * WEIGHTS
-    for piece in np.flatnonzero((values.min(axis=1) < 0.0) & (values.max(axis=1) > 0.0)):
-        roots = np.polynomial.polynomial.polyroots(SERIES @ values[piece])
-        inner = np.sort(roots.real[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) < 1.0)])
-        edges = np.concatenate([[-1.0], inner, [1.0]])
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        signs = np.sign((middle[:, None] ** POWERS @ SERIES) @ values[piece])
-        grown = np.diff(edges[:, None] ** (POWERS + 1), axis=0) / (POWERS + 1)
-        found[piece] = 0.5 * signs @ grown @ SERIES
-    return found
+        one, other = np.einsum("npk,pk->pn", slopes[:, pair], weights)
+        return steepness[int(end < 0.0)] * (one - other) / np.diff(steepness)

@@ -179,16 +179,16 @@ class Problem:
         self.evaluations += 1
         try:
             numbers, changes = self.derived(values)
-            parted = PiecewiseTurns.of(self.scene(values), (output,), min(self.angles, START_ANGLES * self.turns))
-            ((_, pieces, values_on),) = parted.refined((output,))
-            angle = pieces.angle[0]
+            turns = PiecewiseTurns.of(self.scene(values), (output,), min(self.angles, START_ANGLES * self.turns))
+            ((_, pieces, _),) = turns.refined((output,))
+            angle = pieces.angle.ravel()
             slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]
             found = self._curve(self.program(angle, numbers)[output.quantity], slopes, changes, angle)
         except KinetostaticsError:
             return self.curves(values)[output.quantity]
-        shape = values_on[output.quantity].shape[1:]
+        shape = pieces.angle.shape
         vector = of_scene(scene_of(self.source))[output.quantity].vector
-        return measures.PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
+        return measures.PiecewiseCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
 
     def output(self, output, values):
         """Value of an output of a design, or of a function of designs, and its derivatives."""
@@ -226,8 +226,9 @@ class Problem:
         shape = values.shape[:-1] + angle.shape
         by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
         slopes, values = np.tensordot(changes.T, by_scene, 1), np.broadcast_to(values, shape)
-        made = measures.size if values.ndim == 2 else measures.Curve
-        return made(values, slopes, self.turns)
+        if values.ndim == 2:
+            values, slopes = measures.size(values, slopes)
+        return measures.Curve(values, slopes, self.turns)
 
     def _zeros(self, scene):
         own = scene.parameters

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import has_kinks
-from ..cycle.pieces import NODES
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
@@ -131,9 +130,11 @@ def harrell_davis_weights(quantile, count):
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 16
+ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 32
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
+MAX_CACHED_BLOCKS = 64
+"""Blocks of samples whose curves of the reference are kept: a search asks for them again with each design."""
 GOLDEN_STEPS = 30
 """Golden-section steps of the trimmed speed: to a millionth of the range."""
 GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
@@ -157,6 +158,7 @@ class SampledOutput:
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
         self._nominal = scene.parameters
         self._set_output(output)
+        self._reference_cache: dict = {}
         self.weights = harrell_davis_weights(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
@@ -223,7 +225,8 @@ class SampledOutput:
     def _block_outputs(self, numbers, changes):
         """The output of some samples, (samples,), and its derivatives (samples, n)."""
         if self._has_kinks:
-            curves, above = self._piecewise_curves(numbers, changes), self._reference_outputs(numbers)
+            curves: Any = list(self._piecewise_curves(numbers, changes))
+            above = self._reference_outputs(numbers)
         else:
             if self.spread.trim:
                 *pair, above = self._best_speed_curves(numbers, changes)
@@ -239,20 +242,20 @@ class SampledOutput:
         return found, rows
 
     def _piecewise_curves(self, numbers, changes):
-        """Curves of some samples, each on pieces between its own kinks."""
+        """Yield the curve of each of some samples, on pieces between its own kinks."""
         output = without_ratio(self.output)
-        found: list[Any] = [None] * len(next(iter(numbers.values())))
-        parted = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
-        for samples, pieces, told in parted.refined((output,)):
-            some = {path: values[samples] for path, values in numbers.items()}
-            values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
-            slopes = np.zeros((len(samples), 0, *shape))
-            if self._design_numbers:
-                values, slopes = self._curves(some, changes[:, samples], pieces.angle)
-            for place, sample in enumerate(samples):
-                parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
-                found[sample] = measures.PartedCurve(*parts, pieces.some([place]), bool(self._vector))
-        return found
+        turns = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
+        ((_, pieces, known),) = turns.refined((output,))
+        if self._design_numbers:
+            some = {path: values[pieces.owner] for path, values in numbers.items()}
+            values, slopes = self._curves(some, changes[:, pieces.owner], pieces.angle)
+        else:
+            (((_, squared), rows),) = known.items()
+            values = np.sqrt(rows[:, 1:-1]) if squared else rows[:, 1:-1]
+            slopes = np.zeros((len(values), 0, pieces.count))
+        for sample in range(turns.designs):
+            own, mask = pieces.some(np.arange(turns.designs) == sample)
+            yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), own, bool(self._vector))
 
     def _curves(self, numbers, changes, angle=None):
         """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""
@@ -264,15 +267,15 @@ class SampledOutput:
             by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
             slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
         if self._vector:
-            curve = [measures.size(values[:, place], slopes[:, :, place]) for place in range(shape[-2])]
-            return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
+            values, slopes = measures.size(values, slopes)
         return values, np.moveaxis(slopes, 0, 1)
 
     def _reference_outputs(self, numbers):
         """The reference's output for each sample, (samples,); None unless the output is a ratio."""
         if not self.output.ratio:
             return None
-        reference, plain = self._reference_scene(numbers), without_ratio(self.output)
+        reference = scene_of(self.problem.reference).varied(self._shared_numbers(numbers))
+        plain = without_ratio(self.output)
         if not has_kinks(unchecked_turn(reference, 1), plain.quantity):
             return self._reduced(self._reference_curves(numbers))
         found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
@@ -280,20 +283,23 @@ class SampledOutput:
 
     def _reduced(self, curves):
         """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
-        return without_ratio(self.output).estimated(curves, self.turns)[0]
+        return self.output.reduced(curves, self.turns)
 
     def _reference_curves(self, numbers):
         """Curves of the reference (samples, N), with the deviations of the numbers that it shares."""
-        found = self._reference_scene(numbers).solve(self.angle)
-        return np.broadcast_to(
-            values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
-        )
+        shared = self._shared_numbers(numbers)
+        key = self.output.quantity, *((path, values.tobytes()) for path, values in shared.items())
+        if key not in self._reference_cache:
+            found = values_of(scene_of(self.problem.reference).varied(shared).solve(self.angle), self.output.quantity)
+            while len(self._reference_cache) >= MAX_CACHED_BLOCKS:
+                self._reference_cache.pop(next(iter(self._reference_cache)))
+            self._reference_cache[key] = found
+        return np.broadcast_to(self._reference_cache[key], (len(next(iter(numbers.values()))), self.angle.size))
 
-    def _reference_scene(self, numbers):
-        """The reference with the samples' crank speed and numbers that spread, where it has them too."""
-        reference = scene_of(self.problem.reference)
-        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
-        return reference.varied({path: numbers[path] for path in known})
+    def _shared_numbers(self, numbers):
+        """The samples' crank speed and numbers that spread, where the reference has them too."""
+        known = scene_of(self.problem.reference).units
+        return {path: numbers[path] for path in numbers if path in (*self.spread.spreads, SPEED) and path in known}
 
     def _best_speed_curves(self, numbers, changes):
         """Curves, their derivatives, and the reference's output, at the best speed of each sample within the trim."""

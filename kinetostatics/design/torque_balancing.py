@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.turn import Turn, require_single
+from ..cycle.limit_positions import Turn, require_single
 from ..errors import ParameterError
 from ..machine.builders import with_roller_follower
 from ..machine.cams.profile import POSITIVE, Peak, highest, lowest

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import sign_changes
-from ..cycle.turn import SAMPLES
+from ..cycle.limit_positions import SAMPLES
 from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
 

@@ -9,16 +9,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle import piecewise_reductions
 from ..cycle.kinks import design_kinks
-from ..cycle.pieces import MAX_OUTPUT_ERROR, Pieces, refined
+from ..cycle.piecewise import Pieces
+from ..cycle.piecewise_reductions import MAX_OUTPUT_ERROR, row_of
 from ..engines.program import program_of
 from ..errors import NotGivenError
-from ..machine.loads import KINK_TOLERANCE
+from ..machine.loads import KINK_TOLERANCE, TURN
 from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
 from .scene import unchecked_solution
 
+POINTS = 10
+"""Points of a piece."""
 START_ANGLES = 192
 """Crank angles of a turn at the start; enough for most outputs of a turn split at its kinks."""
 BLOCK_VALUES = 100_000
@@ -42,17 +46,14 @@ class PiecewiseTurns(NamedTuple):
     Attributes
     ----------
     scene : Scene
-    designs : int
-        Number of designs.
     pieces : Pieces
-        Pieces at the start.
+        Of all designs, at the start.
     goal : float
         Largest error of an output, relative to the largest value of its quantity.
     engine : "numpy" or "compiled"
     """
 
     scene: Any
-    designs: int
     pieces: Any
     goal: float
     engine: str = "numpy"
@@ -62,63 +63,56 @@ class PiecewiseTurns(NamedTuple):
         """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
-        found, jumps, rest = design_kinks(solution, straight)
-        found = np.broadcast_to(found, (count, found.shape[1]))
-        pieces = Pieces.of(found, solution.period, angles, order, jumps)
-        return cls(scene, count, pieces, max(MAX_OUTPUT_ERROR, rest), engine)
+        found, rest = design_kinks(solution, straight)
+        found, period = np.broadcast_to(found, (count, found.shape[1])), solution.period
+        width = min(period * POINTS / angles, TURN / (2 * order or 1))
+        return cls(scene, Pieces.between(found, period, width, POINTS), max(MAX_OUTPUT_ERROR, rest), engine)
+
+    @property
+    def designs(self):
+        """Number of designs."""
+        return self.pieces.firsts.size
 
     def values(self, names, designs, angle):
-        """Values (D, N) by quantity, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
-        scene, count, own = self._of(designs)
-        values, everywhere = {name: np.empty(angle.shape) for name in names}, np.repeat(angle[:1], count, axis=0)
-        everywhere[own] = angle
-        step = max(1, BLOCK_VALUES // count)
-        for start in range(0, angle.shape[1], step):
-            some = slice(start, start + step)
-            found = _magnitudes(unchecked_turn(scene, everywhere[:, some]), names, self.engine)
-            for name, part in zip(names, found, strict=True):
-                values[name][:, some] = np.broadcast_to(part, everywhere[:, some].shape)[own]
-        return values
+        """Values (P, N) by quantity, of vectors magnitudes, of the designs (P,) of pieces at crank angles (P, N)."""
+        leaves, count = Leaves(), self.designs
+        structure = flatten(self.scene, leaves)
+        if count > 1 and leaves.lasting:
+            numbers = (part[designs] if np.shape(part)[:1] == (count,) else part for part in leaves.numbers)
+            scene = unflatten(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
+            everywhere, own = angle, (slice(None), slice(None))
+        else:  # of one design, or a part, as a function, may contain numbers of designs that cannot be separated
+            scene, number = self.scene, np.arange(designs.size) - np.searchsorted(designs, designs)
+            everywhere = np.broadcast_to(angle[0], (count, number.max() + 1, angle.shape[1])).copy()
+            everywhere[designs, number], own = angle, (designs, number)
+        flat = everywhere.reshape(len(everywhere), -1)
+        found = _magnitudes(unchecked_turn(scene, flat), names, self.engine)
+        rows = (np.broadcast_to(row, flat.shape).reshape(everywhere.shape)[own] for row in found)
+        return dict(zip(names, rows, strict=True))
 
     def refined(self, outputs):
-        """Yield blocks of designs: their numbers, refined pieces, and values by quantity."""
-        names = quantity_names(outputs)
-        known = {name: quantity(self.scene, name).vector for name in names}
-        wanted = [(item, known[item.quantity]) for item in outputs]
-        step = max(1, BLOCK_VALUES // self.pieces.angle.shape[1])
+        """Yield blocks of designs: their numbers, refined pieces, and values by `row_of` outputs."""
+        vectors = {name: quantity(self.scene, name).vector for name in quantity_names(outputs)}
+        step = max(1, BLOCK_VALUES * self.designs // self.pieces.checked.size)
         for start in range(0, self.designs, step):
             some = np.arange(start, min(start + step, self.designs))
-            first = self.pieces.some(some)
+            pieces, _ = self.pieces.some(np.isin(np.arange(self.designs), some))
 
-            def evaluated(designs, angle, some=some):
-                return self.values(names, some[designs], angle)
+            def evaluated(angle, designs, start=start):
+                return self.values(list(vectors), start + designs, angle)
 
-            values = evaluated(np.arange(some.size), first.angle)
-            for designs, pieces, found in refined(first, values, wanted, evaluated, self.goal):
-                yield some[designs], pieces, found
+            yield some, *piecewise_reductions.resolved(pieces, outputs, vectors, evaluated, self.goal)
 
     def estimated(self, outputs):
         """Outputs (outputs, designs), and whether each is still uncertain with the finest pieces."""
+        vectors = {name: quantity(self.scene, name).vector for name in quantity_names(outputs)}
         found = np.empty((2, len(outputs), self.designs))
         with np.errstate(all="ignore"):
             for designs, pieces, values in self.refined(outputs):
                 for row, item in enumerate(outputs):
-                    vector = quantity(self.scene, item.quantity).vector
-                    found[:, row, designs] = pieces.estimated(item, values[item.quantity], vector)
+                    own = values[row_of(item, vectors)]
+                    found[:, row, designs] = piecewise_reductions.estimated(pieces, item, own, vectors[item.quantity])
         return found
-
-    def _of(self, designs):
-        """A scene with some of the designs, the number of its designs, and the places of those asked for.
-
-        It has all designs if a part, as a function, may contain numbers of designs that cannot be separated.
-        """
-        leaves = Leaves()
-        structure = flatten(self.scene, leaves)
-        if len(designs) == self.designs or not leaves.lasting:
-            return self.scene, self.designs, designs
-        numbers = (part[designs] if np.shape(part)[:1] == (self.designs,) else part for part in leaves.numbers)
-        scene = unflatten(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
-        return scene, len(designs), np.arange(len(designs))
 
 
 def _magnitudes(solution, names, engine):

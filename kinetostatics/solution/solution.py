@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import FUNCTION_STEP
-from ..cycle.turn import Turn
+from ..cycle.limit_positions import Turn
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.links import Turning

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..cycle.extremes import extrema
 from ..cycle.kinks import LOAD_FREE_KINDS, with_resolution
+from ..cycle.limit_positions import NEAR
 from ..cycle.rounding import AT_JUMP, BoundedExtremes
-from ..cycle.turn import NEAR
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import of_scene

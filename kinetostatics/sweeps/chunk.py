@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks, resolution_note
+from ..cycle.kinks import has_kinks, repeating_problem, resolution_note
+from ..cycle.limit_positions import NEAR
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
-from ..cycle.turn import NEAR, repeating_problem
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
 from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
@@ -394,14 +394,15 @@ def _noise_by_design(make, job, given, outputs, asked):
     for start in range(0, designs.size, MAX_SPLIT_DESIGNS):
         some = designs[start : start + MAX_SPLIT_DESIGNS]
         scene = scene_of(make, job.values(given[some])[-1])
-        solution = unchecked_turn(scene, job.angles)
-        if any(has_kinks(solution, item.quantity, job.kink_tolerance) for item in wanted.values()):
-            solution = unchecked_turn(scene, _split_turns(scene, job, wanted.values()).pieces.angle)
+        turns, solution = _split_turns(scene, job, wanted.values()), unchecked_turn(scene, job.angles)
+        pieces = turns.pieces
         with np.errstate(all="ignore"):
+            values = turns.values(quantity_names(wanted.values()), pieces.owner, pieces.angle)
             for row, item in wanted.items():
-                values = component_sizes(solution, item.quantity)[0]
-                size = np.maximum(largest_term(solution, item.quantity), np.abs(values).max(axis=-1))
-                found[row, some] = np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
+                own = values[item.quantity]
+                low, high = -pieces.largest_of(-own.min(axis=1)), pieces.largest_of(own.max(axis=1))
+                size = np.maximum(largest_term(solution, item.quantity), np.maximum(-low, high))
+                found[row, some] = np.ravel(high - low <= FLOOR * size)
     return found
 
 

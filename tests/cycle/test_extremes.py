@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_by_name, extremes_frame, frames
-from kinetostatics.cycle.turn import Turn
+from kinetostatics.cycle.limit_positions import Turn
 from kinetostatics.errors import NotGivenError
 from support import sweeping as spikes
 from support.every import every

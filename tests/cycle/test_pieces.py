@@ -5,26 +5,35 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cycle.kinks import design_kinks, has_kinks, sign_changes
-from kinetostatics.cycle.pieces import MAX_ADDED_PIECES, MAX_OUTPUT_ERROR, Pieces, refined
+from kinetostatics.cycle.piecewise import MAX_UNRESOLVED, Pieces
+from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, estimated, resolved, row_of
 from kinetostatics.cycle.reductions import parsed
 from support.every import every
 
 TURN = 2 * np.pi
-BENDS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
+BREAKS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
 
 
-def found(text, function, bends=BENDS, angles=192, period=TURN, vector=False):
-    output = parsed(text)
-    pieces = Pieces.of(bends, period, angles, output.order or 0)
-    numbers, rough = pieces.estimated(output, function(pieces.angle), vector)
+WIDTH = TURN / 24
+
+
+def on_pieces(output, function, breaks, width=WIDTH, period=TURN, vector=False):
+    """Numbers of an output, and whether they are uncertain, on pieces between breaks that are not halved."""
+    pieces = Pieces.between(breaks, period, min(width, TURN / (2 * (output.order or 0) or 1)), 10)
+    values = function(pieces.checked, pieces.owner)
+    return estimated(pieces, output, values**2 if row_of(output, {output.quantity: vector})[1] else values, vector)
+
+
+def found(text, function, breaks=BREAKS, period=TURN, vector=False):
+    numbers, rough = on_pieces(parsed(text), function, breaks, period=period, vector=vector)
     assert not rough.any(), text
     return numbers
 
 
-def spike(angle):
+def spike(angle, design):
     """A triangle of height 10 between 1 and 1.002 of the first design, 2 and 2.002 of the second; the rest is 0."""
-    start = np.array([[1.0], [2.0]])
-    top = np.array([[1.002], [2.001]])  # the first falls at once
+    start = np.array([[1.0], [2.0]])[design]
+    top = np.array([[1.002], [2.001]])[design]  # the first falls at once
     rise = np.interp((angle - start) / (top - start), [0.0, 1.0], [0.0, 10.0], left=0.0, right=0.0)
     fall = np.where(start == 2.0, np.interp(angle, [2.001, 2.002], [10.0, 0.0], left=0.0, right=0.0), 0.0)
     return np.where(angle < top, rise, fall)
@@ -43,7 +52,7 @@ def spike(angle):
         ("rms O", np.sqrt([100 * 0.002 / 3 / TURN] * 2)),
     ],
 )
-def test_a_spike_between_two_bends_is_seen_whole(text, expected):
+def test_a_spike_between_two_breaks_is_seen_whole(text, expected):
     np.testing.assert_allclose(found(text, spike), expected, rtol=1e-12, atol=1e-11)
 
 
@@ -61,75 +70,71 @@ def test_a_spike_between_two_bends_is_seen_whole(text, expected):
     ],
 )
 def test_a_wave_has_its_numbers_wherever_it_is_parted(text, expected):
-    np.testing.assert_allclose(found(text, lambda angle: 0.5 + np.cos(angle)), expected, rtol=1e-9)
+    np.testing.assert_allclose(found(text, lambda angle, _: 0.5 + np.cos(angle)), expected, rtol=1e-9)
 
 
 def test_harmonics_are_as_high_as_they_are_asked_for():
-    wave = found("harmonic_90 O", lambda angle: np.cos(90 * angle) + np.cos(angle))
+    wave = found("harmonic_90 O", lambda angle, _: np.cos(90 * angle) + np.cos(angle))
     np.testing.assert_allclose(wave, 1.0, rtol=1e-6)
 
 
 def test_two_turns_are_reduced_over_both():
-    bends = np.array([[1.0, 7.0, 9.0]])
-    second = lambda angle: np.where((angle > 7.0) & (angle < 9.0), 3.0, 0.0)  # noqa: E731
-    assert found("mean O", second, bends, 384, 2 * TURN) == pytest.approx(3.0 / TURN, rel=1e-12)
-    assert 7.0 <= found("largest_at O", second, bends, 384, 2 * TURN)[0] <= 9.0
+    breaks = np.array([[1.0, 7.0, 9.0]])
+    second = lambda angle, _: np.where((angle > 7.0) & (angle < 9.0), 3.0, 0.0)  # noqa: E731
+    assert found("mean O", second, breaks, 2 * TURN) == pytest.approx(3.0 / TURN, rel=1e-12)
+    assert 7.0 <= found("largest_at O", second, breaks, 2 * TURN)[0] <= 9.0
 
 
 def test_vector_magnitude_near_zero_is_right():
-    near = lambda angle: np.hypot(np.sin(angle - 2.3456), 1e-4)  # noqa: E731
+    near = lambda angle, _: np.hypot(np.sin(angle - 2.3456), 1e-4)  # noqa: E731
     assert found("smallest O", near, np.array([[1.0]]), vector=True) == pytest.approx(1e-4, rel=1e-3)
 
 
-def test_discontinuous_pieces_are_reported():
-    """A kink between the last node of a piece and its end is seen by none of them."""
-    pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
-    for beside, doubted in ((-0.002, True), (0.002, True), (0.0, False)):
-        values = np.abs(pieces.angle - pieces.start[0, 7] - beside)
-        wrap = np.abs(values[0, 0] - values[0, -1])
-        kinked = pieces.of_peaks(values, (1.0, -1.0), False)[0, 6:8]
-        assert wrap > 1.0
-        assert (kinked.max() > 1e-4) == doubted, (beside, kinked)
+def test_a_kink_beyond_the_last_point_of_a_piece_is_reported():
+    pieces = Pieces.between(np.array([[1.0]]), TURN, WIDTH, 10)
+    for beside, doubted in ((-0.0002, True), (0.0002, True), (0.0, False)):
+        values = np.abs(pieces.checked - pieces.low[7] - beside)
+        assert (pieces.errors(values)[6:8].max() > 1e-5) == doubted, beside
 
 
-def test_kink_just_before_a_bend_is_found():
-    """No node lies between a kink and a bend that is near; what jumps there is no sign of it."""
+def test_a_kink_just_before_a_break_is_found():
+    """No point lies between the two; what jumps at the break is no sign of it."""
     kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
     for jump in (False, True):
-        pieces = Pieces.of(np.array([[0.0, 1.0]]), TURN, 192, jumps=np.array([[True, jump]]))
-        values = kink(pieces.angle) + np.where(pieces.angle > 1.0, float(jump), 0.0)
-        at = np.flatnonzero(pieces.start[0] == 1.0)[0]
-        doubts = pieces.of_integrals(values)[0] / pieces.width[0].clip(1e-9) * TURN
-        assert (doubts[at - 1] > 1e-4) != jump
+        pieces = Pieces.between(np.array([[1.0]]), TURN, WIDTH, 10)
+        values = kink(pieces.checked) + np.where(pieces.checked > 1.0, float(jump), 0.0)
+        at = np.flatnonzero(pieces.low == 1.0)[0]
+        assert pieces.errors(values)[at - 1] > 1e-5
+        assert pieces.errors(values)[at] < 1e-14
 
 
-def test_non_polynomial_pieces_are_reported():
-    pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
-    middle = np.pi / 24  # of the first piece
-    for place in (middle, middle + 0.02, 3.0):
-        values = np.where(np.abs(pieces.angle - place) < 0.05, 1.0, 0.0)
+def test_pieces_without_a_polynomial_are_reported():
+    for place in (np.pi / 24, np.pi / 24 + 0.02, 3.0):  # first in the middle of the first piece
+        pulse = lambda angle, _, place=place: np.where(np.abs(angle - place) < 0.05, 1.0, 0.0)  # noqa: E731
         for text in ("largest O", "range O", "mean O"):
-            assert pieces.estimated(parsed(text), values)[1].all(), (place, text)
+            assert on_pieces(parsed(text), pulse, np.array([[1.0]]))[1].all(), (place, text)
 
 
 def test_nan_in_one_design_spoils_no_other():
-    pieces = Pieces.of(BENDS, TURN, 192)
-    values = np.cos(pieces.angle)
-    values[0, 5] = np.nan
+    def waves(angle, design):
+        values = np.cos(angle)
+        values[0, 5] = np.nan
+        return values
+
     for text in ("largest O", "range O", "mean_absolute O", "swing balancing_torque"):
-        numbers, _ = pieces.estimated(parsed(text), values)
+        numbers, _ = on_pieces(parsed(text), waves, BREAKS)
         assert np.isnan(numbers[0])
         assert np.isfinite(numbers[1])
 
 
 def test_jump_between_bend_and_edge_is_no_peak():
     place = np.linspace(0.0, TURN, 25)[3]
-    step = lambda angle: np.where(angle > place, 3.0, 1.0)  # noqa: E731
+    step = lambda angle, _: np.where(angle > place, 3.0, 1.0)  # noqa: E731
     for beside in (np.nextafter(place, 9.0), place + 1e-14):
-        bends = np.array([[beside, 4.0, 0.0], [beside, np.nan, TURN]])
+        breaks = np.array([[beside, 4.0, 0.0], [beside, np.nan, TURN]])
         for text, expected in {"largest O": 3.0, "smallest O": 1.0, "range O": 2.0}.items():
-            assert found(text, step, bends) == pytest.approx(expected, rel=1e-14), text
-            assert found(text, step, bends, vector=True) == pytest.approx(expected, rel=1e-14), text
+            assert found(text, step, breaks) == pytest.approx(expected, rel=1e-14), text
+            assert found(text, step, breaks, vector=True) == pytest.approx(expected, rel=1e-14), text
 
 
 # Pieces halved until they tell an output
@@ -138,17 +143,13 @@ def test_jump_between_bend_and_edge_is_no_peak():
 PLACE = np.array([[1.2345], [3.2109], [5.0]])
 
 
-def run(text, function, count=3, vector=False, goal=MAX_OUTPUT_ERROR, angles=192):
+def run(text, function, count=3, vector=False, goal=MAX_OUTPUT_ERROR):
     """Numbers of designs, whether they are rough, and how many pieces each has."""
     output = parsed(text)
-    pieces = Pieces.of(np.full((count, 1), np.nan), TURN, angles, output.order or 0)
-    values = {output.quantity: function(pieces.angle, np.arange(count))}
-    evaluate = lambda designs, angle: {output.quantity: function(angle, designs)}  # noqa: E731
-    numbers, rough, pieces_of = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, int)
-    for designs, own, told in refined(pieces, values, [(output, vector)], evaluate, goal):
-        numbers[designs], rough[designs] = own.estimated(output, told[output.quantity], vector)
-        pieces_of[designs] = (own.width > 0).sum(axis=1)
-    return numbers, rough, pieces_of
+    pieces = Pieces.between(np.full((count, 1), np.nan), TURN, WIDTH, 10)
+    evaluate = lambda angle, designs: {output.quantity: function(angle, designs)}  # noqa: E731
+    pieces, values = resolved(pieces, [output], {output.quantity: vector}, evaluate, goal)
+    return *estimated(pieces, output, *values.values(), vector), pieces.sums(np.ones(len(pieces.half)))
 
 
 def hyperbola(width):
@@ -190,13 +191,13 @@ def test_undeclared_jump_is_seen_from_both_sides():
     np.testing.assert_allclose(numbers, 0.5 + 1.5 * (PLACE[:, 0] - 1.0) / TURN, rtol=0, atol=1e-8)
 
 
-def test_where_everything_bends_it_is_said():
+def test_where_everything_breaks_it_is_said():
     rough_one = lambda angle, designs: np.sin(3e5 * angle) + 0.0 * PLACE[designs]  # noqa: E731
     _, rough, pieces = run("mean_absolute O", rough_one)
     _, peak, _ = run("largest O", rough_one)
     assert rough.all()
     assert peak.all()
-    assert pieces.max() <= 24 + MAX_ADDED_PIECES
+    assert pieces.max() <= 48 + 2 * MAX_UNRESOLVED
 
 
 # Where loads and friction of designs bend
@@ -216,7 +217,7 @@ def test_smooth_rows_bend_only_at_fine_tolerance():
     assert design_kinks(solved([one, other]))[0].shape[1] == 2  # where strokes that differ may jump
 
 
-def test_angle_table_bends_in_every_turn():
+def test_angle_table_breaks_in_every_turn():
     x = np.arange(0.0, 6.1, 0.5)
     twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
     four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
@@ -233,7 +234,7 @@ def test_no_bend_lies_beyond_thirteen_turns():
     assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
 
 
-def test_friction_of_designs_bends_as_alone():
+def test_friction_of_designs_breaks_as_alone():
     friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
     both = np.sort(design_kinks(solved((), friction, crank))[0], axis=1)
     for row, length in zip(both, crank[:, 0], strict=True):

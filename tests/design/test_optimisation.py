@@ -226,14 +226,25 @@ def test_a_search_keeps_a_limit_beside_a_kink():
     assert true_value(parsed("largest O"), found.scene) <= 1.02 * before * (1 + 1e-6)
 
 
-def test_an_unresolved_output_is_refused():
-    """A pump with a rubbing guide, whose load ripples by 2e-4 sixteen thousand times a turn."""
+def rippling(order):
+    """A pump with a rubbing guide, whose load ripples by 2e-4."""
 
     def push(motion):
-        return -1e3 * (1.0 + 2e-4 * np.sin(1e5 * motion.crank_angle))
+        return -1e3 * (1.0 + 2e-4 * np.sin(order * motion.crank_angle))
 
     made = ks.crank_slider(0.05, 0.2, slider=ks.Link(2.0))
-    scene = ks.Scene(made, 30.0, loads=ks.ProcessForce(push), friction={"guide": ks.GuideFriction(0.1)})
+    return ks.Scene(made, 30.0, loads=ks.ProcessForce(push), friction={"guide": ks.GuideFriction(0.1)})
+
+
+def test_fine_ripples_are_resolved():
+    scene = rippling(1e5)
+    dense = np.linspace(0.0, 2.0 * np.pi, 2_000_001)
+    truth = np.hypot(*scene.solve(dense).reaction("B")).max()
+    assert true_value(parsed("largest B"), scene) == pytest.approx(truth, rel=1e-9)
+
+
+def test_an_unresolved_output_is_refused():
+    scene = rippling(1e6)
     with pytest.raises(ks.DesignError, match="largest B of crank-slider is not resolved, however fine the pieces"):
         true_value(parsed("largest B"), scene)
 

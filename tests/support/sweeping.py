@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
-from kinetostatics.cycle.pieces import NODES, WEIGHTS
 from kinetostatics.machine.loads import value_of
 from kinetostatics.mechanics.quantities import component_sizes
 from support.case_files import shipped
 
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 SAW = shipped("sawframe_2r63")
 sweep = partial(ks.sweep, progress=False)
 
@@ -66,7 +66,9 @@ def means(scene, name):
     edges = np.unique(np.concatenate([kinks, np.linspace(0.0, scene.period, 1441)]))
     edges = np.sort(np.concatenate([edges[:-1] + np.diff(edges) * share for share in (0.0, 0.3, 0.6)] + [edges[-1:]]))
     width = np.diff(edges)
-    angle = edges[:-1, None] + width[:, None] * NODES
+    angle = edges[:-1, None] + width[:, None] * (0.5 + 0.5 * POINTS)
     values = component_sizes(scene.solve(angle.ravel(), engine="numpy"), name)[0].reshape(angle.shape)
-    mean, square = (float(((part @ WEIGHTS) * width).sum() / scene.period) for part in (np.abs(values), values**2))
+    mean, square = (
+        float(((part @ WEIGHTS) * 0.5 * width).sum() / scene.period) for part in (np.abs(values), values**2)
+    )
     return mean, np.sqrt(square)

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.cycle.reductions import REDUCTIONS
+from kinetostatics.cycle.reductions import parsed
 from kinetostatics.engines import numba_backend
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.sweeps import chunk, sweeps
@@ -58,7 +58,7 @@ def test_rows_equal_case_files_with_these_values(tmp_path, case, reference, name
         force, torque = (np.hypot(*s.shaking_force) for s in (single, base.solve(360))), single.balancing_torque
         own, compared = (np.sqrt((size**2).mean()) for size in force)
         reaction = np.sqrt((single.reaction("O") ** 2).sum(axis=0).mean())
-        expected.append([REDUCTIONS["mean_absolute"](torque[None])[0][0], reaction, compared / own])
+        expected.append([parsed("mean_absolute balancing_torque").reduced(torque[None])[0], reaction, compared / own])
     assert table.iloc[:, 1:4].to_numpy() == pytest.approx(np.array(expected), rel=1e-12)
 
 

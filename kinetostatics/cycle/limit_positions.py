@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, has_no_user_code, period_of, refusals
+from ..machine.loads import TURN, refusals
 from ..mechanics import assembly, energy_contact
-from ..mechanics.load_values import title_of, user_value
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
-from .piecewise import JUMP_OFFSET, Pieces, edges_between, point_count
+from .kinks import ANGLE_TOLERANCE, kinks_and_jumps, repeating_problem
+from .piecewise import JUMP_OFFSET, Pieces
 
 SAMPLES = 1440
-"""Even samples of a turn at which friction is looked at, or a load function is compared a period later."""
+"""Even samples of a turn at which friction is looked at."""
 MAX_WIDTH = TURN / 8
 """Width of a piece, rad."""
 NEAR = 0.01
@@ -34,12 +33,8 @@ LIMIT_DISTANCES = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances of the samples for a limit from its limit position, rad; every third is half as far."""
 MIN_GROWTH = 1.15
 """Growth of the change per halved distance above which a quantity grows without bound."""
-MAX_PERIODS = 6
-"""Periods after which a function is tested for repetition if it does not repeat after one."""
 MIN_ANGLE_STEP = 2.0**-50
 """Smallest change of a crank angle, rad."""
-REPEAT_TOLERANCE = 1e-6
-"""Difference of a force after a period, relative to its largest value, that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +84,7 @@ class Turn:
         kinks, jumps = kinks_and_jumps(solution, SAMPLES)
         gaps, limits, passed = _limit_positions(solution, forces)
         graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
-        breaks = np.unique(np.append(np.mod(np.concatenate([kinks, graded]), period), 0.0))
-        breaks = np.append(breaks[np.diff(breaks, append=period) > 4.0 * JUMP_OFFSET], period)
-        edges = edges_between(breaks, MAX_WIDTH)
-        pieces = Pieces(edges, point_count(edges))
+        pieces = Pieces.between(np.mod(np.concatenate([kinks, graded]), period)[None], period, MAX_WIDTH)
         angle = pieces.checked.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
         if problem := repeating_problem(solution):
@@ -258,43 +250,3 @@ def require_single(solution, owner, name):
             f"{owner} works on one design at a time, but {name!r} has shape {(*designs, SAMPLES)}; solve a single "
             "design of the batch"
         )
-
-
-def repeating_problem(solution):
-    """Sentence on a load function of one design that differs after its period, or None."""
-    for item in solution.loads:
-        if has_no_user_code(item):
-            continue
-        period = period_of([item], solution.mechanism.turns)
-        angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
-
-        def push(turns, item=item, angle=angle, period=period):
-            return np.broadcast_to(user_value(item, solution.at(angle + turns * period)), angle.shape)
-
-        first, other = push(0), push(1)
-        if _repeats(first, other):
-            continue
-        place = int(np.nanargmax(np.abs(other - first)))
-        unit = getattr(item, "UNIT", "N")
-        here, there = (f"{np.degrees(place):.6g} deg" for place in (angle[place], angle[place] + period))
-        found = (
-            f"{title_of(item)}: its function gives {first[place]:.6g} {unit} at crank angle {here}, "
-            f"but {other[place]:.6g} {unit} at {there}"
-        )
-        turns = next((turns for turns in range(2, MAX_PERIODS + 1) if _repeats(first, push(turns))), None)
-        if turns is None:
-            return (
-                f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
-                "np.mod(motion.crank_angle, period), or give the period it has"
-            )
-        whole = turns * period / TURN
-        remedy = f"period={2 * whole:.6g}*pi"
-        if "period" not in vars(item):
-            remedy = f"a Table with {remedy}, or a function with an attribute {remedy}"
-        return f"{found}, and repeats after {whole:.6g} turns only: give {remedy}"
-    return None
-
-
-def _repeats(first, other):
-    with np.errstate(invalid="ignore"):
-        return not np.any(np.abs(first - other) > REPEAT_TOLERANCE * np.fmax.reduce(np.abs(first), initial=0.0))

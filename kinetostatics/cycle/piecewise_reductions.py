@@ -1,0 +1,163 @@
+"""Reductions of quantities on pieces of the period, of many designs, and the weights of the values in each.
+
+A reduction is, near a design, a sum of the values at the points with weights: those of the series at the peak, or of
+the integral. The weights give the derivatives of a reduction from those of the values.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .piecewise import rule
+from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
+
+MAX_OUTPUT_ERROR = 1e-8
+"""Largest error of an output relative to the largest value of its quantity."""
+TYPICAL_UNCERTAIN_PIECES = 8
+"""Typical number of uncertain pieces that share the error of an integral."""
+ERROR_FACTOR = 4.0
+"""Sum of all missing terms of a series relative to its last known ones; at a kink they decrease slowly."""
+
+
+def averaged(pieces, output, values, vector=False):
+    """Mean, rms or amplitude of a harmonic of each design, (designs,), and weights (pieces, points) of the values.
+
+    Magnitudes of a `vector` change no sign.
+    """
+    kind, order = output.reduction, output.order
+    weights = pieces.half * rule(pieces.count).weights / pieces.period
+    if order is not None:
+        wave = np.exp(1j * order * pieces.angle) * weights * (1.0 if order == 0 else 2.0)
+        amplitude = pieces.sums((wave * values).sum(axis=1))
+        found = np.abs(amplitude)
+        towards = np.conj(amplitude) / np.where(found == 0.0, 1.0, found)
+        return found, np.real(towards[pieces.owner, None] * wave)
+    if kind == "rms":
+        found = np.sqrt(pieces.sums((weights * values * values).sum(axis=1)))
+        return found, weights * values / np.where(found == 0.0, 1.0, found)[pieces.owner, None]
+    if kind == "mean_absolute" and not vector:
+        weights = _weights_of_magnitudes(pieces, values) / pieces.period
+    return pieces.sums((weights * values).sum(axis=1)), weights
+
+
+def _weights_of_magnitudes(pieces, values):
+    """Weights (pieces, points) of values in the integrals of their magnitudes."""
+    found = np.where(values < 0.0, -1.0, 1.0) * rule(pieces.count).weights
+    series = pieces.series(values)
+    changing = np.flatnonzero(np.abs(series[0]) < np.abs(series[1:]).sum(axis=0))
+    place, piece = pieces.zeros(values[changing])
+    order = np.lexsort((place, piece))
+    place, piece = place[order], changing[piece[order]]
+    own, firsts, counts = np.unique(piece, return_index=True, return_counts=True)
+    number = np.arange(piece.size) - np.repeat(firsts, counts)
+    starts = np.sign(((-1.0) ** np.arange(pieces.count)) @ series[:, own])
+    found[own] = (starts * (-1.0) ** counts)[:, None] * rule(pieces.count).weights
+    turned = 2.0 * np.repeat(starts, counts) * (-1.0) ** number
+    np.add.at(found, piece, turned[:, None] * pieces.weights_up_to(place))
+    return pieces.half * found
+
+
+def gained(pieces, values):
+    """Integral at each point of values less their mean over the period, from the start of the period."""
+    mean = pieces.sums(pieces.whole(values)) / pieces.period
+    return pieces.integrated(values - mean[pieces.owner, None])
+
+
+def _peaks(pieces, reduction, values, vector):
+    """Reduction (designs,) of peaks, crank angles in rad for `OVER_THE_ANGLE`, and the height of the peak."""
+    low, high = values.min(axis=1), values.max(axis=1)
+    middle, rise = 0.5 * (high + low), 0.5 * (high - low)
+    line = middle[:, None] + rise[:, None] * rule(pieces.count).points
+    values = np.where(pieces.can_split[:, None], values, line)  # a jump
+    heights, angles = [], []
+    for sign in signs(reduction):
+        height, piece, place = pieces.peaks(sign * values)
+        heights.append(np.sqrt(np.maximum(sign * height, 0.0)) if vector else sign * height)
+        angles.append(np.where(np.isnan(height), np.nan, np.mod(pieces.angle_at(piece, place), pieces.period)))
+    if reduction in OVER_THE_ANGLE:
+        return angles[0], heights[0]
+    found = combined_peaks(reduction, heights)
+    return found, found
+
+
+def _errors_of_peaks(pieces, values, errors, sides, vector):
+    """Error estimate (pieces,) of each piece's peak, in the quantity's unit; 0 where it cannot be the extreme.
+
+    `sides` lists 1.0 for the largest value, -1.0 for the smallest; of a `vector` the values are squares.
+    """
+    series, found = pieces.series(values[:, 1:-1]), np.zeros(errors.shape)
+    room = np.abs(series[1:]).sum(axis=0) + errors
+    for sign in sides:
+        top, own = (sign * values).max(axis=1), errors
+        rival = sign * series[0] + room >= pieces.largest_of(top - errors)[pieces.owner]
+        if vector:
+            own = errors / np.sqrt(np.maximum(np.maximum(sign * top, errors), np.finfo(float).tiny))
+        found = np.maximum(found, np.where(rival, own, 0.0))
+    return found
+
+
+def estimated(pieces, output, values, vector=False):
+    """Numbers (designs,) of an `Output`, and whether they are uncertain.
+
+    `values` (pieces, points + 2) are at `Pieces.checked`: of a `vector` its magnitude, for a peak the square of this.
+    """
+    errors = np.where(pieces.can_split, ERROR_FACTOR * pieces.errors(values), 0.0)
+    inner = values[:, 1:-1]
+    if output.reduction in PEAKS:
+        found, height = _peaks(pieces, output.reduction, inner, vector)
+        error = pieces.largest_of(_errors_of_peaks(pieces, values, errors, signs(output.reduction), vector))
+        sizes = np.sqrt(values) if vector else values
+        size = pieces.largest_of(sizes.max(axis=1)) + pieces.largest_of(-sizes.min(axis=1))
+        output = replace(output, reduction=output.reduction.removesuffix("_at"))
+        return found, is_rough(output, height, error, lambda rough: size[rough])
+    factor, size = 2.0 if output.order else 1.0, pieces.largest_of(np.abs(inner).max(axis=1))
+    if output.reduction == "swing":
+        energy, factor = gained(pieces, inner), 2.0 * pieces.period
+        found = size = pieces.peaks(energy)[0] + pieces.peaks(-energy)[0]
+    else:
+        found, _ = averaged(pieces, output, inner, vector)
+    error = factor * pieces.sums(2.0 * pieces.half[:, 0] * errors) / pieces.period
+    return found, is_rough(output, found, error, lambda rough: size[rough])
+
+
+def row_of(output, vectors):
+    """Quantity of an output, and whether its square is needed: a magnitude has a corner at zero, its square none."""
+    return output.quantity, bool(vectors[output.quantity]) and output.reduction in PEAKS
+
+
+def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
+    """Pieces halved until outputs are certain, and values (pieces, points + 2) by `row_of` these.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    outputs : sequence of Output
+    vectors : mapping of quantity to bool
+        Whether it is a vector.
+    evaluate : function
+        From crank angles (P, N) and designs (P,) of pieces to values (P, N) by quantity, of vectors magnitudes.
+    goal : float
+        Largest error of an output relative to the largest value of its quantity.
+    """
+    sides: dict = {row_of(output, vectors): set() for output in outputs}
+    integrals = {row_of(output, vectors) for output in outputs if output.reduction not in PEAKS}
+    for output in outputs:
+        sides[row_of(output, vectors)].update(signs(output.reduction) if output.reduction in PEAKS else ())
+
+    def rows(angle, designs):
+        found = evaluate(angle, designs)
+        return np.array([found[name] ** 2 if squared else found[name] for name, squared in sides])
+
+    def rough(pieces, errors, values):
+        marked, share = np.zeros(len(pieces.half), dtype=bool), 2.0 * pieces.half[:, 0] / pieces.period
+        for (row, asked), own, error in zip(sides.items(), values, ERROR_FACTOR * errors, strict=True):
+            size = pieces.largest_of(np.abs(own).max(axis=1))[pieces.owner]
+            if asked:
+                found = _errors_of_peaks(pieces, own, error, asked, row[1])
+                marked |= found > goal * (np.sqrt(size) if row[1] else size)
+            if row in integrals:
+                marked |= error * share > goal / TYPICAL_UNCERTAIN_PIECES * size
+        return marked
+
+    pieces, values, _ = pieces.resolved(rows(pieces.checked, pieces.owner), rows, rough)
+    return pieces, dict(zip(sides, values, strict=True))
