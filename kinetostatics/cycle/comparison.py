@@ -11,7 +11,8 @@ from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
-from .kinks import ANGLE_TOLERANCE, with_resolution
+from .kinks import ANGLE_TOLERANCE
+from .load_functions import with_resolution
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .rounding import MAX_LISTED, BoundedExtremes, without_rounding

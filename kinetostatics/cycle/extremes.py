@@ -15,8 +15,8 @@ from ..mechanics.quantities import Quantity, components, largest_term, of_scene,
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
-from .kinks import resolution_note, with_resolution
 from .limit_positions import MAX_WIDTH, require_single
+from .load_functions import resolution_note, with_resolution
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turning_points import extrema_of, paths, turning_points
 

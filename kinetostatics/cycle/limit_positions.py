@@ -14,7 +14,8 @@ from ..machine.loads import TURN, refusals
 from ..mechanics import assembly, energy_contact
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, kinks_and_jumps, repeating_problem
+from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
+from .load_functions import repeating_problem
 from .piecewise import JUMP_OFFSET, Pieces
 
 SAMPLES = 1440

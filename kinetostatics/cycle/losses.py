@@ -27,7 +27,7 @@ from ..mechanics.load_values import numbered_titles
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
 from .extremes import extrema, largest_of
-from .kinks import resolution_note, with_resolution
+from .load_functions import resolution_note, with_resolution
 from .means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from .rounding import PLACED, zeroed
 

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import resolution_note
 from ..cycle.limit_positions import require_single
+from ..cycle.load_functions import resolution_note
 from ..errors import ParameterError
 from ..machine.cams import roller
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak, curvature, highest, surface_curvature

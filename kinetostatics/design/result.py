@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import with_resolution
+from ..cycle.load_functions import with_resolution
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks

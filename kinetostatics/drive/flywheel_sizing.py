@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from ..cycle.kinks import resolution_note
+from ..cycle.load_functions import resolution_note
 from ..numbers import checks
 from .one_dof import DrivenMachine
 from .resolution import resolved

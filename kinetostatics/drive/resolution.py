@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, check_resolution, samples_of_functions
+from ..cycle.load_functions import FUNCTION_STEP, check_resolution, samples_of_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..cycle.kinks import resolution_note
+from ..cycle.load_functions import resolution_note
 from ..cycle.piecewise import Pieces
 from ..errors import DriveError
 from ..machine.loads import TURN

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import resolution_note
+from ..cycle.load_functions import resolution_note
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks

@@ -15,6 +15,9 @@ from ..machine.links import Turning
 from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 
+LOAD_FREE_KINDS = ("slider", "motion", "rate")
+"""Kinds of quantities that do not depend on loads."""
+
 
 class Quantity(NamedTuple):
     """A quantity of a mechanism.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, check_resolution, function_step, samples_of_functions
+from ..cycle.load_functions import FUNCTION_STEP, check_resolution, function_step, samples_of_functions
 from ..engines.engines import COMPILED, FASTEST, is_plain
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP
 from ..cycle.limit_positions import Turn
+from ..cycle.load_functions import FUNCTION_STEP
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.links import Turning

@@ -7,12 +7,12 @@ from functools import cache
 import numpy as np
 
 from ..cycle.extremes import extrema
-from ..cycle.kinks import LOAD_FREE_KINDS, with_resolution
 from ..cycle.limit_positions import NEAR
+from ..cycle.load_functions import with_resolution
 from ..cycle.rounding import AT_JUMP, BoundedExtremes
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.assembly import NO_DIGITS_CONDITION
-from ..mechanics.quantities import of_scene
+from ..mechanics.quantities import LOAD_FREE_KINDS, of_scene
 from ..numbers import paths
 from ..numbers.formatting import number, round_uncertainty_up
 from .certainty import Doubt, doubt_text

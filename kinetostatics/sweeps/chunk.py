@@ -16,8 +16,9 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks, repeating_problem, resolution_note
+from ..cycle.kinks import has_kinks
 from ..cycle.limit_positions import NEAR
+from ..cycle.load_functions import repeating_problem, resolution_note
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR

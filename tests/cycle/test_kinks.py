@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.cycle.kinks import FUNCTION_STEP, FunctionSamples
+from kinetostatics.cycle.load_functions import FUNCTION_STEP, FunctionSamples
 
 
 def places(function):

@@ -13,7 +13,7 @@ import numpy as np
 from ...casefile.reading import require
 from ...casefile.variant import run_under_motors
 from ...cycle.comparison import Comparison, Row, left_out
-from ...cycle.kinks import resolution_note
+from ...cycle.load_functions import resolution_note
 from ...cycle.losses import lose
 from ...cycle.means import mean_absolute_torque
 from ...cycle.rounding import FLOOR, zeroed
