@@ -355,7 +355,7 @@ class Pieces:
         at, other = np.nonzero((np.signbit(slope[:-1]) != np.signbit(slope[1:])) & ~changes & asked)
         if at.size:
             share = slope[at, other] / (slope[at, other] - slope[at + 1, other])
-            vertex = places[at] + share * (places[at + 1] - places[at])
+            vertex = np.clip(places[at] + share * (places[at + 1] - places[at]), places[at], places[at + 1])
             twice = np.signbit(evaluate(other, vertex)[0]) != np.signbit(dense[at, other])
             piece = np.concatenate([piece, other[twice], other[twice]])
             low = np.concatenate([low, places[at][twice], vertex[twice]])
