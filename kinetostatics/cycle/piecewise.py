@@ -355,7 +355,7 @@ class Pieces:
         at, other = np.nonzero((np.signbit(slope[:-1]) != np.signbit(slope[1:])) & ~changes & asked)
         if at.size:
             share = slope[at, other] / (slope[at, other] - slope[at + 1, other])
-            vertex = np.clip(places[at] + share * (places[at + 1] - places[at]), places[at], places[at + 1])
+            vertex = places[at] + share * (places[at + 1] - places[at])
             twice = np.signbit(evaluate(other, vertex)[0]) != np.signbit(dense[at, other])
             piece = np.concatenate([piece, other[twice], other[twice]])
             low = np.concatenate([low, places[at][twice], vertex[twice]])
@@ -384,8 +384,8 @@ def highest(height, group):
 
 
 def waves(count, place):
-    """Chebyshev polynomials (count, K) at places from -1 to 1."""
-    return np.cos(np.arange(count)[:, None] * np.arccos(place))
+    """Chebyshev polynomials (count, K) at places from -1 to 1, beyond by rounding at most."""
+    return np.cos(np.arange(count)[:, None] * np.arccos(np.clip(place, -1.0, 1.0)))
 
 
 def _errors(values, half, count):
