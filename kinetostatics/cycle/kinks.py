@@ -85,8 +85,7 @@ def kinks_and_jumps(solution, samples):
 
 def declared_kinks(motion):
     """The same of loads and laws of cams alone, of a solution or a motion."""
-    law = law_kinks(motion, jumps=True)
-    sources = [(law, law)]
+    sources = [(law_kinks(motion), law_kinks(motion, jumps=True))]
     for part in kink_sources(motion.loads):
         starts = _period_starts(part, motion)[:, None]
         kinks, jumps = kinks_of(part, motion)

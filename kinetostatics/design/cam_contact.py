@@ -12,9 +12,10 @@ import numpy as np
 
 from ..cycle.limit_positions import require_single
 from ..cycle.load_functions import resolution_note
+from ..cycle.means import TERM_ROUNDING, closed_turn, means
 from ..errors import ParameterError
 from ..machine.cams import roller
-from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak, curvature, highest, surface_curvature
+from ..machine.cams.profile import POSITIVE, Peak, curvature, highest, surface_curvature
 from ..machine.cams.profile import profile as working_curve
 from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
@@ -98,34 +99,41 @@ class Roller:
         return np.hypot(*force)
 
     def equivalent_load(self, solution):
-        """Constant load of the same life, from a solution at even crank angles over the period, N.
+        """Constant load of the same life, N.
 
-        P^p = sum of F^p dn over sum of dn, n the turns of the roller about its pin (ISO 281; Harris and Kotzalas,
+        P^p = integral of F^p dn over that of dn, n the turns of the roller about its pin (ISO 281; Harris and Kotzalas,
         *Rolling Bearing Analysis*, 2006).
         """
-        load, turns = self.pin_load(solution), self._turns(solution)
-        largest = float(np.max(load))
+        largest = peak_of(solution, self.pin_load).value
         if not largest:
             return 0.0
-        share = np.sum((load / largest) ** self.life_exponent * turns) / np.sum(turns)
-        return float(largest * share ** (1.0 / self.life_exponent))
+
+        def loaded(at):
+            turns = self._turns(at)
+            return np.stack([(self.pin_load(at) / largest) ** self.life_exponent * turns, turns])
+
+        powers, turns = _means(solution, loaded)
+        return float(largest * (powers / turns) ** (1.0 / self.life_exponent))
 
     def life(self, solution):
-        """Basic rating life L10, h, from a solution at even crank angles over the period."""
+        """Basic rating life L10, h."""
         if self.load_rating is None:
             raise ParameterError("contact: the life of the roller's bearing takes its load_rating, C in N")
         load = self.equivalent_load(solution)
         if not load:
             return np.inf
-        rate = solution.crank_speed * np.ones(solution.crank_angle.shape)
-        if not np.all(rate):
+        if not np.all(solution.crank_speed):
             raise ParameterError("contact: a machine that stands wears no bearing; solve it at its crank speed")
-        turns = self._turns(solution)
-        hours = np.sum(1.0 / np.abs(rate)) / 3600.0
-        return float((self.load_rating / load) ** self.life_exponent * 1e6 * hours / np.sum(turns))
+
+        def timed(at):
+            turns = self._turns(at)
+            return np.stack([turns, np.abs(1.0 / at.crank_speed) + 0.0 * turns])
+
+        turns, seconds = _means(solution, timed)
+        return float((self.load_rating / load) ** self.life_exponent * 1e6 * seconds / 3600.0 / turns)
 
     def _turns(self, solution):
-        """Turns of the roller about its pin in each of even steps of the crank angle, in units of the step / 1 rad."""
+        """Turns of the roller about its pin in a radian of the crank angle."""
         rate = solution.crank_speed * np.ones(solution.crank_angle.shape)
         with np.errstate(divide="ignore", invalid="ignore"):
             turned = np.abs(self.spin(solution) - rate) / np.abs(rate)
@@ -138,6 +146,13 @@ class Roller:
         spin = 2.0 * float(np.broadcast_to(self.speed(at)[0], (3,))[1]) / self.radius
         spin = -spin if rise > 0.0 else spin
         return Reversal(float(angle), spin, 0.5 * self.inertia * spin * spin, rise)
+
+
+def _means(solution, function):
+    """Means over the period of functions of a solution, (functions,)."""
+    turn = closed_turn(solution, "contact")
+    floor = TERM_ROUNDING * np.abs(function(turn.at)).max(axis=1)
+    return means(lambda angle: function(turn.at.at(angle)), turn, floor)[0]
 
 
 def pressure_from_hardness(brinell):
@@ -326,7 +341,7 @@ class Contact:
     @cached_property
     def largest_pressure_angle(self):
         """Largest size of the pressure angle, rad, and where."""
-        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
+        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)), self.cam)
 
     @cached_property
     def largest_friction_coefficient(self):
@@ -343,17 +358,17 @@ class Contact:
     @property
     def sides(self):
         """Sides that carry the roller somewhere in the period."""
-        return tuple(np.unique(np.where(self._samples.cam_force > 0.0, "ring", "disk")).tolist())
+        return ("disk", "ring") if self.changes else (str(replace(self, solution=self.solution.at([0.0])).side[0]),)
 
     @cached_property
     def life(self):
         """Basic rating life of the roller's bearing, h (ISO 281)."""
-        return self.roller.life(self._samples)
+        return self.roller.life(self.solution)
 
     @cached_property
     def equivalent_load(self):
         """Constant load of the roller's bearing of the same life, N."""
-        return self.roller.equivalent_load(self._samples)
+        return self.roller.equivalent_load(self.solution)
 
     @cached_property
     def reversals(self):
@@ -374,11 +389,6 @@ class Contact:
     def hardness(self):
         """Brinell hardness of through-hardened steel that bears the largest pressure 1e7 times (AGMA 2001-D04)."""
         return hardness_from_pressure(self.largest_pressure.value)
-
-    @cached_property
-    def _samples(self):
-        period = self.solution.period
-        return self.solution.at(np.linspace(0.0, period, round(PEAK_SAMPLES * period / (2 * np.pi)), endpoint=False))
 
     def _highest(self, function):
         return peak_of(self.solution, function)

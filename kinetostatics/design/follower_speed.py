@@ -8,9 +8,10 @@ import numpy as np
 from ..cycle.extremes import extrema, largest_of
 from ..cycle.kinks import sign_changes
 from ..cycle.limit_positions import require_single
+from ..cycle.piecewise import Pieces, edges_between, rule
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
-from ..machine.loads import Spring
+from ..machine.loads import TURN, Spring
 from ..numbers import checks
 from ..solution.scene import Scene
 
@@ -20,6 +21,10 @@ QUADRATIC_TOLERANCE = 1e-9
 """Deviation of forces from growth with the squared speed, relative to the largest, that counts as 0."""
 MAX_SPEED_RATIO = 1e3
 """Largest speed of the search for lift-off over the crank speed."""
+SPEED_TOLERANCE = 1e-12
+"""Relative error of the speed of lift-off."""
+HARMONICS, SURGE_POINTS = 360, 16
+"""Harmonics of the spring's end, and crank angles in half a period of the highest one."""
 
 
 class Surge(NamedTuple):
@@ -93,13 +98,12 @@ def lift_off_speed(solution, force="cam_force"):
     """
     _require(solution, "lift_off_speed", force)
     fast = _mean_speed(solution)
-    angle = _angles(solution)
+    angle, ends = _angles(solution), extrema(_solution_at(solution, REST_SPEED_RATIO * fast, 0.0), force).range
+    if not ends[0] * ends[1] > 0.0:
+        return 0.0
     rest, moving, faster = (
         _force(solution, force, speed, angle) for speed in (REST_SPEED_RATIO * fast, fast, 2.0 * fast)
     )
-    side = np.sign(rest[int(np.argmax(np.abs(rest)))])
-    if not np.all(side * rest > 0.0):
-        return 0.0
     if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC_TOLERANCE * np.max(np.abs(faster)):
 
         def ratio(angle):
@@ -109,22 +113,29 @@ def lift_off_speed(solution, force="cam_force"):
         peak = peak_of(solution, lambda at: ratio(at.crank_angle)).value
         found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
         return found if found <= MAX_SPEED_RATIO * abs(fast) else np.inf
-    return _lift_off_by_search(solution, force, fast, side, angle)
+    return _lift_off_by_search(solution, force, fast, np.sign(ends[0]), angle)
 
 
 def _lift_off_by_search(solution, force, fast, side, angle):
     """Least speed at which the force vanishes at some crank angle, by search, rad/s."""
     from scipy.optimize import brentq
 
-    def least(speed):
+    def least(speed, angle):
         return float(np.min(side * _force(solution, force, np.copysign(speed, fast), angle)))
 
-    low = REST_SPEED_RATIO * abs(fast)
-    for speed in abs(fast) * np.geomspace(0.01, MAX_SPEED_RATIO, 61):
-        if least(speed) < 0.0:
-            return float(brentq(least, low, speed, rtol=1e-12))
-        low = speed
-    return np.inf
+    rest = REST_SPEED_RATIO * abs(fast)
+    speeds = abs(fast) * np.geomspace(0.01, MAX_SPEED_RATIO, 61)
+    above = next((speed for speed in speeds if least(speed, angle) < 0.0), None)
+    speed = np.inf if above is None else float(brentq(least, rest, above, (angle,), rtol=SPEED_TOLERANCE))
+    while np.isfinite(speed):  # the force is least between those angles
+        found = extrema(_solution_at(solution, np.copysign(speed, fast), 0.0), force)
+        lowest = found.angle[[np.argmin(side * found.value)]]
+        if least(speed, lowest) >= 0.0:
+            break
+        before, speed = speed, float(brentq(least, rest, speed, (lowest,), rtol=SPEED_TOLERANCE))
+        if speed >= before * (1.0 - SPEED_TOLERANCE):
+            break
+    return speed
 
 
 def lifted(solution, force="cam_force"):
@@ -247,17 +258,18 @@ def spring_surge(solution, spring_mass):
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
-    turns = round(solution.period / (2.0 * np.pi))
-    at = solution.at(np.linspace(0.0, solution.period, PEAK_SAMPLES * turns, endpoint=False))
-    end = at.placement.travels[spring.on].position
-    rate = float(np.mean(spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
+    pieces = Pieces(edges_between(solution.sampled.pieces.edges, 0.5 * TURN / HARMONICS), SURGE_POINTS)
+    angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
+    end = solution.at(angle).placement.travels[spring.on].position
+    rate = float(weights @ (spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
     if not rate > 0.0:
         raise ParameterError(f"spring_surge: the Spring must have a stiffness, but its mean rate is {rate:.6g} N/m")
-    series = np.abs(np.fft.rfft(end))[::turns] / at.crank_angle.size
+    waves = np.exp(1j * np.outer(np.arange(HARMONICS), angle))
+    series = np.abs(waves @ (weights * end))
     series[1:] *= 2.0
     natural = float(np.pi * np.sqrt(rate / mass))
     speed = abs(float(np.mean(solution.crank_speed)))
-    return Surge(natural, natural / speed if speed else np.inf, series[: PEAK_SAMPLES // 4])
+    return Surge(natural, natural / speed if speed else np.inf, series)
 
 
 def _angles(solution):

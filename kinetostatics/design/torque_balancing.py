@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.extremes import extrema
 from ..cycle.limit_positions import Turn, require_single
+from ..cycle.means import TERM_ROUNDING, closed_turn, means
 from ..errors import ParameterError
 from ..machine.builders import with_roller_follower
-from ..machine.cams.profile import POSITIVE, Peak, highest, lowest
+from ..machine.cams.profile import POSITIVE, Peak, highest
 from ..machine.guide import Guide
-from ..machine.laws.law import PanelLaw
+from ..machine.laws.law import PanelLaw, turn_angles
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
-from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
@@ -29,8 +30,6 @@ from .follower_speed import lifted
 from .result import shaft_hint
 
 ANGLE_COUNT = 4096
-ANGLES = (np.arange(ANGLE_COUNT) + 0.382) * 2 * np.pi / ANGLE_COUNT
-"""Crank angles of torque means; the odd offset avoids jumps."""
 MEAN_TOLERANCE = 1e-10
 """Mean of a torque relative to its unevenness that counts as 0."""
 
@@ -91,8 +90,7 @@ class TorqueBalancing:
     @cached_property
     def uneven(self):
         """Mean of ``abs(T - mean(T))`` before and after, N m, each from a solution of its scene."""
-        torques = (solution.balancing_torque for solution in self._solutions)
-        return tuple(float(np.mean(np.abs(torque - np.mean(torque)))) for torque in torques)
+        return tuple(_torque_means(solution)[1] for solution in self._solutions)
 
     @property
     def remaining(self):
@@ -102,21 +100,23 @@ class TorqueBalancing:
     @cached_property
     def _solutions(self):
         """Solutions before and after."""
-        return self.reference.solve(ANGLES), self.scene.solve(ANGLES)
+        return self.reference.solve(1), self.scene.solve(1)
 
-    def _of_follower(self, quantity):
-        """Function of the crank angle: a quantity of the follower."""
-        return lambda angle: values_of(self._solutions[1].at(angle), quantity + self.follower.label)
+    def _peak(self, quantity, find):
+        """Extreme of a quantity of the follower that `find` chooses, a `Peak`."""
+        found = extrema(self._solutions[1], quantity + self.follower.label)
+        place = int(find(found.value))
+        return Peak(float(found.value[place]), float(found.angle[place]))
 
     @cached_property
     def least_contact_force(self) -> Peak:
         """N, and the crank angle."""
-        return lowest(self._of_follower("contact_force"))
+        return self._peak("contact_force", np.argmin)
 
     @cached_property
     def largest_contact_force(self) -> Peak:
         """N, and the crank angle."""
-        return highest(self._of_follower("contact_force"))
+        return self._peak("contact_force", np.argmax)
 
     @property
     def lifts_off(self):
@@ -126,19 +126,20 @@ class TorqueBalancing:
     @cached_property
     def pressure_angle(self) -> Peak:
         """Largest size, rad."""
-        steepness = self._of_follower("pressure_angle")
-        return highest(lambda angle: np.abs(steepness(angle)))
+        peak = self._peak("pressure_angle", lambda values: np.argmax(np.abs(values)))
+        return peak._replace(value=abs(peak.value))
 
     @cached_property
     def curvature_radius(self) -> Peak:
         """Smallest radius of the pitch curve where it is convex, m, by polar angle of the cam."""
-        sharpest = highest(lambda angle: 1.0 / self.follower.disk.curvature_radius(angle))
+        disk = self.follower.disk
+        sharpest = highest(lambda angle: 1.0 / disk.curvature_radius(angle), disk)
         return Peak(1.0 / sharpest.value, sharpest.angle)
 
     @cached_property
     def cam_radius(self) -> Peak:
         """Smallest distance of the roller centre from O, m, and the crank angle."""
-        return lowest(self._of_follower("cam_radius"))
+        return self._peak("cam_radius", np.argmin)
 
     def table(self):
         """Torque and bearing force before and after, as a DataFrame."""
@@ -147,10 +148,10 @@ class TorqueBalancing:
         columns = {}
         for name, solution, uneven in zip(("before", "after"), self._solutions, self.uneven, strict=True):
             columns[name] = {
-                "mean torque [N m]": np.mean(solution.balancing_torque),
+                "mean torque [N m]": _torque_means(solution)[0],
                 "mean |T - mean| [N m]": uneven,
-                "largest |T| [N m]": np.max(np.abs(solution.balancing_torque)),
-                "largest reaction at O [N]": np.max(np.hypot(*solution.reaction("O"))),
+                "largest |T| [N m]": abs(extrema(solution, "balancing_torque").largest),
+                "largest reaction at O [N]": extrema(solution, "O").largest,
             }
         return pd.DataFrame(columns)
 
@@ -185,6 +186,19 @@ class TorqueBalancing:
 
     def __repr__(self):
         return f"<TorqueBalancing: {self.reference.mechanism.name}, {self.remaining:.2g} of the unevenness left>"
+
+
+def _torque_means(solution):
+    """Mean of the balancing torque, and of its distance from that, N m."""
+    turn = closed_turn(solution, OWNER)
+    floor = TERM_ROUNDING * turn.at.largest_torque_term
+
+    def torque(angle):
+        return solution.at(angle).balancing_torque[None]
+
+    (mean,), *_ = means(torque, turn, floor)
+    (uneven,), *_ = means(lambda angle: np.abs(torque(angle) - mean), turn, floor)
+    return float(mean), float(uneven)
 
 
 OWNER, TURN = "torque_balancing_cam", 2 * np.pi
@@ -353,7 +367,7 @@ def _energy(scene, switches):
 def _energy_swing(torque, energy):
     """Range and peak of the machine's energy, J, and the crank angles of its minima."""
     mean = torque.mean
-    size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, ANGLE_COUNT)))))
+    size = float(np.max(np.abs(torque(turn_angles(torque.edges, ANGLE_COUNT)))))
     turns = torque.plus(-mean).roots
     values = energy(turns)
     for angle in turns:
@@ -368,8 +382,7 @@ def _energy_swing(torque, energy):
 
 def _base_radius(stretch, least, values):
     """Least coordinate of the roller centre; by default the least within the pressure angle and off the shaft."""
-    angle = np.linspace(0.0, TURN, ANGLE_COUNT)
-    x, rate = stretch.at(angle, 1)
+    x, rate = stretch.at(turn_angles(stretch.edges, ANGLE_COUNT), 1)
     steep = np.tan(values["pressure_angle"])
     needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))
     clear = values.get("shaft_radius", 0.0) + (values.get("roller_radius", 0.0) if "shaft_radius" in values else 0.0)

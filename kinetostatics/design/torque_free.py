@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..cycle.extremes import extrema
 from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..mechanics.quantities import of_scene
@@ -230,10 +231,13 @@ def ratio_bound(start, scene, reference):
     """
     if reference is None or not start.weight:
         return np.inf
-    solution = scene.solve(720)
     guide = scene.mechanism.guides[scene.mechanism.slider]
-    x, y = solution.position("A")
-    height = np.abs(np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x).max()
+
+    def across(solution):
+        x, y = solution.position("A")
+        return np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x
+
+    height = abs(extrema(scene.solve(1), across).largest)
     plain = true_value(parse_output(f"mean_absolute {TORQUE}", reference), reference)
     return float(plain * 2 * np.pi / (4 * abs(start.weight) * height))
 

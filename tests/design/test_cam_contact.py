@@ -300,6 +300,106 @@ def test_an_unknown_force_lists_the_known_ones():
             function(turned(10.0), "contact")
 
 
+# Pulses of a table that are narrower than the steps of an even look at the turn
+
+PULSE = np.radians(0.14)
+
+
+def pulse(place, height):
+    """Table of a pulse 0.14 deg wide, flat over half its width."""
+    corners = place + PULSE * np.array([-0.5, -0.25, 0.25, 0.5])
+    return ks.Table([0.0, *corners, 2 * np.pi], height * np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
+
+
+def around(place):
+    """Crank angles over the turn, most of them in a pulse, its corners among them."""
+    return np.unique([*np.linspace(0.0, 2 * np.pi, 40_001), *place + PULSE * np.linspace(-0.5, 0.5, 40_001)])
+
+
+def pulled(speed, place, height, *others):
+    """A spring holds the follower down, a table pulls it up."""
+    loads = ks.Spring(2e4, 0.01, on="follower"), ks.ProcessForce(pulse(place, height), on="follower"), *others
+    return ks.solve(TURNING, 0.0, crank_speed=speed, loads=loads)
+
+
+def test_a_pulse_lifts_off_a_machine_at_rest():
+    """The spring presses with 600 to 1000 N; at the top 2 kg need 0.02 omega^2 of it."""
+    assert ks.design.lift_off_speed(pulled(10.0, 2.0, 500.0), "contact_force") == pytest.approx(np.sqrt(5e4), rel=1e-9)
+    for place in np.linspace(0.4, 5.9, 12):
+        assert ks.design.lift_off_speed(pulled(10.0, place, 2500.0), "contact_force") == 0.0
+        share = 0.5 * 2e4 * (0.04 + 0.01 * np.cos(place)) / 2500.0
+        ((start, stop),) = ks.design.lifted(pulled(1e-3, place, 2500.0), "contact_force")
+        expected = place + PULSE * (0.5 - 0.5 * share) * np.array([-1.0, 1.0])
+        assert_allclose([start, stop], expected, rtol=0, atol=1e-4 * PULSE)
+
+
+@pytest.mark.parametrize("damping", [0.0, 50.0])
+def test_a_pulse_lowers_the_speed_of_lift_off(damping):
+    """The least root of 0.02 c w^2 + 0.01 b s w = 2e4 (0.04 + 0.01 c) - P(phi) over the turn, c and s cos and sin."""
+    place, height = 0.6, 500.0
+    angle, table = around(place), pulse(place, height)
+    angle = angle[np.cos(angle) > 0.0]
+    c, s = np.cos(angle), np.sin(angle)
+    spare = 2e4 * (0.04 + 0.01 * c) - np.interp(angle, table.x, table.y, right=0.0)
+    half = 0.5 * 0.01 * damping * s
+    expected = np.min(spare / (half + np.sqrt(half**2 + 0.02 * c * spare)))
+    dampers = [ks.PointDamper(damping, between=("R", (0.0, 0.0)))] if damping else []
+    found = ks.design.lift_off_speed(pulled(10.0, place, height, *dampers), "contact_force")
+    assert found == pytest.approx(expected, rel=1e-9)
+    assert expected < 180.0
+
+
+def test_a_pulse_is_what_must_be_overcome_to_start():
+    """5 kN on a yoke, at the full crank of 0.3 m."""
+    yoke = ks.scotch_yoke(0.3, slider=ks.Link(10.0))
+    solution = ks.solve(yoke, 0.0, crank_speed=10.0, loads=ks.ProcessForce(pulse(np.pi / 2, 5e3)))
+    found = ks.design.starting_torque(solution)
+    assert found.value == pytest.approx(1500.0, rel=1e-12)
+    assert found.angle == pytest.approx(np.pi / 2, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("place", "height", "sides"), [(0.7, -4e5, ("disk", "ring")), (2.35, -4e5, ("ring",)), (4.4, 4e5, ("disk", "ring"))]
+)
+def test_a_pulse_presses_the_roller_and_wears_its_bearing(place, height, sides):
+    """By Hertz's formula for two radii at 80 000 crank angles."""
+    loads = [*LOADS, ks.ProcessForce(pulse(place, height))]
+    found = contact(solved(loads=loads), load_rating=120e3)
+    dense = solved(loads=loads, angles=around(place))
+    assert found.sides == sides == tuple(np.unique(np.where(dense.cam_force > 0.0, "ring", "disk")))
+    force, pitch = dense.cam_force, CAM.curvature_radius(dense.crank_angle)
+    cam = np.where(force > 0.0, -(pitch + 0.05), pitch - 0.05)
+    pressure = np.sqrt(np.abs(force) * 210e9 * (1.0 / 0.05 + 1.0 / cam) / (2.0 * np.pi * 0.06 * (1.0 - 0.3**2)))
+    assert found.largest_pressure.value == pytest.approx(pressure.max(), rel=1e-8)
+    assert pressure.max() > 1.5 * contact().largest_pressure.value
+    load, spin = found.roller.pin_load(dense), np.abs(found.roller.spin(dense) - 33.5)
+    powers = [np.trapezoid(load**power * spin, dense.crank_angle) for power in (10 / 3, 0)]
+    assert found.equivalent_load == pytest.approx((powers[0] / powers[1]) ** 0.3, rel=1e-6)
+    assert found.life == pytest.approx(
+        (120e3 / found.equivalent_load) ** (10 / 3) * 1e6 / 3600.0 * (2 * np.pi) ** 2 / powers[1], rel=1e-6
+    )
+
+
+def test_a_spring_is_excited_by_a_rise_of_a_tenth_of_a_degree():
+    """Fourier sums of the law at Gauss points of each segment."""
+    width = np.radians(0.1)
+    rise, back = ks.laws.cycloidal(0.05, 0.055, width), ks.laws.cycloidal(0.055, 0.05, 3.0)
+    law = ks.laws.joined(rise, ks.laws.dwell(0.055, 1.0), back, ks.laws.dwell(0.05, 2 * np.pi - 4.0 - width))
+    machine = ks.Mechanism("cam drive", ks.Crank(None), (ks.RollerFollower(law, follower=ks.Link(2.0)),))
+    solution = ks.solve(machine, 0.0, crank_speed=10.0, loads=ks.Spring(5e3, 0.04, on="follower"))
+    found, order = ks.design.spring_surge(solution, 0.5).amplitudes, np.arange(40)
+    point, weight = np.polynomial.legendre.leggauss(80)
+    waves = 0.0
+    for low, segment in zip(law.starts, law.segments, strict=False):
+        angle = 0.5 * segment.angle * (point + 1.0)
+        waves = waves + np.exp(1j * np.outer(order, low + angle)) @ (
+            0.5 * segment.angle * weight * segment.at(angle)[0]
+        )
+    expected = np.abs(waves) / np.pi
+    expected[0] /= 2.0
+    assert_allclose(found[:40], expected, rtol=0, atol=1e-12)
+
+
 def test_a_progressive_spring_surges_by_its_mean_rate():
     pump, angle = ks.crank_slider(0.1, 0.3), np.linspace(0, 2 * np.pi, 3600, endpoint=False)
     spring = ks.Spring(2e3, 0.25, cubic=4e5)

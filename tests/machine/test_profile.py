@@ -353,3 +353,38 @@ def test_roller_conforms_to_a_ring_not_a_disk():
     disk, ring = roller.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
     assert 1.0 / disk == pytest.approx(1.0 / 0.03 + 1.0 / 0.27, rel=1e-14)
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)
+
+
+@pytest.mark.parametrize("rise", [ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial])
+def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
+    """Against a million points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
+    height, width = 1e-7, np.radians(0.1)
+    back = ks.laws.cycloidal(0.08 + height, 0.08, 1.5)
+    dwells = ks.laws.dwell(0.08 + height, 1.0), ks.laws.dwell(0.08, TURN - 2.5 - width)
+    law = ks.laws.joined(rise(0.08, 0.08 + height, width), dwells[0], back, dwells[1], smooth="velocity")
+    phi = np.linspace(1e-12, width - 1e-12, 1_000_001)
+    s, v, a, _ = law(phi)
+    velocity, bend = v - 1j * s, a - 2j * v - s
+    sharpest = np.max(-(np.conj(velocity) * bend).imag / np.abs(velocity) ** 3)
+    assert 1.0 / sharpest < 0.03  # of a pitch curve of 80 mm
+    made = ks.RollerFollower(law).disk.profile(0.005, 8)
+    assert made.largest_roller_radius == pytest.approx(1.0 / sharpest, rel=1e-9)
+    assert made.smallest_curvature_radius.value == pytest.approx(1.0 / sharpest - 0.005, rel=1e-9)
+    assert made.largest_pressure_angle.value == pytest.approx(np.max(np.arctan(np.abs(v) / s)), rel=1e-9)
+    with pytest.raises(ks.ParameterError, match="undercuts the disk"):
+        ks.RollerFollower(law).disk.profile(0.03, 8)
+
+
+def test_a_smooth_bump_between_the_samples_is_seen():
+    """The jerk of a 4-5-6-7 polynomial starts and ends with 0, so nothing jumps where its segments join."""
+    width, height = np.radians(0.06), 1e-6
+    bump = (ks.laws.polynomial(*ends, width, "4-5-6-7") for ends in ((0.08, 0.08 + height), (0.08 + height, 0.08)))
+    law = ks.laws.joined(ks.laws.dwell(0.08, 1.0), *bump, ks.laws.dwell(0.08, TURN - 1.0 - 2.0 * width))
+    follower = ks.RollerFollower(law, follower=ks.Link(2.0))
+    steepest = height / width * law.segments[1].coefficients.velocity
+    place = 1.0 + width / 2.0
+    assert law(place).velocity == pytest.approx(steepest, rel=1e-12)
+    peak = follower.disk.profile(1e-5, 8).largest_pressure_angle
+    assert peak.value == pytest.approx(np.arctan(steepest / law(place).position), rel=1e-6)
+    solution = ks.solve(ks.Mechanism("bump", ks.Crank(None), (follower,)), 0.0, crank_speed=10.0)
+    assert ks.extremes(solution, "pressure_angle").largest == pytest.approx(peak.value, rel=1e-12)

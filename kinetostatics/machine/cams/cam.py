@@ -124,7 +124,7 @@ class Cam:
             r, slope, _ = self.radius(angle)
             return np.abs(slope) / np.tan(largest) - r
 
-        return lowest(lambda angle: self.radius(angle)[0]).value + highest(lacking).value
+        return lowest(lambda angle: self.radius(angle)[0], self).value + highest(lacking, self).value
 
     def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
         """Write the cam for the workshop; the suffix of the path selects a 1:1 drawing (.svg), a table (.csv) or .dxf.

@@ -18,6 +18,7 @@ from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vecto
 from ..crank import ray
 from ..group import FRAME, Declaration, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
+from ..laws.law import turn_angles
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
 from .cam import RADIUS_ANGLES
 from .roller import LineContact, Roller, relative_radius
@@ -147,8 +148,9 @@ class CamRoller(checks.Checked, Group):
     @cached_property
     def tightest(self):
         """Smallest radius of curvature of the pitch curve, on a grid, m; None for recorded numbers or enclosures."""
+        angle = turn_angles([knot.angle for knot in self.knots], RADIUS_ANGLES.size)
         with np.errstate(divide="ignore"):
-            curved = abs(1.0 / polar_curvature(*self.cam.polar(RADIUS_ANGLES, ray(RADIUS_ANGLES))))
+            curved = abs(1.0 / polar_curvature(*self.cam.polar(angle, ray(angle))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property

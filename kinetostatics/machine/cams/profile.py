@@ -14,18 +14,17 @@ import numpy as np
 
 from ...errors import HintWarning, ParameterError
 from ...numbers import checks
+from ...numbers.brackets import find_minima
 from ...numbers.lazy import cached_property
 from ...numbers.planar import polar_curvature
 from .. import plausibility
 from ..crank import ray as ray_at
-from ..laws.law import TURN
+from ..laws.law import TURN, turn_angles
 
 PEAK_SAMPLES = 1440
-"""Crank angles a turn between which peaks are bracketed."""
-PROFILE_ANGLES = np.linspace(0.0, TURN, PEAK_SAMPLES, endpoint=False)
-"""Crank angles of the chain of points that is tested for collisions, rad."""
-PEAK_CANDIDATES = 4
-"""Number of highest samples around which the peak is sought."""
+"""Even crank angles a turn between which peaks are bracketed, and whose points are tested for collisions."""
+ANGLE_TOLERANCE = 1e-12
+"""Error of the crank angle of a peak, rad."""
 SIDE_SIGNS = {"disk": -1.0, "ring": 1.0}
 """Sign of the side of the pitch curve on which the cam lies: inside, outside."""
 POSITIVE = {"low": 0.0, "strict": True}
@@ -49,29 +48,29 @@ class Peak(NamedTuple):
     angle: float
 
 
-def highest(function, start=0.0, span=TURN):
-    """Largest value of a function of crank angles over the turn, a `Peak`, between samples too."""
-    from scipy.optimize import minimize_scalar
+def sampled_angles(cam):
+    """Crank angles over the turn, even ones and some between neighbouring knots of a cam, rising, rad."""
+    return turn_angles([knot.angle for knot in cam.knots], PEAK_SAMPLES)
 
-    step = span / PEAK_SAMPLES
-    angle = start + step * np.arange(PEAK_SAMPLES)
+
+def highest(function, cam):
+    """Largest value of a function of crank angles over the turn of a cam, a `Peak`, between samples too."""
+    angle = sampled_angles(cam)
     values = np.asarray(function(angle), dtype=float)
-    tops = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
-    found = []
-    for place in tops[np.argsort(-values[tops])][:PEAK_CANDIDATES]:
-        best = minimize_scalar(
-            lambda x: -float(function(np.array([x]))[0]),
-            bounds=(angle[place] - step, angle[place] + step),
-            method="bounded",
-            options={"xatol": 1e-10},
-        )
-        found += [Peak(float(-best.fun), float(best.x % span)), Peak(float(values[place]), float(angle[place]))]
-    return max(found, key=lambda peak: peak.value)
+    before, after = np.roll(values, 1), np.roll(values, -1)
+    tops = np.flatnonzero((values >= before) & (values >= after) & ((values > before) | (values > after)))
+    around = np.stack([tops - 1, tops, tops + 1])
+    brackets = angle[around % angle.size] + TURN * (around // angle.size)
+    found = find_minima(lambda at, place: -np.asarray(function(at)), brackets, 0.0, ANGLE_TOLERANCE)
+    angle = np.append(angle, np.where(np.isnan(found), angle[tops], found))
+    values = np.append(values, np.asarray(function(angle[values.size :]), dtype=float))
+    best = int(np.argmax(values))
+    return Peak(float(values[best]), float(angle[best] % TURN))
 
 
-def lowest(function):
-    """Smallest value of a function of crank angles over the turn, a `Peak`."""
-    peak = highest(lambda angle: -np.asarray(function(angle)))
+def lowest(function, cam):
+    """Smallest value of a function of crank angles over the turn of a cam, a `Peak`."""
+    peak = highest(lambda angle: -np.asarray(function(angle)), cam)
     return Peak(-peak.value, peak.angle)
 
 
@@ -136,8 +135,9 @@ class Profile:
                 f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
             )
         side = SIDE_SIGNS[self.side]
-        _, normal, made = _curves(self.cam, self.roller_radius, PROFILE_ANGLES, self.side)
-        nearest = _nearest(made - side * radius * normal, made)
+        angle = sampled_angles(self.cam)
+        _, normal, made = _curves(self.cam, self.roller_radius, angle, self.side)
+        nearest = _nearest(made - side * radius * normal, made, angle)
         if nearest.value < radius * (1.0 - CUT_TOLERANCE):
             raise ParameterError(
                 f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}: its centre "
@@ -149,7 +149,7 @@ class Profile:
     @cached_property
     def largest_pressure_angle(self):
         """Largest size of the pressure angle over the turn, a `Peak`, rad."""
-        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
+        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)), self.cam)
 
     @cached_property
     def smallest_curvature_radius(self):
@@ -164,13 +164,17 @@ class Profile:
     def _tightest(self, sign):
         """Smallest radius of the parts of the working curve with a curvature of this sign, a `Peak`; None without."""
         side = SIDE_SIGNS[self.side]
-        peak = highest(lambda angle: sign * surface_curvature(curvature(self.cam, angle), self.roller_radius, side))
+
+        def bend(angle):
+            return sign * surface_curvature(curvature(self.cam, angle), self.roller_radius, side)
+
+        peak = highest(bend, self.cam)
         return Peak(sign / peak.value, peak.angle) if peak.value > 0 else None
 
     @cached_property
     def largest_roller_radius(self):
         """Smallest roller radius that undercuts the cam, m; inf if none does."""
-        sharpest = highest(lambda angle: _roller_side_curvature(self.cam, angle, self.side))
+        sharpest = highest(lambda angle: _roller_side_curvature(self.cam, angle, self.side), self.cam)
         return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
@@ -240,20 +244,20 @@ def _curves(cam, radius, angle, side):
 
 def _undercut_problems(cam, radius, side):
     """Problems of a roller on this side of the pitch curve, as sentences with the crank angles."""
-    least = lowest(lambda angle: cam.radius(angle)[0])
+    least = lowest(lambda angle: cam.radius(angle)[0], cam)
     if not least.value > 0:
         yield (
             f"the pitch curve must go around O, but its radius falls to {least.value:.6g} m at crank angle "
             f"{np.degrees(least.angle):.6g} deg"
         )
         return
-    sharpest = highest(lambda angle: _roller_side_curvature(cam, angle, side))
+    sharpest, angle = highest(lambda angle: _roller_side_curvature(cam, angle, side), cam), sampled_angles(cam)
     if sharpest.value * radius >= 1.0:
-        where, sharp = "all over the turn", _roller_side_curvature(cam, PROFILE_ANGLES, side) * radius >= 1.0
+        where, sharp = "all over the turn", _roller_side_curvature(cam, angle, side) * radius >= 1.0
         if not sharp.all():
             order = np.roll(np.arange(sharp.size), -int(np.argmin(sharp)))
             edges = np.flatnonzero(np.diff(np.concatenate([[0], sharp[order].astype(int), [0]])))
-            spans = np.degrees(PROFILE_ANGLES[order[[edges[::2], edges[1::2] - 1]]]).T
+            spans = np.degrees(angle[order[[edges[::2], edges[1::2] - 1]]]).T
             where = " and ".join(f"from {start:.4g} to {stop:.4g} deg" for start, stop in spans) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
@@ -261,8 +265,8 @@ def _undercut_problems(cam, radius, side):
             "the roller's must be less"
         )
         return
-    pitch, _, made = _curves(cam, radius, PROFILE_ANGLES, side)
-    nearest = _nearest(pitch, made)
+    pitch, _, made = _curves(cam, radius, angle, side)
+    nearest = _nearest(pitch, made, angle)
     if nearest.value < radius * (1.0 - CUT_TOLERANCE):
         yield (
             f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
@@ -276,10 +280,10 @@ def _undercut_problems(cam, radius, side):
         )
 
 
-def _nearest(centres, made):
+def _nearest(centres, made, angle):
     """Smallest distance of the working curve from the path of a roller or cutter centre, a `Peak`, m."""
     from scipy.spatial import cKDTree
 
     distance, _ = cKDTree(centres.T).query(made.T)
     worst = int(np.argmin(distance))
-    return Peak(float(distance[worst]), float(PROFILE_ANGLES[worst]))
+    return Peak(float(distance[worst]), float(angle[worst]))

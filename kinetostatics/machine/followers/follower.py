@@ -19,11 +19,11 @@ from ..cams.cam import Cam
 from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
 from ..group import Group, Output
-from ..laws.law import TURN, breakpoints_of, law_problem
+from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
 from ..links import CamDriven
 
-GRID = np.linspace(0.0, TURN, 2049)
-"""Crank angles at which Newton's iteration starts, rad."""
+GRID_ANGLES = 2048
+"""Even crank angles among those at which Newton's iteration starts."""
 NEWTON_STEPS = 8
 OUTLINE_POINTS = 181
 """Points of a drawn curve."""
@@ -61,14 +61,26 @@ class DiskCam(Cam):
         return np.array([points.real, points.imag])
 
     @cached_property
+    def knots(self):
+        """Polar angles of the knots of the law, each a `Breakpoint`."""
+        return tuple(
+            Breakpoint(float(np.angle(self.curve(knot.angle)[0])), knot.jumps) for knot in self.follower.cam.knots
+        )
+
+    @cached_property
+    def _grid(self):
+        """Crank angles at which Newton's iteration starts, rad."""
+        return np.append(turn_angles([knot.angle for knot in self.follower.cam.knots], GRID_ANGLES), TURN)
+
+    @cached_property
     def _around(self):
         """Polar angle of the roller centre on the grid, falling by a turn."""
-        angle = np.unwrap(np.angle(self.curve(GRID)[0]))
+        angle = np.unwrap(np.angle(self.curve(self._grid)[0]))
         if abs(angle[0] - angle[-1] - TURN) > 1e-6 or np.any(np.diff(angle) >= 0.0):
             place = int(np.argmax(np.diff(angle)))
             raise ParameterError(
                 "the pitch curve of the follower's cam must go around O once, a point for each direction, but at crank "
-                f"angle {np.degrees(GRID[place]):.6g} deg it does not; enlarge the cam"
+                f"angle {np.degrees(self._grid[place]):.6g} deg it does not; enlarge the cam"
             )
         return angle
 
@@ -77,7 +89,7 @@ class DiskCam(Cam):
         wanted = np.asarray(checks.to_plain_named("cam", "polar angle", polar_angle, "rad"), dtype=float)
         around = self._around
         wanted = around[-1] + np.mod(wanted - around[-1], TURN)
-        phi = np.interp(wanted, around[::-1], GRID[::-1])
+        phi = np.interp(wanted, around[::-1], self._grid[::-1])
         for _ in range(NEWTON_STEPS):
             place, first, _ = self.curve(phi)
             off = np.angle(place * np.exp(-1j * wanted))
@@ -101,7 +113,7 @@ class DiskCam(Cam):
     @property
     def lengths(self):
         """Largest distance of the pitch curve from O, m."""
-        return (float(np.max(np.abs(self.curve(GRID)[0]))),)
+        return (float(np.max(np.abs(self.curve(self._grid)[0]))),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +130,7 @@ class FollowerLaw:
 
     @cached_property
     def knots(self):
-        """Where the law bends or jumps, each a `Breakpoint`."""
+        """Where segments of the law join, or it bends or jumps, each a `Breakpoint`."""
         return breakpoints_of(self.law)
 
     @property

@@ -15,6 +15,8 @@ from ...numbers.panels import Panels
 from .curves import Motion
 
 TURN = 2 * np.pi
+PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(24) + 0.5) / 24)
+"""Places between two knots, relative to their distance, at which a law is sampled: Chebyshev points."""
 TEST_STEPS = 720
 """Parts of the turn over which each derivative of a law is integrated and compared with the one before."""
 GAUSS_POINTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
@@ -29,7 +31,7 @@ MIN_JUMP = 1e-4
 
 
 class Breakpoint(NamedTuple):
-    """A crank angle, rad, at which the jerk of a law jumps; `jumps` if the acceleration jumps too."""
+    """A crank angle, rad, at which segments of a law join or its jerk jumps; `jumps` if the acceleration jumps too."""
 
     angle: float
     jumps: bool
@@ -54,6 +56,8 @@ class Law:
 
     knots: Any = ()
     """Crank angles at which the jerk may jump, rad."""
+    joints: Any = ()
+    """Those of the knots at which segments join, narrow ones perhaps, that may be smooth there, rad."""
 
     def __call__(self, phi) -> Motion:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
@@ -83,6 +87,10 @@ class ShiftedLaw(Law):
         return tuple(knot + self.phase for knot in getattr(self.law, "knots", ()))
 
     @property
+    def joints(self):
+        return tuple(joint + self.phase for joint in getattr(self.law, "joints", ()))
+
+    @property
     def force_error(self):
         return getattr(self.law, "force_error", None)
 
@@ -90,18 +98,26 @@ class ShiftedLaw(Law):
         return self.law(angle_array(phi) - self.phase)
 
 
+def turn_angles(knots, count):
+    """Even crank angles over the turn, so many, and `PLACES` between neighbouring knots, rising, rad."""
+    even, knots = np.linspace(0.0, TURN, count, endpoint=False), np.unique(np.mod(knots, TURN))
+    between = knots[:, None] + np.diff(knots, append=knots[:1] + TURN)[:, None] * PLACES
+    return np.unique(np.append(even, np.mod(between, TURN)))
+
+
 def breakpoints_of(law):
-    """Knots of a law at which its acceleration or jerk jumps, each a `Breakpoint`."""
+    """Knots of a law at which segments join, or its acceleration or jerk jumps, each a `Breakpoint`."""
+    joints = np.mod(np.array(getattr(law, "joints", ()), dtype=float), TURN)
     angle = np.unique(np.mod(np.array(getattr(law, "knots", ()), dtype=float), TURN))
     if not angle.size:
         return ()
-    largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, TEST_STEPS))[2:]]
+    largest = [np.max(np.abs(part)) for part in _parts(law, turn_angles(angle, TEST_STEPS))[2:]]
     before, after = (_parts(law, np.mod(angle + side * KNOT_OFFSET, TURN))[2:] for side in (-1.0, 1.0))
     acceleration, jerk = np.abs(np.subtract(after, before)) > MIN_JUMP * np.array(largest)[:, None]
     return tuple(
         Breakpoint(float(place), bool(jumps))
         for place, jumps, bends in zip(angle, acceleration, jerk, strict=True)
-        if jumps or bends
+        if jumps or bends or place in joints
     )
 
 

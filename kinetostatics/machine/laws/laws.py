@@ -281,6 +281,10 @@ class JoinedLaw(Law):
         return np.concatenate([[0.0], np.cumsum([part.angle for part in self.segments])])
 
     @property
+    def joints(self):
+        return tuple(self.starts)
+
+    @property
     def knots(self):
         return tuple(
             start + knot for start, part in zip(self.starts, self.segments, strict=False) for knot in part.knots

@@ -1,0 +1,73 @@
+"""Extremes, sweeps, tolerances, comparisons, flywheels and contacts agree with each other and with dense evaluation."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.mechanics.quantities import component_sizes
+from support.every import every
+from support.pulsed_scenes import Dense, PulsedScene
+
+TORQUE = "balancing_torque"
+ENDS = ("smallest", "largest")
+MEANS = ("mean", "mean_absolute", "swing")
+AGREEMENT = 1e-9
+"""Of extremes and their like, relative to the largest value of the quantity."""
+AGREEMENT_OF_SWEEPS = 1e-8
+"""The same of sweeps and tolerances, which resolve outputs to that (`cycle.pieces.MAX_OUTPUT_ERROR`)."""
+
+
+def figures(pulsed, names, outputs, flywheel):
+    """Numbers of a scene by all parts of the package: rows of part, output and number."""
+    scene, solution = pulsed.scene, pulsed.scene.solve(1)
+    for name in names:
+        for end, value in zip(ENDS, ks.extremes(solution, name).range, strict=True):
+            if f"{end} {name}" in outputs:
+                yield "extremes", f"{end} {name}", value
+    path, column, mass = pulsed.mass
+    row = ks.sweep(scene, pd.DataFrame({column: [mass]}), outputs, progress=False).iloc[0]
+    assert row["failed"] == ""
+    spread = {path: f"{mass!r}..{float(np.nextafter(mass, np.inf))!r} kg"}
+    quantiles = ks.tolerances(scene, outputs, spread, count=2, progress=False).quantiles([0.5]).iloc[0]
+    for part, numbers in (("sweep", row.iloc[1:-1]), ("tolerances", quantiles)):
+        yield from ((part, output, number) for output, number in zip(outputs, numbers, strict=True))
+    compared = ks.compare(solution, solution)
+    yield "compare", f"mean_absolute {TORQUE}", compared.mean_torques[0]
+    yield "compare", "largest O", compared.peak_reactions("O")[0]
+    if flywheel:
+        yield "flywheel", f"swing {TORQUE}", ks.drive.flywheel(scene, 0.02).energy
+    if pulsed.kind == "cam":
+        yield "contact", "largest contact_pressure", ks.design.contact(solution).largest_pressure.value
+
+
+def disagreements(seed, flywheel=False, count=40_000):
+    """Errors of numbers against the dense evaluation where they exceed the agreement, by part and output."""
+    pulsed = PulsedScene(seed)
+    dense = Dense(pulsed.scene.solve(1), pulsed.edges, count)
+    names = (TORQUE, "O", "contact_pressure" if pulsed.kind == "cam" else "shaking_force")
+    true, sizes = {}, {}
+    for name in names:
+        ends = dense.ends(lambda at, name=name: component_sizes(at, name)[0])
+        true |= {f"{end} {name}": value for end, value in zip(ENDS, ends, strict=True)}
+        sizes[name] = max(map(abs, ends))
+    true |= dict(zip((f"{mean} {TORQUE}" for mean in MEANS), dense.means(lambda at: at.balancing_torque), strict=True))
+    true.pop("smallest contact_pressure", None)  # 0 where the roller changes sides, as the root of a force near 0
+    wrong = {}
+    for part, output, number in figures(pulsed, names, list(true), flywheel):
+        size = true[output] if output.startswith("swing") else sizes[output.split()[1]]
+        error = (number - true[output]) / size
+        if not abs(error) <= (AGREEMENT_OF_SWEEPS if part in ("sweep", "tolerances") else AGREEMENT):
+            wrong[part, output] = float(error)
+    return wrong
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_all_parts_agree(seed):
+    assert disagreements(seed) == {}
+
+
+@pytest.mark.slow
+@every("seed", range(4, 200))
+def test_all_parts_agree_on_many_scenes(seed):
+    assert disagreements(seed, flywheel=seed % 10 == 0) == {}
