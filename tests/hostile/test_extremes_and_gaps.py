@@ -249,6 +249,12 @@ def test_what_is_no_force_is_refused_by_name(name, way):
         ways[way](solution)
 
 
+def test_a_torque_is_told_as_a_torque():
+    solution = ks.solve(SAW, [0.1, 0.2], crank_speed=1.0, loads=ks.Torque(lambda motion: np.ones(7), on="coupler"))
+    with pytest.raises(ks.ParameterError, match=r"Torque on 'coupler': its function must return .*torque"):
+        _ = solution.balancing_torque
+
+
 @every("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
     function, _ = WRONG[name]
