@@ -1,15 +1,16 @@
 """Chains of every kind of group and pin: full systems, balance of powers, and all that the library asks of groups."""
 
+from dataclasses import replace
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
-from kinetostatics.mechanics.quantities import components, of_mechanism
-from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.chains import chain, error_beside_constraints, errors_beside_full_systems
+from support.turning_machines import KINDS, random_machine
 
 ANGLES = np.linspace(0.1, 6.2, 13)
 BODY = {
@@ -55,7 +56,7 @@ def scene(kind, label=""):
 every_kind = pytest.mark.parametrize("kind", ["yoke", "lever", "whitworth", "cylinder", "dyad", "pin"])
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(n, marks=pytest.mark.slow) for n in range(4, 24))])
 def test_random_chains_agree_with_two_full_systems(seed):
     made, angles = chain(seed)
     s = made.solve(angles)
@@ -66,43 +67,41 @@ def test_random_chains_agree_with_two_full_systems(seed):
     assert np.max(np.abs(s.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
 
 
+WITHOUT_FORMULA = ("sampled cam", "law cam", "roller follower", "flat follower", "swinging follower")
+"""Kinds of machines whose cam or law the full systems do not know; followers have tests of their own."""
+KNOWN = [kind for kind in KINDS if kind not in WITHOUT_FORMULA]
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed"),
+    [
+        *((kind, 0) for kind in ("crank slider", "cosine cam", "drag link")),
+        *(pytest.param(kind, seed, marks=pytest.mark.slow) for kind in KNOWN for seed in (1, 10, 20)),
+    ],
+)
+def test_machines_of_every_kind_agree_with_two_full_systems(kind, seed):
+    """Joints, mass centres and directions with their derivatives, all forces, both torques; statics is no special case.
+
+    The two torques share no force: one follows equilibrium link by link, one the powers of all loads.
+    """
+    moving = random_machine(kind, seed, loads=("gravity", "spring", "process"))
+    for made in (moving, replace(moving, crank_speed=0.0, crank_acceleration=0.0)):
+        s = made.solve(ANGLES[seed % 10 :: 5])
+        errors = errors_beside_full_systems(s, 0) | {"constraints": error_beside_constraints(s)}
+        assert {what: error for what, error in errors.items() if not error < 1e-13} == {}
+        assert s.power_residual < 1e-14
+        for group in s.mechanism.groups:
+            if isinstance(group, ks.SliderGroup):
+                x, y = group.guide.direction
+                found = s.scalar("guide_force" + group.label) * np.array([[-y], [x]])
+                assert_allclose(s.reaction("guide" + group.label), found, rtol=1e-14, atol=0.0)
+
+
 @every_kind
 def test_each_group_passes_the_check_of_groups(kind):
     for group in mechanism(kind).groups:
         report = ks.check(group)
         assert report.ok, report
-
-
-def test_engines_find_the_same(interpreted):
-    parts = (
-        *mechanism("dyad").groups,
-        ks.YokeGroup(ks.Guide.at(0.4, 0.03), 1.2, "D", "F", **links("slider", "block"), label="Y"),
-        ks.LeverGroup((0.1, -0.6), "B", 0.05, **links("lever", "block"), pivot_name="O3", label="L"),
-        ks.Pin(on="sliderY", at=(0.1, 0.2), name="I"),
-        ks.CylinderGroup((0.2, 1.9), "I", **links("rod", "cylinder"), pivot_name="O4", label="C"),
-    )
-    made = ks.Mechanism("all", ks.Crank(0.1, BODY["crank"]), parts)
-    plain, compiled = (
-        ks.solve(made, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=[ks.Gravity()], engine=engine)
-        for engine in ("numpy", "compiled")
-    )
-    for name in of_mechanism(made):
-        expected = np.array(components(plain, name))
-        error = np.max(np.abs(np.array(components(compiled, name)) - expected))
-        assert error <= 1e-13 * max(np.max(np.abs(expected)), 1e-9), name
-
-
-@pytest.mark.slow
-@every_kind
-def test_derivatives_are_those_of_differences(kind):
-    program = ks.compile(scene(kind), ("balancing_torque", "O"), engine="numpy")
-    for path, value in program.parameters.items():
-        slopes, step = program.derivatives(ANGLES, by=(path,)), 1e-5 * abs(value)
-        above, below = (program(ANGLES, {path: value + sign * step}) for sign in (1, -1))
-        for name, found in slopes.items():
-            expected = (above[name] - below[name]) / (2 * step)
-            noise = 1e-10 * np.max(np.abs(above[name])) / abs(value)
-            assert np.max(np.abs(found[path] - expected)) < 1e-6 * np.max(np.abs(expected)) + noise, (path, name)
 
 
 @every_kind
@@ -118,12 +117,6 @@ def test_every_group_and_pin_has_its_own_paths(kind):
         "pin": {"pin_C.along", "pin_C.across", "coupler2.mass"},
     }
     assert wanted[kind] <= set(program.parameters)
-
-
-@every_kind
-def test_condition_is_small_where_nothing_is_lost(kind):
-    condition = scene(kind).solve(ANGLES).condition
-    assert np.all((condition >= 1.0) & (condition < 1e5))
 
 
 @every_kind
@@ -147,14 +140,6 @@ def test_outputs_stand_in_frames_and_extremes(kind):
         if not output.vector:
             assert table.loc[name.replace("_", " "), "unit"] == output.unit
         assert output.text
-
-
-@every_kind
-def test_kernels_run_on_intervals_and_are_enclosed(kind):
-    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    s = scene(kind).solve(ANGLES[:3])
-    found = enclosure(s, "balancing_torque")
-    assert np.max(np.abs(s.balancing_torque - found.middle)) < 1e-13 * np.max(np.abs(found.middle))
 
 
 @every_kind
