@@ -357,7 +357,7 @@ SHARP = (0.283648, 0.616619, 0.657347), (0.345486, -0.001611)
 
 
 @pytest.mark.slow
-@every("angles", [12, 37, 72, 180, 360, 720])
+@every("angles", [12, 37, 180, 720])
 def test_sweeps_take_as_many_angles_as_peaks_need(angles):
     lengths, pivot = SHARP
 
@@ -419,7 +419,7 @@ FOLDING = {
     "rocker shortest": ((2, 4, 1, 3), (np.pi,)),
     "coupler shortest": ((3, 1, 2, 4), (0.0,)),
 }
-DISTANCES = (0.0, 1e-12, 1e-8, 1e-6, 1e-5)
+DISTANCES = (0.0, 1e-8, 1e-5)
 
 
 def cases():

@@ -114,8 +114,6 @@ OVER_TURN = [
     (laws.extremes, "lever", 0),
     (laws.means, "four-bar", 0),
     (laws.swept, "four-bar", 1),
-    (laws.compiled, "crank slider", 2),
-    (laws.compiled, "drag link", 2),
     *(pytest.param(laws.extremes, kind, 0, marks=pytest.mark.slow) for kind in ("drag link", "roller follower")),
 ]
 
@@ -151,7 +149,7 @@ DWELLING = ("roller follower", "flat follower", "swinging follower")
 """Kinds whose laws have dwells."""
 
 
-LAWS = (laws.extremes, laws.means, laws.swept, laws.compiled)
+LAWS = (laws.extremes, laws.means, laws.swept)
 MANY = [(kind, law, (one + other) % 2 == 1) for one, kind in enumerate(KINDS) for other, law in enumerate(LAWS)]
 """Every law of every kind; with friction every other one."""
 

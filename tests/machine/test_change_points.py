@@ -19,7 +19,6 @@ from support.change_points import (
     SPEED,
     at_zero,
     each,
-    each_of_both,
     errors,
     four_bar,
     lever,
@@ -251,10 +250,10 @@ def test_both_sides_of_a_change_point_are_exact(name, assembly):
     assert not wrong
 
 
-@each_of_both
+@pytest.mark.parametrize("assembly", SIDES)
+@pytest.mark.parametrize("name", [name for name in [*LINKAGES, *LEVERS] if name != "grazing"])
 def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
-    if name == "grazing":
-        pytest.skip("the lever spins too fast there for a step of 1e-10 rad")
+    """But of the lever that spins too fast for a step of 1e-10 rad."""
     solution = solve(at_zero(name, assembly), np.array([-1e-10, 0.0, 1e-10]))
     growing = {("scalar", "slot_force"), *(("reaction", joint) for joint in "ABO"), ("reaction", "O2")}
     for key in {*quantities(name)} - growing - {("position", "B")}:
@@ -287,17 +286,6 @@ def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
             right = values * around if np.iscomplexobj(values) else values
             close = (1e-11 if name in LEVERS else 1e-12) * (np.abs(values).max() + 1e-9)
             np.testing.assert_allclose(read(solution, *key), right, rtol=0, atol=close)
-
-
-@each
-def test_engines_agree(name, assembly, interpreted):
-    scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
-    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
-    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
-    kernels = numpy.dynamics
-    for found in (compiled, kernels):
-        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-13, atol=1e-13)
-        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -284,15 +284,6 @@ def test_zero_harmonic_costs_nothing():
 
 
 @pytest.mark.slow
-def test_batch_of_coefficients_equals_each_design():
-    third = np.array([[0.0], [0.003], [-0.002]])
-    found = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, third))).solve(24).balancing_torque
-    for row, value in zip(found, third.ravel(), strict=True):
-        alone = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, value))).solve(24).balancing_torque
-        assert_allclose(row, alone, rtol=1e-11, atol=1e-8)
-
-
-@pytest.mark.slow
 def test_compiled_loop_jax_and_enclosures_agree(numba, double, flint):
     expected = scene().solve(ANGLES).balancing_torque
     assert_allclose(scene().solve(ANGLES, engine="compiled").balancing_torque, expected, rtol=1e-11, atol=1e-8)
