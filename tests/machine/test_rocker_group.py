@@ -136,16 +136,16 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 4))
-def test_error_near_a_toggle_is_of_rounded_lengths(kind, margin):
+@pytest.mark.parametrize(("power", "assembly"), [(2, 1), (6, -1), (10, 1), (14, -1)])
+def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 
     The condition grows as 1 / sine for positions, 1 / sine^2 for rates and 1 / sine^3 for accelerations.
     """
-    for assembly in (1, -1):
-        bar, toggle = near_toggle(kind, margin)
-        angles = toggle + np.sqrt(margin) * np.array([0.0, 0.3, -1.0, 5.0])
-        assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
+    margin = 10.0**-power
+    bar, toggle = near_toggle(kind, margin)
+    angles = toggle + np.sqrt(margin) * np.array([0.0, 0.3, -1.0, 5.0])
+    assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
 
 
 @pytest.mark.parametrize(("longer", "assembly"), [(1e2, 1), (1e4, -1), (1e6, 1)])
@@ -153,4 +153,4 @@ def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):
         bar = FourBar(0.5, coupler, rocker, 0.8 + 1j * longer, assembly)
-        assert_error_is_that_of_rounded_lengths(bar, ANGLES[::6])
+        assert_error_is_that_of_rounded_lengths(bar, ANGLES[::12])
