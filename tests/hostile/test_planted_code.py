@@ -169,7 +169,7 @@ PLACES = {
 }
 OPEN = {
     **{f"{name}, group": loosened(place, 0o020) for name, place in PLACES.items()},
-    **{f"{name}, all": loosened(place, 0o002) for name, place in PLACES.items()},
+    **{f"{name}, all": loosened(PLACES[name], 0o002) for name in ("entry", "code", "parent")},
     "folder, all, sticky": loosened(PLACES["folder"], 0o1002),
 }
 FOREIGN = {name: handed_over(place) for name, place in PLACES.items()}

@@ -55,12 +55,11 @@ def agreed(law, scene):
 # Solutions
 
 
-SHORT = ("crank slider", "circle cam", "four-bar", "lever", "yoke", "roller follower", "swinging follower")
+SHORT = ("crank slider", "four-bar", "lever", "swinging follower")
 """Kinds that are solved fast; all others are slow tests."""
 AT_REST = [
-    {"loads": ("gravity", "spring", "table over travel"), "speed": 0.0, "acceleration": way, "friction": friction}
+    {"loads": ("gravity", "spring", "table over travel"), "speed": 0.0, "acceleration": way, "friction": way < 0.0}
     for way in (40.0, -40.0)
-    for friction in (False, True)
 ]
 """Machines that begin to move."""
 FAST = [
@@ -69,7 +68,7 @@ FAST = [
     *(("crank slider", 3, {"loads": LOADS[first::4]}) for first in range(4)),
     ("four-bar", 3, {"loads": ("torsion spring",)}),
     *(("crank slider", 5, options) for options in AT_REST),
-    *(("crank slider", 5, {"loads": ("table with back",), "speed": 0.0, "acceleration": a}) for a in (40.0, -40.0)),
+    ("crank slider", 5, {"loads": ("table with back",), "speed": 0.0, "acceleration": -40.0}),
 ]
 SLOW = [
     *((kind, 0, {}) for kind in KINDS if kind not in SHORT),
@@ -302,8 +301,9 @@ def test_lift_off():
     assert laws.apart(-start_there, stop) < ANGLE
 
 
-@pytest.mark.parametrize("friction", [{}, {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.01)}])
-@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize(
+    ("friction", "speed"), [({}, 10.0), ({"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.01)}, -10.0)]
+)
 def test_starting_torque(friction, speed):
     one, other = both(lambda scene: ks.design.starting_torque(scene.solve(4)), pump(speed, friction=friction))
     assert other.value == pytest.approx(one.value, rel=1e-12)

@@ -278,7 +278,7 @@ def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
     psi = np.linspace(-7.0, 7.0, 28)
     alike = [key for key in quantities(name) if key[0] not in ("reaction", "direction", "position")]
     expected = {key: read(solve(turned(name, assembly, 0.0), psi, loads=()), *key) for key in alike}
-    for start in (-3.1, -2.0, -1.0, 1.0, 2.0, 3.1):
+    for start in (-3.1, -1.0, 2.0):
         made = turned(name, assembly, start)
         assert made.passes
         solution, around = solve(made, start + psi, loads=()), np.exp(1j * start)
