@@ -318,9 +318,15 @@ OPPOSED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", OPPOSED)
-@pytest.mark.parametrize(("sense", "until"), [(1.0, "standstill"), (-1.0, 0.2)])
-@pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
+@pytest.mark.parametrize(
+    ("law", "sense", "until", "friction"),
+    [
+        *((law, 1.0, "standstill", {}) for law in OPPOSED),
+        *((law, -1.0, 0.2, RUBS) for law in OPPOSED),
+        ("table", 1.0, "standstill", RUBS),
+        ("table", -1.0, 0.2, {}),
+    ],
+)
 def test_machine_stops_against_opposing_loads(law, sense, until, friction):
     """Steps of the integration end beyond the standstill; the loads may take no speed against the sense for it."""
     scene = ks.Scene(PRESS, 1.0, loads=OPPOSED[law], friction=friction)
@@ -336,8 +342,7 @@ WORK = ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, over="travel", back=[3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("drive", ["crank_speed", "crank_acceleration"])
-@pytest.mark.parametrize("friction", [{}, RUBS], ids=["free", "rubbing"])
+@pytest.mark.parametrize(("drive", "friction"), [("crank_speed", RUBS), ("crank_acceleration", {})])
 def test_jax_differentiates_with_a_given_sense(drive, friction):
     """While JAX traces a speed its value is not known, so nothing is said of rest."""
     jax = pytest.importorskip("jax")
