@@ -276,6 +276,7 @@ MIXED = [
     (NEWTON, solved(MACHINE), "cam_force", "give no cam_force"),
     (PRINTED, solved(MACHINE), "O", "circular cam; crank-slider has none"),
     (PRINTED, solved(cam(OwnCam()), loads=[SPRING]), "O", "has the cam OwnCam"),
+    (PRINTED, solved(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))), "O", "circular cam; four-bar has none"),
     (PRINTED, solved(cam(CIRCLE)), "O", "no spring"),
     (PRINTED, solved(SIX_BAR), "O", "circular cam; six-bar has none"),
     (PRINTED, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "circular cam; fan has none"),
