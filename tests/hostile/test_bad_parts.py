@@ -96,7 +96,9 @@ def test_a_guide_has_a_direction_and_an_offset(given):
     ],
 )
 def test_a_point_is_a_pair_of_numbers(make, bad):
-    with pytest.raises(ks.ParameterError):
+    with pytest.raises(
+        ks.ParameterError, match=r"must be a (pair \((x, y|along, across)\), got|number or an array of shape)"
+    ):
         make(bad)
 
 

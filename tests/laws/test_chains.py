@@ -9,6 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
+from kinetostatics.mechanics.quantities import components, of_mechanism
+from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.chains import chain, error_beside_constraints, errors_beside_full_systems
 from support.turning_machines import KINDS, random_machine
 
@@ -104,6 +106,38 @@ def test_each_group_passes_the_check_of_groups(kind):
         assert report.ok, report
 
 
+def test_engines_find_the_same(interpreted):
+    parts = (
+        *mechanism("dyad").groups,
+        ks.YokeGroup(ks.Guide.at(0.4, 0.03), 1.2, "D", "F", **links("slider", "block"), label="Y"),
+        ks.LeverGroup((0.1, -0.6), "B", 0.05, **links("lever", "block"), pivot_name="O3", label="L"),
+        ks.Pin(on="sliderY", at=(0.1, 0.2), name="I"),
+        ks.CylinderGroup((0.2, 1.9), "I", **links("rod", "cylinder"), pivot_name="O4", label="C"),
+    )
+    made = ks.Mechanism("all", ks.Crank(0.1, BODY["crank"]), parts)
+    plain, compiled = (
+        ks.solve(made, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=[ks.Gravity()], engine=engine)
+        for engine in ("numpy", "compiled")
+    )
+    for name in of_mechanism(made):
+        expected = np.array(components(plain, name))
+        error = np.max(np.abs(np.array(components(compiled, name)) - expected))
+        assert error <= 1e-13 * max(np.max(np.abs(expected)), 1e-9), name
+
+
+@pytest.mark.slow
+@every_kind
+def test_derivatives_are_those_of_differences(kind):
+    program = ks.compile(scene(kind), ("balancing_torque", "O"), engine="numpy")
+    for path, value in program.parameters.items():
+        slopes, step = program.derivatives(ANGLES, by=(path,)), 1e-5 * abs(value)
+        above, below = (program(ANGLES, {path: value + sign * step}) for sign in (1, -1))
+        for name, found in slopes.items():
+            expected = (above[name] - below[name]) / (2 * step)
+            noise = 1e-10 * np.max(np.abs(above[name])) / abs(value)
+            assert np.max(np.abs(found[path] - expected)) < 1e-6 * np.max(np.abs(expected)) + noise, (path, name)
+
+
 @every_kind
 def test_every_group_and_pin_has_its_own_paths(kind):
     made = mechanism(kind, "2")
@@ -117,6 +151,12 @@ def test_every_group_and_pin_has_its_own_paths(kind):
         "pin": {"pin_C.along", "pin_C.across", "coupler2.mass"},
     }
     assert wanted[kind] <= set(program.parameters)
+
+
+@every_kind
+def test_condition_is_small_where_nothing_is_lost(kind):
+    condition = scene(kind).solve(ANGLES).condition
+    assert np.all((condition >= 1.0) & (condition < 1e5))
 
 
 @every_kind
@@ -140,6 +180,14 @@ def test_outputs_stand_in_frames_and_extremes(kind):
         if not output.vector:
             assert table.loc[name.replace("_", " "), "unit"] == output.unit
         assert output.text
+
+
+@every_kind
+def test_kernels_run_on_intervals_and_are_enclosed(kind):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    s = scene(kind).solve(ANGLES[:3])
+    found = enclosure(s, "balancing_torque")
+    assert np.max(np.abs(s.balancing_torque - found.middle)) < 1e-13 * np.max(np.abs(found.middle))
 
 
 @every_kind

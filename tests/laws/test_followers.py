@@ -37,6 +37,16 @@ def test_the_torque_from_forces_is_that_of_the_powers(kind):
     assert_allclose(s.balancing_torque, s.balancing_torque_by_power, rtol=0, atol=1e-13 * size)
 
 
+@pytest.mark.slow
+def test_the_compiled_engine_agrees():
+    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+    drive = scene(KINDS["roller, offset"]())
+    plain, compiled = (drive.solve(ANGLES, engine=engine) for engine in ("numpy", "compiled"))
+    name = "contact_force" + drive.mechanism.groups[-1].label
+    assert_allclose(compiled.scalar(name), plain.scalar(name), rtol=1e-13)
+    assert_allclose(compiled.balancing_torque, plain.balancing_torque, rtol=1e-12)
+
+
 @every_kind
 def test_any_law_gives_the_same_program(kind):
     def solved(law):
