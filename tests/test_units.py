@@ -659,7 +659,7 @@ def test_csv_table_keeps_its_unit(tmp_path):
         ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.Force(torque, at="B"))
 
 
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
 def test_load_functions_may_return_quantities(engine):
     if engine == "compiled":
         pytest.importorskip("numba")

@@ -139,22 +139,6 @@ def test_single_variant_case_has_no_comparison(tmp_path, capsys):
     assert "nothing to compare" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        'title = "x"\nreference = ["a"]\n[variants.a]\nmechanism = "crank-slider"\n',
-        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = ["crank-slider"]\n',
-        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncoupler_length = "2 (m"\n',
-        'title = "x"\nreference = "a"\nvariants = 3\n',
-        'title = "x"\nreference = "a"\ncommon = 3\n[variants.a]\nmechanism = "crank-slider"\n',
-    ],
-)
-def test_wrong_types_are_problems_not_tracebacks(tmp_path, text, capsys):
-    (tmp_path / "odd.toml").write_text(text)
-    assert main(["run", str(tmp_path / "odd.toml")]) == 2
-    assert capsys.readouterr().err.startswith("kinetostatics: ")
-
-
 # Cases that are there, and new ones
 
 

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import sys
 import threading
 import warnings
 from operator import add, mul, neg, sub, truediv
@@ -105,12 +104,6 @@ def seconds(program, state, leaves):
     begun = perf_counter()
     program.run(state, leaves, compiled=True)
     return perf_counter() - begun
-
-
-def test_missing_numba_names_the_extra_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "numba", None)
-    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]".*engine="numpy"'):
-        solve(SCENES["plain"], SAMPLES, engine="compiled")
 
 
 def test_the_compiled_engine_refuses_single_precision(interpreted):

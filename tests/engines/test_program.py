@@ -330,8 +330,9 @@ def test_program_of_a_table_at_other_angles_is_refused():
 def test_missing_numba_names_the_extra_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", None)
     scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
-    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
-        ks.compile(scene, ["O"], engine="compiled")
+    for call in (lambda: ks.compile(scene, ["O"], engine="compiled"), lambda: scene.solve(3, engine="compiled")):
+        with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
+            call()
 
 
 RUBBING = ks.Scene(

@@ -9,15 +9,11 @@ from kinetostatics.engines.graph import Node, needed
 from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Gaps, Recorder
 from kinetostatics.engines.simplify import SimplifiedGraph
-from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.loads import TURN
 from kinetostatics.mechanics.dynamics import Dynamics
 from support.every import every
 from support.scenes import (
     SCENES,
-    Pan,
-    solve,
-    with_group,
 )
 
 
@@ -25,22 +21,6 @@ def program(solution, names, sizes=False):
     """Program of some quantities, and a function that runs it: by NumPy unless told."""
     made, leaves = program_of(solution.dynamics, tuple(names), sizes)
     return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
-
-
-class Stop(Pan):
-    """A group that looks at values."""
-
-    def place(self, placement):
-        """Turn with the crank on one side."""
-        super().place(placement)
-        if placement.joints["A"].position[0] > 0:
-            placement.links["pan"] = placement.links["crank"]
-
-
-def test_a_kernel_that_branches_on_values_is_refused():
-    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]), on_gap="nan")
-    with pytest.raises(NotGivenError, match="kernels must not branch on values"):
-        program(s, ["O"])
 
 
 def test_recorded_numbers_have_no_value():

@@ -1,6 +1,5 @@
 """Cams and followers with impossible input."""
 
-import datetime as dt
 import math
 from functools import partial
 
@@ -9,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from support.every import every
+from support.no_numbers import BAD
 
 laws, TURN = ks.laws, 2 * np.pi
 CAM = ks.cams.CosineLaw(0.3, 2.0)
@@ -18,31 +18,7 @@ SAW = ks.cam_crank_slider(CAM, CAM.coupler_length, slider=ks.Link(600.0))
 SOLUTION = ks.solve(SAW, DEGREES, crank_speed=30.0)
 PLAIN = ks.solve(ks.crank_slider(0.1, 0.3), DEGREES, crank_speed=30.0)
 
-NO_NUMBERS = [
-    "0.1",
-    b"1",
-    None,
-    True,
-    np.True_,
-    1j,
-    [],
-    [0.1, 0.2],
-    {},
-    {"a": 1},
-    object(),
-    float,
-    np.nan,
-    np.inf,
-    -np.inf,
-    1e200,
-    10**400,
-    np.array([0.1, 0.2]),
-    np.array([[0.1], [0.2]]),
-    np.array([]),
-    np.array(["0.1"]),
-    dt.timedelta(1),
-    lambda: 1,
-]
+NO_NUMBERS = [None, [], lambda: 1, *(value for value, _ in BAD.values())]
 """What is no single finite number."""
 NOT_POSITIVE = [0.0, -0.1, -0, np.float64(-1e-300)]
 

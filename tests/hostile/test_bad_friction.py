@@ -38,16 +38,6 @@ WRONG = [
     ("O", "must be a dict of joint to friction"),
     (PIN, "must be a dict of joint to friction"),
 ]
-NUMBERS = [
-    (lambda value: ks.PinFriction(value, 0.1), "mu"),
-    (lambda value: ks.GuideFriction(value), "mu"),
-    (lambda value: ks.SlotFriction(value, 0.1), "mu"),
-    (lambda value: ks.RollerFriction(value, 0.01, 0.02), "mu"),
-    (lambda value: ks.PinFriction(0.1, value), "radius"),
-    (lambda value: ks.GuideFriction(0.1, value), "half_length"),
-    (lambda value: ks.RollerFriction(0.1, value, 0.2), "pin_radius"),
-    (lambda value: ks.RollerFriction(0.1, 0.01, value), "roller_radius"),
-]
 
 
 @every(("friction", "words"), WRONG)
@@ -64,19 +54,6 @@ def test_all_that_is_wrong_is_said_at_once():
     with pytest.raises(ks.ParameterError) as caught:
         ks.solve(CAM, ANGLES, crank_speed=1.0, friction={"slot": PIN, "cam": PIN, "Q": PIN})
     assert all(words in str(caught.value) for words in ("SlotFriction", "RollerFriction", "'Q'"))
-
-
-@every(("make", "name"), NUMBERS)
-@every("value", [-0.1, np.nan, np.inf, -np.inf, "0.1", [0.1], 1e200, 1j, object()])
-def test_impossible_coefficients_are_refused(make, name, value):
-    with pytest.raises(ks.ParameterError, match=name):
-        make(value)
-
-
-@pytest.mark.parametrize(("make", "name"), NUMBERS[4:])
-def test_sizes_must_not_be_zero(make, name):
-    with pytest.raises(ks.ParameterError, match=name):
-        make(0.0)
 
 
 def test_a_roller_that_would_not_turn_is_refused():
@@ -276,10 +253,10 @@ def test_coasting_obeys_newtons_equations(kind, speed):
 def test_running_and_start_obey_newtons_equations(direction):
     drawn, motor = Drawn("slider", 2), ks.drive.Motor.linear(400.0, 30.0, transmission=direction)
     torque = lambda speed: direction * float(motor.torque(direction * speed))  # noqa: E731
-    run = ks.drive.steady(drawn.scene, motor, 2.0, angles=np.linspace(0.01, 6.2, 12))
+    run = ks.drive.steady(drawn.scene, motor, 2.0, angles=np.linspace(0.01, 6.2, 5))
     started = ks.drive.start(drawn.scene, motor, 2.0, from_angle=0.7)
     obeys(run, drawn.system, 2.0, torque)
-    obeys(started.at(started.time[1::40]), drawn.system, 2.0, torque)
+    obeys(started.at(started.time[1 :: started.time.size // 5]), drawn.system, 2.0, torque)
     assert run.energy_per_turn == pytest.approx(run.load_energy_per_turn + run.friction_energy_per_turn, rel=1e-11)
     assert started.energy_drift < 1e-10 * started.kinetic_energy.max()
     wanted = 0.5 * run.fluctuation

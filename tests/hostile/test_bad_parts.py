@@ -59,16 +59,7 @@ def test_a_cam_is_made_and_has_a_pitch_curve(bad):
         ks.cam_crank_slider(bad, 2.0)
 
 
-@every(
-    "bad",
-    [
-        0.3,
-        "level",
-        (1.0, 0.0),
-        ks.Guide,
-        None,
-    ],
-)
+@every("bad", [0.3, "level", (1.0, 0.0), ks.Guide, None])
 def test_a_guide_is_a_guide(bad):
     with pytest.raises(ks.ParameterError, match="guide"):
         ks.SliderGroup(1.0, bad)
@@ -105,7 +96,9 @@ def test_a_guide_has_a_direction_and_an_offset(given):
     ],
 )
 def test_a_point_is_a_pair_of_numbers(make, bad):
-    with pytest.raises(ks.ParameterError):
+    with pytest.raises(
+        ks.ParameterError, match=r"must be a (pair \((x, y|along, across)\), got|number or an array of shape)"
+    ):
         make(bad)
 
 
@@ -131,7 +124,7 @@ def test_groups_in_a_list_become_a_tuple():
     assert type(ks.Mechanism("m", ks.Crank(0.1), [ks.SliderGroup(0.5)]).groups) is tuple
 
 
-ROCKER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
+ROCKER, LEVER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.LeverGroup((0.1, 0.2))
 
 
 @every(
@@ -139,21 +132,25 @@ ROCKER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
     [
         ((ROCKER, ks.SliderGroup(0.5, on="B", label="2")), "SliderGroup adds joint 'B' a second time"),
         ((ks.SliderGroup(0.5, pin="O"),), "adds joint 'O' a second time"),
-        ((ks.SliderGroup(0.5, pin="A"),), "adds joint 'A' a second time"),
         ((ks.SliderGroup(0.5, on="Q"),), "hangs on joint 'Q', which no part before it places"),
-        ((replace(ROCKER, pivot_name="A"),), "adds joint 'A' a second time"),
         ((replace(ROCKER, pivot_name="B"),), "adds joint 'B' a second time"),
-        ((replace(ROCKER, pivot_name="O"),), "adds joint 'O' a second time"),
         ((ROCKER, ks.SliderGroup(0.5, on="B", pin="B2", label="2")), "adds reaction 'B2' a second time"),
         ((ROCKER, replace(ROCKER, on="B", pin="C", label="2")), "adds joint 'O2' a second time"),
         ((ks.SliderGroup(0.5, pin="guide"),), "adds reaction 'guide' a second time"),
         ((ks.SliderGroup(0.5, pin="slider"),), "adds link 'slider' a second time, after the joint"),
         ((ks.SliderGroup(0.5, pin="guide_force"),), "adds quantity 'guide_force' a second time"),
         ((ks.SliderGroup(0.5, pin="shaking_force"),), "adds reaction 'shaking_force' a second time"),
-        ((ks.SliderGroup(0.5, pin="closure"),), "adds reaction 'closure' a second time"),
         ((ks.SliderGroup(0.5, pin="coupler_rate"),), "'coupler_rate' a second time"),
         ((ks.SliderGroup(0.5), ks.SliderGroup(0.5, pin="coupler2", label="2")), "adds link 'coupler2' a second time"),
         ((ks.SliderGroup(0.5), ks.SliderGroup(0.5, pin="C")), "adds link 'coupler' a second time"),
+        ((ks.Dyad(0.4, 0.3, ("A", "O"), "dyad1_A"),), "adds reaction 'dyad1_A' a second time"),
+        ((ks.YokeGroup(pin="A"),), "adds joint 'A' a second time"),
+        ((LEVER, ks.YokeGroup()), "adds link 'block' a second time"),
+        ((LEVER, ks.YokeGroup(label="2"), ks.YokeGroup(pin="C", label="2")), "'slider2' a second"),
+        ((replace(LEVER, pivot_name="slot_force"),), "adds quantity 'slot_force' a second time"),
+        ((ks.CylinderGroup((0.1, 0.2), pivot_name="O"),), "adds joint 'O' a second time"),
+        ((ks.Pin("crank", (0.1, 0.0), "A"),), "adds joint 'A' a second time"),
+        ((ks.Pin("crank", (0.1, 0.0), "crank"),), "'crank' a second time"),
     ],
 )
 def test_names_given_twice_are_refused(groups, words):
@@ -217,54 +214,6 @@ def test_batches_of_unequal_length_do_not_fit_together(make):
 
 
 # Bad loads
-
-NO_NUMBERS = {
-    "text": "3 N",
-    "nan": float("nan"),
-    "infinite": float("inf"),
-    "truth": True,
-    "complex": 1j,
-    "none": None,
-    "huge": 1e200,
-    "list in list": [[1.0], [2.0, 3.0]],
-    "dict": {"a": 1},
-}
-MAKERS = {
-    "Force.value": lambda bad: ks.Force(bad, at="B"),
-    "Force.direction": lambda bad: ks.Force(1.0, at="B", direction=bad),
-    "Force.at along": lambda bad: ks.Force(1.0, at=("coupler", bad)),
-    "Force.at y": lambda bad: ks.Force(1.0, at=(0.1, bad)),
-    "Torque.value": lambda bad: ks.Torque(bad, on="crank"),
-    "PointForce.value": lambda bad: ks.PointForce(bad, between=("A", "B")),
-    "PointSpring.stiffness": lambda bad: ks.PointSpring(bad, between=("A", "O2")),
-    "PointSpring.free_length": lambda bad: ks.PointSpring(1.0, bad, between=("A", "O2")),
-    "PointSpring.between": lambda bad: ks.PointSpring(1.0, between=("A", (bad, 0.0))),
-    "PointDamper.coefficient": lambda bad: ks.PointDamper(bad, between=("A", "O2")),
-    "TorsionSpring.stiffness": lambda bad: ks.TorsionSpring(bad, on="rocker"),
-    "TorsionSpring.free_angle": lambda bad: ks.TorsionSpring(1.0, bad, on="rocker"),
-    "TorsionSpring.moment": lambda bad: ks.TorsionSpring(1.0, on="rocker", moment=bad),
-    "TorsionDamper.coefficient": lambda bad: ks.TorsionDamper(bad, on="rocker"),
-    "Spring.cubic": lambda bad: ks.Spring(1.0, 0.0, cubic=bad),
-}
-
-
-NO_NUMBER_CASES = [
-    (field, what) for field in MAKERS for what in NO_NUMBERS if (field, what) != ("PointSpring.between", "text")
-]
-"""("3 N", 0.0) is a place on a link called "3 N", which no mechanism has."""
-
-
-@every(("field", "what"), NO_NUMBER_CASES)
-def test_load_numbers_are_refused_by_field(field, what):
-    name = field.partition(".")[2].partition(" ")[0]
-    with pytest.raises(ks.ParameterError, match=name):
-        MAKERS[field](NO_NUMBERS[what])
-
-
-@every("field", [name for name in MAKERS if "stiffness" in name or "coefficient" in name or "length" in name])
-def test_negative_stiffness_and_damping_are_refused(field):
-    with pytest.raises(ks.ParameterError, match="at least 0"):
-        MAKERS[field](-1.0)
 
 
 PLACES = {
@@ -343,23 +292,6 @@ def test_load_reading_a_force_learns_what_it_may_read(kind, what):
     }[kind]()
     with pytest.raises(ks.ParameterError, match=r"which it has not: .* it may ask for crank_angle, .*velocity"):
         _ = ks.solve(six_bar(), [0.1, 0.2], crank_speed=1.0, loads=item).balancing_torque
-
-
-RETURNED = {
-    "text": lambda motion: "3",
-    "none": lambda motion: None,
-    "nan": lambda motion: np.full(motion.shape, np.nan),
-    "other length": lambda motion: np.ones(7),
-    "complex": lambda motion: 1j * motion.crank_angle,
-}
-
-
-@pytest.mark.parametrize("what", RETURNED)
-def test_what_a_function_returns_is_looked_at(what):
-    with pytest.raises(ks.ParameterError, match=r"Torque on 'rocker': its function must return .*torque"):
-        _ = ks.solve(
-            six_bar(), [0.1, 0.2], crank_speed=1.0, loads=ks.Torque(RETURNED[what], on="rocker")
-        ).balancing_torque
 
 
 TABLES = {

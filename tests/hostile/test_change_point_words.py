@@ -56,6 +56,19 @@ MIXED = [
 ]
 
 
+@every(
+    ("make", "words"),
+    [
+        (lambda a: ks.four_bar(a, 3 * a, 2 * a, rocker_pivot=(4.0, 0.0), assembly="open"), r"none; a \+ d = b"),
+        (lambda a: ks.slotted_lever(a, pivot=(1.0, 0.0), assembly="open"), "none; a = d"),
+    ],
+)
+def test_designs_of_another_kind_are_named(make, words):
+    with pytest.raises(ks.ParameterError, match=f"must be of one kind, but these have change points {words}") as error:
+        make(np.array([[1.0], [2.5], [0.3]]))
+    assert error.value.designs.tolist() == [True, False, False]
+
+
 @every("changes", MIXED, ids=lambda changes: "-".join(changes))
 def test_batches_of_several_kinds_are_refused(changes):
     given = {"crank_length": 1.0, "coupler_length": 2.0, "rocker_length": 1.0, "rocker_pivot": (2.0, 0.0)} | changes
@@ -73,9 +86,10 @@ def test_programs_keep_the_kind_of_four_bars(path, factor):
 
 
 def test_change_points_of_a_batch_are_refused():
-    scale = np.array([[1.0], [2.0]])
+    scale = np.array([[1.0], [2.5], [0.3]])
     made = ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4 * scale, 0.0), assembly="open")
     assert made.turns == 2
+    assert ks.solve(made, np.linspace(0.0, 12.0, 9), crank_speed=1.0).position("B").shape == (2, 3, 9)
     with pytest.raises(ks.ParameterError, match="ask a single design"):
         _ = made.change_points
 

@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -47,6 +48,12 @@ CHANGE_POINTS = {
 each_change_point = pytest.mark.parametrize("name", CHANGE_POINTS)
 
 
+@cache
+def passing(name, turn=0.0):
+    """The linkage of a name, whose pieces of a turn all tests share."""
+    return at_rest(four_bar(*CHANGE_POINTS[name][0], np.radians(turn)))
+
+
 def usable_samples(solution, quantity, limits):
     """Values at five thousand angles, all at least two thousandths from the limits."""
     angle = np.linspace(0.0, 2 * np.pi, 5_001)[:-1] + 1e-5
@@ -58,8 +65,7 @@ def usable_samples(solution, quantity, limits):
     ("name", "turn"), [*((name, 0.0) for name in CHANGE_POINTS), ("4/1/3/2", 30.0), ("kite", 200.0)]
 )
 def test_extremes_beside_change_points_equal_samples(name, turn):
-    lengths, places = CHANGE_POINTS[name]
-    solution = at_rest(four_bar(*lengths, np.radians(turn)))
+    solution, (_, places) = passing(name, turn), CHANGE_POINTS[name]
     limits = [(place + turn) % 360 for place in places]
     for quantity in ("balancing_torque", "rocker_rate", "shaking_force"):
         found, said = silently(ks.extremes, solution, quantity)
@@ -74,23 +80,21 @@ def test_extremes_beside_change_points_equal_samples(name, turn):
 
 @each_change_point
 def test_growing_reactions_are_infinite_and_warned(name):
-    lengths, _ = CHANGE_POINTS[name]
-    found, said = silently(ks.extremes, at_rest(four_bar(*lengths)), "B")
+    found, said = silently(ks.extremes, passing(name), "B")
     assert found.range[1] == np.inf
     assert "B grows without bound at" in said
 
 
 @each_change_point
 def test_mean_torque_beside_change_points_is_right(name):
-    lengths, limits = CHANGE_POINTS[name]
-    solution = at_rest(four_bar(*lengths))
+    solution, (_, limits) = passing(name), CHANGE_POINTS[name]
     found, said = silently(mean_absolute_torque, solution)
     assert "no value has a correct digit" in said
     assert found == pytest.approx(np.abs(usable_samples(solution, "balancing_torque", limits)).mean(), rel=1e-2)
 
 
 def test_extremes_table_says_once_what_is_left_out():
-    _, said = silently(extremes_frame, at_rest(four_bar(*CHANGE_POINTS["kite"][0])))
+    _, said = silently(extremes_frame, passing("kite"))
     assert said.count("no value has a correct digit") == 1
     assert "B grows without bound" in said
 
@@ -249,6 +253,12 @@ def test_what_is_no_force_is_refused_by_name(name, way):
         ways[way](solution)
 
 
+def test_a_torque_is_told_as_a_torque():
+    solution = ks.solve(SAW, [0.1, 0.2], crank_speed=1.0, loads=ks.Torque(lambda motion: np.ones(7), on="coupler"))
+    with pytest.raises(ks.ParameterError, match=r"Torque on 'coupler': its function must return .*torque"):
+        _ = solution.balancing_torque
+
+
 @every("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
     function, _ = WRONG[name]
@@ -351,7 +361,7 @@ SHARP = (0.283648, 0.616619, 0.657347), (0.345486, -0.001611)
 
 
 @pytest.mark.slow
-@every("angles", [12, 37, 72, 180, 360, 720])
+@every("angles", [12, 37, 180, 720])
 def test_sweeps_take_as_many_angles_as_peaks_need(angles):
     lengths, pivot = SHARP
 
@@ -413,7 +423,7 @@ FOLDING = {
     "rocker shortest": ((2, 4, 1, 3), (np.pi,)),
     "coupler shortest": ((3, 1, 2, 4), (0.0,)),
 }
-DISTANCES = (0.0, 1e-12, 1e-8, 1e-6, 1e-5)
+DISTANCES = (0.0, 1e-8, 1e-5)
 
 
 def cases():

@@ -1,7 +1,6 @@
 """Values and names that are no such thing."""
 
 import dataclasses
-import datetime as dt
 import random
 from decimal import Decimal
 from fractions import Fraction
@@ -14,14 +13,27 @@ import kinetostatics as ks
 from kinetostatics.machine.group import RESERVED
 from kinetostatics.mechanics.quantities import of_mechanism
 from support.every import every
+from support.no_numbers import BAD
 from support.sliders import TURN, crank_slider, solve
 
 CONSTRUCTORS = {
     "Link": (ks.Link, {"mass": 2.0, "centre": 0.1, "inertia": 0.05}),
     "Gravity": (ks.Gravity, {"acceleration": 9.81, "direction": -1.5}),
-    "Spring": (ks.Spring, {"stiffness": 1e3, "free_position": 0.8}),
+    "Spring": (ks.Spring, {"stiffness": 1e3, "free_position": 0.8, "cubic": 30.0}),
     "Spring.balancing": (ks.Spring.balancing, {"mass": 2.0, "crank_speed": 3.0, "free_position": 1.0}),
     "ProcessForce": (ks.ProcessForce, {"force": 30.0}),
+    "Force": (partial(ks.Force, at="B"), {"value": 30.0, "direction": 0.4}),
+    "Force at a place": (lambda along: ks.Force(1.0, at=("coupler", along)), {"along": 0.1}),
+    "Torque": (partial(ks.Torque, on="crank"), {"value": 30.0}),
+    "PointForce": (partial(ks.PointForce, between=("A", "B")), {"value": 30.0}),
+    "PointSpring": (partial(ks.PointSpring, between=("A", "O2")), {"stiffness": 1e3, "free_length": 0.2}),
+    "PointDamper": (partial(ks.PointDamper, between=("A", "O2")), {"coefficient": 20.0}),
+    "TorsionSpring": (partial(ks.TorsionSpring, on="rocker"), {"stiffness": 1e3, "free_angle": 0.2, "moment": 5.0}),
+    "TorsionDamper": (partial(ks.TorsionDamper, on="rocker"), {"coefficient": 20.0}),
+    "PinFriction": (ks.PinFriction, {"mu": 0.1, "radius": 0.02}),
+    "GuideFriction": (ks.GuideFriction, {"mu": 0.1, "half_length": 0.04}),
+    "SlotFriction": (ks.SlotFriction, {"mu": 0.1, "half_length": 0.04}),
+    "RollerFriction": (ks.RollerFriction, {"mu": 0.1, "pin_radius": 0.01, "roller_radius": 4.0}),
     "Crank": (ks.Crank, {"length": 0.3}),
     "SliderGroup": (ks.SliderGroup, {"coupler_length": 1.1}),
     "RockerGroup": (ks.RockerGroup, {"coupler_length": 0.4, "rocker_length": 0.3, "pivot": (0.35, 0.1)}),
@@ -36,68 +48,15 @@ CONSTRUCTORS = {
     "CosineLaw": (ks.cams.CosineLaw, {"amplitude": 0.3, "mean": 2.0, "guide_angle": 0.0}),
     "solve": (solve, {"crank_angle": TURN, "crank_speed": 2.0, "crank_acceleration": 1.0}),
 }
-TABLES = {("ProcessForce", "force"), *(("solve", name) for name in CONSTRUCTORS["solve"][1])}
+FUNCTIONS = {("ProcessForce", "force"), ("Force", "value"), ("Torque", "value"), ("PointForce", "value")}
+"""Fields that may be a function of the motion."""
+TABLES = FUNCTIONS | {("solve", name) for name in CONSTRUCTORS["solve"][1]}
 """Fields with a value for each crank angle."""
-
-
-class Quantity:
-    """A quantity as pint's are."""
-
-    units, magnitude, shape = "gram", 300.0, ()
-
-
-class Labelled:
-    """A column as pandas' are."""
-
-    shape = (72, 2)
-
-    def to_numpy(self):
-        """All numbers."""
-        return np.ones(self.shape)
-
-
-BAD = {
-    "NaN": (float("nan"), "finite"),
-    "infinity": (np.inf, "finite"),
-    "NaN in NumPy": (np.float64("nan"), "finite"),
-    "NaN in a batch": (np.array([[1.0], [np.nan]]), "finite"),
-    "text": ("2,1", "a text; write a plain number in SI units"),
-    "bytes": (b"2.1", "a text"),
-    "array of texts": (np.array([["0.3"]]), "of <U3"),
-    "truth": (True, "a truth value"),
-    "truth in NumPy": (np.True_, "a truth value"),
-    "truths": (np.array([[True]]), "of bool"),
-    "complex": (1.0 + 1e-30j, "a complex number"),
-    "complex batch": (np.array([[1.0 + 0j], [2.0]]), "of complex128"),
-    "0-d complex": (np.array(1j), "a complex number"),
-    "datetime": (dt.datetime(2026, 1, 1), "a time"),
-    "timedelta": (dt.timedelta(1), "a time"),
-    "NumPy's datetime": (np.datetime64("2026-01-01"), "no number"),
-    "0-d datetime": (np.array("2026-01-01", dtype="M8[D]"), "no number"),
-    "dictionary": ({"value": 2.0}, "no number"),
-    "set": ({2.0}, "no number"),
-    "object": (object(), "no number"),
-    "class": (float, "no number"),
-    "quantity": (Quantity(), "a quantity with its unit; give the plain number in SI units, as by .to("),
-    "objects that are none": (np.array([[1.0], [None]]), "with no number"),
-    "text in objects": (np.array([[1.0], ["2"]], dtype=object), "with a text"),
-    "labelled table": (Labelled(), "a labelled table; give its numbers"),
-    "masked": (np.ma.array([[1.0], [2.0]], mask=[[0], [1]]), "a masked array"),
-    "huge integer": (10**400, "too large"),
-    "huge fraction": (Fraction(10**400, 3), "too large"),
-    "huge integer in a batch": (np.array([[1], [10**400]]), "too large"),
-    "1e200": (1e200, "to be computed in double precision"),
-    "nothing in a batch": (np.empty((0, 1)), "holds nothing"),
-    "one value for each angle": (np.ones((1, 72)), "its last axis would be the crank angle"),
-    "row": (np.ones(72), "its last axis would be the crank angle"),
-    "square": (np.ones((2, 2)), "its last axis would be the crank angle"),
-    "list": ([1.0, 2.0, 3.0], "got [1.0, 2.0, 3.0]"),
-    "ragged list": ([[1.0, 2.0], [3.0]], "got [[1.0, 2.0], [3.0]]"),
-}
 SHAPES = {"one value for each angle", "row", "square", "list"}
 """What a table may be, or has its own test."""
 NAMES = {"crank_angle": "crank"} | {f"{link}length": f"{link[:-1]} length" for link in ("coupler_", "rocker_")}
-PAIRS = {"centre", "pivot", "at", "W1", "W2"}
+NAMES["along"] = "at"
+PAIRS = {"centre", "pivot", "at", "W1", "W2", "along"}
 
 
 def made(kind, **changes):
@@ -110,7 +69,7 @@ FIELDS = [(kind, field) for kind, (_, fields) in CONSTRUCTORS.items() for field 
 
 def possible(kind, field, bad):
     """Whether it is right in the end: a table may have a shape, and a force be a function."""
-    return (kind, field) in TABLES and (bad in SHAPES or (kind == "ProcessForce" and callable(BAD[bad][0])))
+    return ((kind, field) in TABLES and bad in SHAPES) or ((kind, field) in FUNCTIONS and callable(BAD[bad][0]))
 
 
 @every("kind, field, bad", [(*at, bad) for at in FIELDS for bad in BAD if not possible(*at, bad)])
@@ -135,8 +94,17 @@ LENGTHS = [
     ("Circle", "radius"),
     ("CosineLaw", "amplitude"),
     ("CosineLaw", "mean"),
+    ("PinFriction", "radius"),
+    ("GuideFriction", "half_length"),
+    ("RollerFriction", "pin_radius"),
+    ("RollerFriction", "roller_radius"),
 ]
-SIZES = [("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("Spring", "stiffness")]
+SIZES = [
+    *(("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("Spring", "stiffness")),
+    *(("PointSpring", "stiffness"), ("PointSpring", "free_length"), ("PointDamper", "coefficient")),
+    *(("TorsionSpring", "stiffness"), ("TorsionDamper", "coefficient")),
+    *((kind, "mu") for kind in CONSTRUCTORS if kind.endswith("Friction")),
+]
 
 
 @every("value", [0, -0.0, -0.3, np.int16(-1), np.array([[1.0], [-1.0]]), 1e-200, 1e90])
@@ -278,25 +246,6 @@ def test_no_name_is_lost_in_silence(seed):
         assert len(of_mechanism(chain)) == outputs + len(RESERVED) + travels + measured + 2 * links
     assert made
     assert refused
-
-
-@every(
-    ("parts", "words"),
-    [
-        ((ks.Dyad(0.4, 0.3, ("A", "O"), "dyad1_A"),), "adds reaction 'dyad1_A' a second time"),
-        ((ks.YokeGroup(pin="A"),), "adds joint 'A' a second time"),
-        ((ks.LeverGroup((0.1, 0.2), pivot_name="A"),), "adds joint 'A' a second time"),
-        ((ks.LeverGroup((0.1, 0.2), pivot_name="slot_force"),), "adds quantity 'slot_force' a second time"),
-        ((ks.CylinderGroup((0.1, 0.2), pivot_name="O"),), "adds joint 'O' a second time"),
-        ((ks.Pin("crank", (0.1, 0.0), "A"),), "adds joint 'A' a second time"),
-        ((ks.Pin("crank", (0.1, 0.0), "crank"),), "adds link 'crank' a second time|adds joint 'crank' a second time"),
-        ((ks.LeverGroup((0.1, 0.2)), ks.YokeGroup(label="2"), ks.YokeGroup(pin="C", label="2")), "'slider2' a second"),
-        ((ks.LeverGroup((0.1, 0.2)), ks.YokeGroup()), "adds link 'block' a second time"),
-    ],
-)
-def test_what_two_things_would_be_called_is_refused(parts, words):
-    with pytest.raises(ks.ParameterError, match=words):
-        ks.Mechanism("chain", ks.Crank(0.1), parts)
 
 
 @every("kind", sorted({*COUNTS} - {"pin"}))

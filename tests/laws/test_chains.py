@@ -1,15 +1,18 @@
 """Chains of every kind of group and pin: full systems, balance of powers, and all that the library asks of groups."""
 
+from dataclasses import replace
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.quantities import components, of_mechanism
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.chains import chain, error_beside_constraints, errors_beside_full_systems
+from support.turning_machines import KINDS, random_machine
 
 ANGLES = np.linspace(0.1, 6.2, 13)
 BODY = {
@@ -55,7 +58,7 @@ def scene(kind, label=""):
 every_kind = pytest.mark.parametrize("kind", ["yoke", "lever", "whitworth", "cylinder", "dyad", "pin"])
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(n, marks=pytest.mark.slow) for n in range(4, 24))])
 def test_random_chains_agree_with_two_full_systems(seed):
     made, angles = chain(seed)
     s = made.solve(angles)
@@ -64,6 +67,36 @@ def test_random_chains_agree_with_two_full_systems(seed):
     assert s.power_residual < 1e-13
     direct = sum(s.inertia_force(link) for link in s.mechanism.links)
     assert np.max(np.abs(s.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
+
+
+WITHOUT_FORMULA = ("sampled cam", "law cam", "roller follower", "flat follower", "swinging follower")
+"""Kinds of machines whose cam or law the full systems do not know; followers have tests of their own."""
+KNOWN = [kind for kind in KINDS if kind not in WITHOUT_FORMULA]
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed"),
+    [
+        *((kind, 0) for kind in ("crank slider", "cosine cam", "drag link")),
+        *(pytest.param(kind, seed, marks=pytest.mark.slow) for kind in KNOWN for seed in (1, 10, 20)),
+    ],
+)
+def test_machines_of_every_kind_agree_with_two_full_systems(kind, seed):
+    """Joints, mass centres and directions with their derivatives, all forces, both torques; statics is no special case.
+
+    The two torques share no force: one follows equilibrium link by link, one the powers of all loads.
+    """
+    moving = random_machine(kind, seed, loads=("gravity", "spring", "process"))
+    for made in (moving, replace(moving, crank_speed=0.0, crank_acceleration=0.0)):
+        s = made.solve(ANGLES[seed % 10 :: 5])
+        errors = errors_beside_full_systems(s, 0) | {"constraints": error_beside_constraints(s)}
+        assert {what: error for what, error in errors.items() if not error < 1e-13} == {}
+        assert s.power_residual < 1e-14
+        for group in s.mechanism.groups:
+            if isinstance(group, ks.SliderGroup):
+                x, y = group.guide.direction
+                found = s.scalar("guide_force" + group.label) * np.array([[-y], [x]])
+                assert_allclose(s.reaction("guide" + group.label), found, rtol=1e-14, atol=0.0)
 
 
 @every_kind

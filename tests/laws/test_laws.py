@@ -46,8 +46,7 @@ def scaled(machine, length, mass):
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every_kind
-@pytest.mark.parametrize("length", [1e-3, 0.37, 1e3])
-@pytest.mark.parametrize("mass", [1e-3, 5.3, 1e3])
+@pytest.mark.parametrize(("length", "mass"), [(1e-3, 5.3), (0.37, 1e3), (1e3, 1e-3)])
 def test_forces_scale_with_mass_and_length(kind, length, mass):
     machine = Machine(kind)
     expected = results(machine.solve())

@@ -13,7 +13,7 @@ import pytest
 import kinetostatics as ks
 from support import mirror as laws
 from support.mirror import mirrored
-from support.turning_machines import KINDS, LOADS, SPEED_LOADS, turning_scene
+from support.turning_machines import KINDS, LOADS, SPEED_LOADS, random_machine
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning"),
@@ -33,12 +33,6 @@ MOTORS = {
     "linear": ks.drive.Motor.linear(80.0, 60.0, transmission=-3.0, inertia=0.005),
     "table": ks.drive.Motor.table([0.0, 100.0, 150.0, 160.0], [60.0, 100.0, 40.0, -5.0], transmission=6.0),
 }
-
-
-def drawn(kind, seed, **more):
-    """The first scene of a kind from a seed on that closes all round."""
-    found = (turning_scene(kind, number, **more) for number in range(seed, seed + 9))
-    return next(scene for scene in found if scene is not None)
 
 
 def assert_mirrored(errors, kind="", close=CLOSE):
@@ -61,12 +55,11 @@ def agreed(law, scene):
 # Solutions
 
 
-SHORT = ("crank slider", "circle cam", "four-bar", "lever", "yoke", "roller follower", "swinging follower")
+SHORT = ("crank slider", "four-bar", "lever", "swinging follower")
 """Kinds that are solved fast; all others are slow tests."""
 AT_REST = [
-    {"loads": ("gravity", "spring", "table over travel"), "speed": 0.0, "acceleration": way, "friction": friction}
+    {"loads": ("gravity", "spring", "table over travel"), "speed": 0.0, "acceleration": way, "friction": way < 0.0}
     for way in (40.0, -40.0)
-    for friction in (False, True)
 ]
 """Machines that begin to move."""
 FAST = [
@@ -75,7 +68,7 @@ FAST = [
     *(("crank slider", 3, {"loads": LOADS[first::4]}) for first in range(4)),
     ("four-bar", 3, {"loads": ("torsion spring",)}),
     *(("crank slider", 5, options) for options in AT_REST),
-    *(("crank slider", 5, {"loads": ("table with back",), "speed": 0.0, "acceleration": a}) for a in (40.0, -40.0)),
+    ("crank slider", 5, {"loads": ("table with back",), "speed": 0.0, "acceleration": -40.0}),
 ]
 SLOW = [
     *((kind, 0, {}) for kind in KINDS if kind not in SHORT),
@@ -88,7 +81,7 @@ SLOW = [
     ("kind", "seed", "options"), [*FAST, *(pytest.param(*row, marks=pytest.mark.slow) for row in SLOW)]
 )
 def test_every_quantity_of_a_solution(kind, seed, options):
-    scene = drawn(kind, seed, **options)
+    scene = random_machine(kind, seed, **options)
     assert scene.loads
     assert_mirrored(agreed(laws.solved, scene), kind)
 
@@ -120,21 +113,19 @@ OVER_TURN = [
     (laws.extremes, "lever", 0),
     (laws.means, "four-bar", 0),
     (laws.swept, "four-bar", 1),
-    (laws.compiled, "crank slider", 2),
-    (laws.compiled, "drag link", 2),
     *(pytest.param(laws.extremes, kind, 0, marks=pytest.mark.slow) for kind in ("drag link", "roller follower")),
 ]
 
 
 @pytest.mark.parametrize(("law", "kind", "seed"), OVER_TURN)
 def test_results_over_the_turn(law, kind, seed):
-    assert_mirrored(law(drawn(kind, seed)), kind)
+    assert_mirrored(law(random_machine(kind, seed)), kind)
 
 
 @pytest.mark.slow
 def test_extremes_at_the_jumps_of_friction():
     """At one dead centre two joints turn about, and between two floating-point numbers only one has done so."""
-    assert_mirrored(laws.extremes(drawn("yoke", 1, friction=True)))
+    assert_mirrored(laws.extremes(random_machine("yoke", 1, friction=True)))
 
 
 DWELL = np.pi / 4
@@ -157,7 +148,7 @@ DWELLING = ("roller follower", "flat follower", "swinging follower")
 """Kinds whose laws have dwells."""
 
 
-LAWS = (laws.extremes, laws.means, laws.swept, laws.compiled)
+LAWS = (laws.extremes, laws.means, laws.swept)
 MANY = [(kind, law, (one + other) % 2 == 1) for one, kind in enumerate(KINDS) for other, law in enumerate(LAWS)]
 """Every law of every kind; with friction every other one."""
 
@@ -173,7 +164,7 @@ def test_many_machines(kind, law, friction):
     if law is laws.extremes and friction and kind in DWELLING:
         law = laws.largest
     resolved = (law in (laws.means, laws.swept) and friction) or (law is laws.swept and kind == "flat follower")
-    errors = agreed(law, drawn(kind, 10, friction=friction))
+    errors = agreed(law, random_machine(kind, 10, friction=friction))
     if resolved:  # a place in a level stretch is as uncertain as the root of the value
         errors = {name: error for name, error in errors.items() if "_at " not in name}
     assert_mirrored(errors, kind, 1e-9 if resolved else CLOSE)
@@ -191,7 +182,7 @@ def steady(scene, motor, flywheel, angles):
 @pytest.mark.parametrize("motor", MOTORS)
 def test_steady_running(motor):
     """Among it the time, which counts from crank angle 0 on in the direction in which the crank turns."""
-    scene, motor = drawn("crank slider", 0, loads=("gravity", "process")), MOTORS[motor]
+    scene, motor = random_machine("crank slider", 0, loads=("gravity", "process")), MOTORS[motor]
     one = ks.drive.steady(scene, motor, 20.0, angles=AROUND)
     other = ks.drive.steady(mirrored(scene), mirrored(motor), 20.0, angles=-AROUND)
     assert_mirrored(laws.running(one, other))
@@ -206,7 +197,7 @@ def test_clockwise_time_counts_forward():
 
 
 def test_flywheels():
-    scene = drawn("crank slider", 2, loads=("process", "table with back"), acceleration=0.0)
+    scene = random_machine("crank slider", 2, loads=("process", "table with back"), acceleration=0.0)
     one, other = (ks.drive.flywheel(item, 0.02) for item in (scene, mirrored(scene)))
     assert other.inertia == pytest.approx(one.inertia, rel=1e-12)
     assert other.energy == pytest.approx(one.energy, rel=1e-12)
@@ -229,7 +220,7 @@ SLOW_COASTS = {
 def test_coasting(name):
     loads, speed, options = (COASTS | SLOW_COASTS)[name]
     rubs = options["until"] == "standstill"
-    scene, flywheel = drawn("crank slider", 4, loads=loads, friction=rubs), 0.05 if rubs else 1.0
+    scene, flywheel = random_machine("crank slider", 4, loads=loads, friction=rubs), 0.05 if rubs else 1.0
     image = {"motor": mirrored(options["motor"])} if "motor" in options else {}
     one = ks.drive.coast(scene, flywheel, 0.7, speed, **options)
     other = ks.drive.coast(mirrored(scene), flywheel, -0.7, -speed, **options | image)
@@ -246,7 +237,7 @@ STARTS = [
 @pytest.mark.parametrize(("motor", "loads", "options", "close"), STARTS)
 def test_starting(motor, loads, options, close):
     """Near its mean speed the motor's torque is steep."""
-    scene, motor = drawn("crank slider", 4, loads=loads), MOTORS[motor]
+    scene, motor = random_machine("crank slider", 4, loads=loads), MOTORS[motor]
     one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, **options)
     other = ks.drive.start(mirrored(scene), mirrored(motor), 1.0, from_angle=-0.7, **options)
     assert_mirrored(laws.moving(one, other), close=close)
@@ -310,8 +301,9 @@ def test_lift_off():
     assert laws.apart(-start_there, stop) < ANGLE
 
 
-@pytest.mark.parametrize("friction", [{}, {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.01)}])
-@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize(
+    ("friction", "speed"), [({}, 10.0), ({"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.01)}, -10.0)]
+)
 def test_starting_torque(friction, speed):
     one, other = both(lambda scene: ks.design.starting_torque(scene.solve(4)), pump(speed, friction=friction))
     assert other.value == pytest.approx(one.value, rel=1e-12)

@@ -2,12 +2,32 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.change_points import LINKAGES, LINKS, NEAR, SIDES, SINGLE, SPEED, each, errors, four_bar, reference, solve
+from support.change_points import (
+    LEVER_LINKS,
+    LEVERS,
+    LINKAGES,
+    LINKS,
+    NEAR,
+    SIDES,
+    SINGLE,
+    SPEED,
+    at_zero,
+    each,
+    errors,
+    four_bar,
+    lever,
+    quantities,
+    read,
+    reference,
+    solve,
+    turned,
+)
 from support.enclosed import assert_enclosed
 from support.every import every
 
@@ -33,19 +53,6 @@ def test_open_is_left_of_the_line_to_the_pivot(name, assembly):
     solution = solve(four_bar(name, assembly), np.linspace(0.1, 3.0, 9))
     along, reach = (solution.position(joint) - solution.position("A") for joint in ("O2", "B"))
     assert np.all(SIDES[assembly] * (along[0] * reach[1] - along[1] * reach[0]) > -1e-12)
-
-
-@each
-def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
-    """The crank angle counts from the direction O -> O2, whose own angle lies between -pi and pi."""
-    psi, ground = np.linspace(-7.0, 7.0, 29), LINKAGES[name][3]
-    x, y = solve(four_bar(name, assembly), psi, loads=()).acceleration("B")
-    for start in (-3.1, -2.0, -1.0, 1.0, 2.0, 3.1):
-        cosine, sine = np.cos(start), np.sin(start)
-        made = four_bar(name, assembly, (ground * cosine, ground * sine))
-        found = solve(made, start + psi, loads=()).acceleration("B")
-        expected = cosine * x - sine * y, sine * x + cosine * y
-        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs([x, y]).max())
 
 
 def test_group_on_a_crank_is_checked_as_on_its_own():
@@ -76,18 +83,6 @@ def test_pin_close_to_its_pivot_is_warned_of():
         solve(made, np.array([1e-8, 3e-8, 6e-8, 1e-7, 1.0]))
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-def test_other_linkages_keep_their_side_exactly(assembly):
-    word, number = (
-        ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), assembly=way) for way in (assembly, SIDES[assembly])
-    )
-    assert word.turns == 1
-    assert word.change_points == ()
-    assert not word.passes
-    angles = np.linspace(0.0, 7.0, 50)
-    np.testing.assert_array_equal(solve(word, angles).acceleration("B"), solve(number, angles).acceleration("B"))
-
-
 def test_decimal_lengths_count_as_equal():
     for crank, coupler, rocker, ground in (
         (0.1 + 0.2, 0.7, 0.3, 0.7),
@@ -106,6 +101,35 @@ def test_lengths_beyond_eight_ulp_are_no_change_point():
     ulp = float(np.spacing(2.0))
     kinds = [ks.four_bar(1.0 + n * ulp, 2.0, 1.0, rocker_pivot=(2.0, 0.0), assembly="open").passes for n in (7, 9)]
     assert kinds == [True, False]
+
+
+PLAIN = (
+    partial(ks.four_bar, 0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)),
+    partial(ks.slotted_lever, 0.1, pivot=(0.03, -0.25), offset=0.02, **LEVER_LINKS),
+)
+
+
+@pytest.mark.parametrize("assembly", SIDES)
+@pytest.mark.parametrize("make", PLAIN)
+def test_other_machines_keep_their_side_exactly(make, assembly):
+    word, number = (make(assembly=way) for way in (assembly, SIDES[assembly]))
+    assert (word.turns, word.change_points, word.passes) == (1, (), False)
+    angles = np.linspace(0.0, 7.0, 50)
+    np.testing.assert_array_equal(solve(word, angles).reaction("A"), solve(number, angles).reaction("A"))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (four_bar("parallelogram", 1), "a kink at 0 deg and a kink at 180 deg"),
+        (four_bar("deltoid", 1), "a jump, as A meets"),
+        (lever("meeting", 1), "a jump, as A meets the pivot at 0 deg"),
+        (lever("outside left", -1), "a kink at 0 deg"),
+    ],
+)
+def test_fixed_side_names_its_kinks_and_jumps(made, words):
+    with pytest.warns(ks.ConditionWarning, match=words):
+        solve(made, np.array([0.0, 1.0]))
 
 
 # Sliders
@@ -198,49 +222,70 @@ def test_torque_does_no_work_over_the_period():
         assert abs(torque.mean()) < 1e-9 * abs(torque).max()
 
 
-def test_fixed_side_names_its_kinks_and_jumps():
-    for name, words in (("parallelogram", "a kink at 0 deg and a kink at 180 deg"), ("deltoid", "a jump, as A meets")):
-        with pytest.warns(ks.ConditionWarning, match=words):
-            solve(four_bar(name, 1), np.array([0.0, 1.0]))
-
-
 # Change points passed
 
 
-@each
+FEW = ("parallelogram", "kite", "4/1/3/2", "meeting", "outside left", "grazing")
+"""Whose sides are compared in unit tests; the others differ from them in lengths or in a sign alone."""
+
+
+@pytest.mark.parametrize(
+    ("name", "assembly"),
+    [
+        pytest.param(name, assembly, marks=() if name in FEW else pytest.mark.slow)
+        for name in [*LINKAGES, *LEVERS]
+        for assembly in SIDES
+    ],
+)
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 def test_both_sides_of_a_change_point_are_exact(name, assembly):
-    """The change point lies at crank angle 0, near which angles are as fine as they can be."""
-    behind = SINGLE.get(name) == "far"
-    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
     angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
-    solution = solve(made, angles)
+    solution = solve(at_zero(name, assembly), angles)
     wrong = {
         (angle, quantity): error
         for place, angle in enumerate(angles.tolist())
-        for quantity, error in errors(solution, place, reference(name, assembly, behind, angle)).items()
+        for quantity, error in errors(solution, place, reference(name, assembly, angle)).items()
         if not error < 1e-12
     }
     assert not wrong
 
 
-@each
+@pytest.mark.parametrize("assembly", SIDES)
+@pytest.mark.parametrize("name", [name for name in [*LINKAGES, *LEVERS] if name != "grazing"])
 def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
-    behind = SINGLE.get(name) == "far"
-    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
-    solution = solve(made, np.array([-1e-10, 0.0, 1e-10]))
-    for values in (
-        solution.balancing_torque,
-        *solution.velocity("B"),
-        *solution.acceleration("B"),
-        solution.rate("rocker"),
-        solution.angular_acceleration("coupler"),
-    ):
-        assert np.ptp(values) < 1e-6
-    with pytest.warns(ks.ConditionWarning, match="B is infinite at crank angle 0 deg, at a change point"):
-        force = solution.reaction("B")
+    """But of the lever that spins too fast for a step of 1e-10 rad."""
+    solution = solve(at_zero(name, assembly), np.array([-1e-10, 0.0, 1e-10]))
+    growing = {("scalar", "slot_force"), *(("reaction", joint) for joint in "ABO"), ("reaction", "O2")}
+    for key in {*quantities(name)} - growing - {("position", "B")}:
+        values = read(solution, *key)
+        assert np.isfinite(values).all()
+        assert max(np.ptp(values.real), np.ptp(values.imag)) < 1e-6, key
+    joint = "O2" if name in LEVERS else "B"
+    with pytest.warns(ks.ConditionWarning, match=f"{joint} is infinite at crank angle 0 deg, at a change point"):
+        force = solution.reaction(joint)
+    assert not np.isnan(force).any()
     assert np.isinf(np.hypot(*force)[1])
-    assert np.isinf(np.hypot(*solution.reaction("O"))[1])
+    for joint in ("A", "O") if name in LEVERS else "O":
+        assert np.isinf(np.hypot(*solution.reaction(joint))[1])
+    if name in LEVERS:
+        assert np.isinf(solution.scalar("slot_force")[1])
+
+
+@pytest.mark.parametrize("assembly", SIDES)
+@pytest.mark.parametrize("name", [*LINKAGES, "meeting", "outside left", "inside right"])
+def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
+    """The crank angle counts from the direction O -> O2, whose own angle lies between -pi and pi."""
+    psi = np.linspace(-7.0, 7.0, 28)
+    alike = [key for key in quantities(name) if key[0] not in ("reaction", "direction", "position")]
+    expected = {key: read(solve(turned(name, assembly, 0.0), psi, loads=()), *key) for key in alike}
+    for start in (-3.1, -1.0, 2.0):
+        made = turned(name, assembly, start)
+        assert made.passes
+        solution, around = solve(made, start + psi, loads=()), np.exp(1j * start)
+        for key, values in expected.items():
+            right = values * around if np.iscomplexobj(values) else values
+            close = (1e-11 if name in LEVERS else 1e-12) * (np.abs(values).max() + 1e-9)
+            np.testing.assert_allclose(read(solution, *key), right, rtol=0, atol=close)
 
 
 @each
@@ -262,11 +307,15 @@ def test_engines_agree(name, assembly, interpreted):
         ks.four_bar(2.5, 5.0, 2.5, rocker_pivot=(-3.0, -4.0), assembly="crossed", **LINKS),
         ks.crank_slider(0.5, 0.75, guide_angle=2.5, guide_offset=-0.25, assembly="crossed", slider=LINKS["rocker"]),
         ks.crank_slider(0.5, 0.5, guide_angle=0.4, assembly="open", slider=LINKS["rocker"], coupler=LINKS["coupler"]),
+        ks.slotted_lever(2.5, pivot=(-1.5, -2.0), assembly="crossed", **LEVER_LINKS),
+        ks.slotted_lever(2.5, pivot=(-3.0, 4.0), offset=-2.5, assembly="crossed", **LEVER_LINKS),
+        ks.slotted_lever(2.0, pivot=(0.0, -1.0), offset=-1.0, assembly="open", **LEVER_LINKS),
+        ks.slotted_lever(2.0, pivot=(0.0, -1.0), offset=0.5, assembly=-1, **LEVER_LINKS),
     ],
     ids=lambda made: f"{made.name} {made.groups[0].passage}",
 )
 def test_enclosures_contain_other_formulas(made):
-    assert_enclosed(solve(made, np.array([0.3, 4.0, 9.0])), "B")
+    assert_enclosed(solve(made, np.array([0.3, 4.0, 9.0])), "A" if "lever" in made.links else "B")
 
 
 # Programs, batches, sweeps and case files keep to the kind that the words have chosen
@@ -276,12 +325,25 @@ def program(name, quantities="balancing_torque"):
     return ks.compile(ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()), quantities, engine="numpy")
 
 
-def test_program_takes_values_that_keep_the_kind():
-    longer = {"crank_length": 2.0, "rocker_length": 2.0, "coupler_length": 3.0, "rocker_pivot.x": 3.0}
-    found = program("parallelogram")(0.3, longer)["balancing_torque"]
-    made = ks.four_bar(2.0, 3.0, 2.0, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
-    assert found == ks.Scene(made, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque
-    assert program("parallelogram")(0.3, {"crank_length": 1.0 + 2.0**-52})["balancing_torque"] > 0
+@pytest.mark.parametrize(
+    ("scene", "longer", "made"),
+    [
+        (
+            ks.Scene(four_bar("parallelogram", "open"), SPEED, loads=ks.Gravity()),
+            {"crank_length": 2.0, "rocker_length": 2.0, "coupler_length": 3.0, "rocker_pivot.x": 3.0},
+            ks.four_bar(2.0, 3.0, 2.0, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS),
+        ),
+        (
+            ks.Scene(lever("meeting", "open"), SPEED, loads=ks.Gravity()),
+            {"crank_length": 2.0, "lever_pivot.x": 2.0},
+            ks.slotted_lever(2.0, pivot=(2.0, 0.0), assembly="open", **LEVER_LINKS),
+        ),
+    ],
+)
+def test_program_takes_values_that_keep_the_kind(scene, longer, made):
+    kept = ks.compile(scene, "balancing_torque", engine="numpy")
+    assert kept(0.3, longer)["balancing_torque"] == replace(scene, mechanism=made).solve(0.3).balancing_torque
+    assert kept(0.3, {"crank_length": 1.0 + 2.0**-52})["balancing_torque"] > 0
 
 
 def test_program_refuses_a_new_change_point():
@@ -305,17 +367,6 @@ def test_only_mass_derivatives_are_given(path):
         - found(0.3, {"coupler.mass": 1.5 - step})["balancing_torque"]
     )
     assert slopes["coupler.mass"] == pytest.approx(difference / (2 * step), rel=1e-9)
-
-
-def test_batches_must_be_of_one_kind():
-    scale = np.array([[1.0], [2.5], [0.3]])
-    made = ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4 * scale, 0.0), assembly="open")
-    assert solve(made, np.linspace(0.0, 12.0, 9)).position("B").shape == (2, 3, 9)
-    with pytest.raises(
-        ks.ParameterError, match=r"must be of one kind, but these have change points none; a \+ d = b"
-    ) as error:
-        ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4.0, 0.0), assembly="open")
-    assert error.value.designs.tolist() == [True, False, False]
 
 
 def test_sweeps_refuse_means_of_growing_forces():

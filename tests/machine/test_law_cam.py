@@ -36,7 +36,13 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name.startswith(("polynomial", "modified trapezoid")) else name
+        for name in LAWS
+    ],
+)
 def test_slider_follows_the_law_at_singular_angles(name):
     """Position, velocity and acceleration through the whole mechanism, in a guide turned by 0.3 rad."""
     law, offset = LAWS[name]()

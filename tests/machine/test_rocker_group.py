@@ -5,17 +5,13 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 import kinetostatics as ks
 from support import multibody
 from support.machines import (
     ANGLES,
-    BARS,
     FourBar,
-    assert_close,
     assert_equal,
     bar_results,
     largest,
@@ -24,77 +20,15 @@ from support.machines import (
     turning,
 )
 from support.multibody import Body
-from support.strategies import columns, dimension, errors, four_bars, reproducible
+from support.strategies import dimension
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""
 
-CLOSE = 1e-13
-"""Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so, and the
-longest link below a few hundred times the shortest.
-"""
 EPSILON = 2.0**-53
 
 
 # Random four-bars
-
-
-def motion_errors(s, expected):
-    found = {}
-    for order in ("position", "velocity", "acceleration"):
-        table = columns([row[order] for row in expected], ("A", "B", *BARS))
-        found[order] = errors({name: planar(getattr(s, order)(name)) for name in table}, table)
-    for order, rate in (("velocity", s.rate), ("acceleration", s.angular_acceleration)):
-        table = {name: [row[order][name, "angle"] for row in expected] for name in BARS}
-        found["angular " + order] = errors({name: rate(name) for name in BARS}, table)
-    return {(order, name): error for order, table in found.items() for name, error in table.items()}
-
-
-def force_errors(bar, s, expected):
-    """Forces relative to the largest force; moments to that times the longest link."""
-    length, table, found = max(bar.crank, bar.coupler, bar.rocker), columns(expected, bar_results(s)), bar_results(s)
-    forces = {name: values for name, values in table.items() if np.iscomplexobj(values)}
-    moments = {name: values for name, values in table.items() if name not in forces}
-    return errors(found, forces) | errors(found, moments, length * max(map(largest, forces.values())))
-
-
-def wrong(errors):
-    return {name: error for name, error in errors.items() if not error < CLOSE}
-
-
-every_kind = pytest.mark.parametrize("kind", ["crank-rocker", "double-crank", "non-Grashof"])
-
-
-@pytest.mark.slow
-@every_kind
-@reproducible
-@given(data=st.data())
-def test_motion_and_forces_equal_the_full_system(kind, data):
-    """Positions, velocities, accelerations, rates; joint reactions, both torques, shaking force and moment.
-
-    And the pin lies on the chosen side, at both lengths.
-    """
-    bar, angles = data.draw(four_bars(kind))
-    s, expected = bar.solve(angles), [multibody.four_bar(bar).solve(angle) for angle in angles]
-    assert wrong(motion_errors(s, expected)) == {}
-    assert wrong(force_errors(bar, s, expected)) == {}
-    assert s.power_residual < 1e-15 * (10 + s.condition.max())
-    A, B = planar(s.position("A")), planar(s.position("B"))
-    assert np.all(bar.assembly * turning(bar.pivot - A, B - A) > 0)
-    assert_close(abs(B - A), np.full(A.shape, bar.coupler))
-    assert_close(abs(B - bar.pivot), np.full(A.shape, bar.rocker))
-
-
-@pytest.mark.slow
-@every_kind
-@settings(reproducible, max_examples=10)
-@given(data=st.data())
-def test_forces_at_rest_equal_the_full_system(kind, data):
-    """Statics is no special case."""
-    bar, angles = data.draw(four_bars(kind))
-    resting = replace(bar, speed=0.0, acceleration=0.0)
-    expected = [multibody.four_bar(resting).solve(angle) for angle in angles]
-    assert wrong(force_errors(resting, resting.solve(angles), expected)) == {}
 
 
 # Laws
@@ -138,51 +72,6 @@ def test_turning_everything_turns_vectors_only(turn, assembly):
     }
     assert_equal(bar_results(after), expected)
     assert_equal(motions(after), {name: around * values for name, values in motions(before).items()})
-
-
-@pytest.mark.parametrize("assembly", [1, -1])
-def test_derivatives_are_slopes_of_positions(assembly):
-    """By complex steps, exact to rounding: f(x + ih) = f(x) + ih f'(x), with h so small that nothing is subtracted."""
-    step = 1e-30
-    mechanism = FourBar(assembly=assembly).solve().mechanism
-    placement, beside = mechanism.place(ANGLES), mechanism.place(ANGLES + 1j * step)
-
-    def slope(value):
-        return np.imag(value) / step
-
-    joint, changed = placement.joints["B"], beside.joints["B"]
-    assert_close(joint.first, [slope(part) for part in changed.position])
-    assert_close(joint.second, [slope(part) for part in changed.first])
-    for name in ("coupler", "rocker"):
-        link, changed = placement.links[name], beside.links[name]
-        x, y = (slope(part) for part in changed.direction)
-        assert_close(link.ratio, link.direction[0] * y - link.direction[1] * x)
-        assert_close(link.ratio_slope, slope(changed.ratio))
-
-
-def test_batch_equals_the_loop_over_designs():
-    """Lengths, pivots and masses together."""
-    size = np.array([[0.2], [0.3], [0.37]])
-
-    def solved(size):
-        mechanism = ks.four_bar(
-            size,
-            3 * size,
-            2.5 * size + 0.1,
-            rocker_pivot=(2 * size, 0.3 - size),
-            crank=ks.Link(1.0, size / 2, 0.1),
-            coupler=ks.Link(5 * size, (size, -0.1 * size), size**2),
-            rocker=ks.Link(2.0, (0.1, size), size),
-        )
-        return ks.solve(mechanism, ANGLES, crank_speed=9.0, crank_acceleration=2.0, loads=ks.Gravity())
-
-    batch = solved(size)
-    assert batch.reaction("O2").shape == (2, 3, ANGLES.size)
-    found = bar_results(batch) | motions(batch)
-    for i, design in enumerate(size[:, 0].tolist()):
-        single = solved(design)
-        expected = bar_results(single) | motions(single)
-        assert_equal({name: values[i] for name, values in found.items()}, expected, tolerance=1e-15)
 
 
 @pytest.mark.parametrize("radius", [1e2, 1e4, 1e6])
@@ -247,16 +136,16 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 4))
-def test_error_near_a_toggle_is_of_rounded_lengths(kind, margin):
+@pytest.mark.parametrize(("power", "assembly"), [(2, 1), (6, -1), (10, 1), (14, -1)])
+def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 
     The condition grows as 1 / sine for positions, 1 / sine^2 for rates and 1 / sine^3 for accelerations.
     """
-    for assembly in (1, -1):
-        bar, toggle = near_toggle(kind, margin)
-        angles = toggle + np.sqrt(margin) * np.array([0.0, 0.3, -1.0, 5.0])
-        assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
+    margin = 10.0**-power
+    bar, toggle = near_toggle(kind, margin)
+    angles = toggle + np.sqrt(margin) * np.array([0.0, 0.3, -1.0, 5.0])
+    assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
 
 
 @pytest.mark.parametrize(("longer", "assembly"), [(1e2, 1), (1e4, -1), (1e6, 1)])
@@ -264,4 +153,4 @@ def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):
         bar = FourBar(0.5, coupler, rocker, 0.8 + 1j * longer, assembly)
-        assert_error_is_that_of_rounded_lengths(bar, ANGLES[::6])
+        assert_error_is_that_of_rounded_lengths(bar, ANGLES[::12])

@@ -258,21 +258,6 @@ def test_first_harmonics_may_turn_with_the_guide():
         assert_allclose(one, other, rtol=0, atol=1e-16)
 
 
-def test_coefficients_have_exact_derivatives():
-    """Against central differences of the solution itself."""
-    made = scene()
-    program = ks.compile(made, ("balancing_torque", "cam_force"), engine="numpy")
-    paths = ["cam.cosine.0", "cam.cosine.1", "cam.cosine.3", "cam.cosine.4", "cam.sine.1", "cam.sine.3"]
-    assert [path for path in program.parameters if path.startswith("cam.") and "angle" not in path] == paths
-    found = program.derivatives(ANGLES, paths)
-    for path in paths:
-        step = 1e-6
-        low, high = (program(ANGLES, {path: made.parameters[path] + side * step}) for side in (-1, 1))
-        for name in found:
-            slope = (high[name] - low[name]) / (2 * step)
-            assert largest(found[name][path] - slope) < 1e-8 * largest(slope)
-
-
 def test_zero_harmonic_costs_nothing():
     few, many = ks.cams.Harmonic((0.3, 0.01)), ks.cams.Harmonic((0.3, 0.01, 0.0, 0.0), (0.0,))
     plain, kept = (ks.compile(scene(cam), "balancing_torque") for cam in (few, many))
@@ -281,27 +266,6 @@ def test_zero_harmonic_costs_nothing():
     values = {"cam.cosine.3": 0.002, "cam.sine.1": -0.003}
     expected = scene(ks.cams.Harmonic((0.3, 0.01, 0.0, 0.002), (-0.003,))).solve(ANGLES).balancing_torque
     assert_allclose(asked(ANGLES, values)["balancing_torque"], expected, rtol=1e-12, atol=1e-9)
-
-
-@pytest.mark.slow
-def test_batch_of_coefficients_equals_each_design():
-    third = np.array([[0.0], [0.003], [-0.002]])
-    found = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, third))).solve(24).balancing_torque
-    for row, value in zip(found, third.ravel(), strict=True):
-        alone = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, value))).solve(24).balancing_torque
-        assert_allclose(row, alone, rtol=1e-11, atol=1e-8)
-
-
-@pytest.mark.slow
-def test_compiled_loop_jax_and_enclosures_agree(numba, double, flint):
-    expected = scene().solve(ANGLES).balancing_torque
-    assert_allclose(scene().solve(ANGLES, engine="compiled").balancing_torque, expected, rtol=1e-11, atol=1e-8)
-    traced = scene().solve(double.numpy.array(ANGLES)).balancing_torque
-    assert_allclose(traced, expected, rtol=1e-11, atol=1e-8)
-    arb = flint.arb
-    cam = ks.cams.Harmonic(tuple(map(arb, COSINE)), tuple(map(arb, SINE)), arb(TURNED))
-    enclosed = scene(cam).solve(np.array([arb(angle) for angle in ANGLES])).balancing_torque
-    assert_allclose([float(part.mid()) for part in enclosed], expected, rtol=1e-11, atol=1e-8)
 
 
 @every(

@@ -451,7 +451,7 @@ def test_the_plausibility_test_misses_no_large_loss(kind):
     assert not np.any(lost & passed)
 
 
-@pytest.mark.parametrize("kind", RANDOM)
+@pytest.mark.parametrize("kind", ["slider with a short coupler", "cam", "two four-bars"])
 def test_lossy_angles_are_those_of_large_condition(kind):
     draw = Draw(29, 12)
     s = ks.Solution(RANDOM[kind](draw), TURN[::4], 7.0, 0.0, (ks.Gravity(),))

@@ -150,11 +150,6 @@ def test_jax_gives_numpy_arrays_and_names_its_device(jax):
             assert np.all(np.abs(found[name] - value) <= 2 * bounds[name])
 
 
-def test_a_device_that_jax_does_not_have_is_refused(jax):
-    with pytest.raises(ks.ParameterError, match="device 'abacus': JAX finds none, only"):
-        made(engine="jax", device="abacus")
-
-
 @pytest.mark.slow
 @every("crank", [ks.Link(), ks.Link(3.0, 0.1, 0.1)], ids=["massless", "heavy"])
 @every("bodies", [{}, {"coupler": ks.Link(150.0, 0.1, 20.5), "slider": ks.Link(600.0)}], ids=["massless", "heavy"])

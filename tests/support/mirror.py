@@ -338,40 +338,6 @@ def solved(scene, angles=ANGLES):
     return differences(scene.solve(angles), mirrored(scene).solve(-angles), unsigned(scene))
 
 
-def compiled(scene, angles=ANGLES, engine="numpy"):
-    """Programs of all quantities."""
-    before = scene.solve(angles)
-    values = values_of(before)
-    names = [name for name in values if name in PROGRAMMED or name.endswith("_rate")]
-    names += [joint for joint in ("O", "A", "B") if joint in scene.mechanism.outputs]
-    one, other = (
-        ks.compile(item, names, engine=engine)(at) for item, at in ((scene, angles), (mirrored(scene), -angles))
-    )
-    found = {}
-    for name in names:
-        if name in values:
-            expected = sign(scene, name, values[name][1]) * one[name]
-        else:
-            expected = one[name] * np.array([[1.0], [-1.0]])
-        found[name] = relative(other[name], expected, max(np.max(np.abs(one[name])), 1e-300))
-    return found
-
-
-PROGRAMMED = (
-    "balancing_torque",
-    "slider_position",
-    "slider_acceleration",
-    "guide_force",
-    "guide_moment",
-    "cam_force",
-    "slot_force",
-    "contact_force",
-    "kinetic_energy",
-    "load_torque",
-    "reduced_inertia_slope",
-)
-
-
 def extremes(scene, names=("balancing_torque", "O", "shaking_moment")):
     """Values of extremes, and angles, rad."""
     found = {}

@@ -375,3 +375,9 @@ def turning_scene(kind, seed, *, loads=None, friction=False, speed=None, acceler
         draw.loads(mechanism, kinds),
         draw.friction(mechanism) if friction else {},
     )
+
+
+def random_machine(kind, seed=0, **options):
+    """The first scene of a kind, from a seed on, that closes all round."""
+    found = (turning_scene(kind, number, **options) for number in range(seed, seed + 9))
+    return next(scene for scene in found if scene is not None)

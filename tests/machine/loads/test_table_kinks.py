@@ -190,8 +190,7 @@ def exactly(table, angle):
     return y[row] + (y[row + 1] - y[row]) / (x[row + 1] - x[row]) * (place - x[row])
 
 
-@pytest.mark.parametrize("turns", [1, 2])
-@pytest.mark.parametrize("first", [0.0, 0.1, -2.7, -777.3])
+@pytest.mark.parametrize(("first", "turns"), [(0.0, 1), (0.1, 2), (-2.7, 1), (-777.3, 2)])
 def test_values_by_angle_lie_within_their_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns
     for _ in range(8):

@@ -1,13 +1,10 @@
 """SymPy's Kane method and the papers' formulas against the library, and where they fail."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
-from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods import papers
@@ -183,25 +180,3 @@ def test_atan_of_four_bar_is_off_by_half_a_turn():
     assert 0 < np.sum(beyond) < ANGLES.size
     assert largest(x * np.cos(direction) + y * np.sin(direction) - np.where(beyond, -1.0, 1.0)) < CLOSE
     assert largest(rate - s.rate("coupler") / s.crank_speed) < CLOSE
-
-
-def test_missing_formulas_are_refused():
-    s, turn = LOADED["circle"], np.linspace(0.0, 6.0, 60)
-    sampled = ks.cams.Sampled(turn, 0.3 + 0.02 * np.cos(turn))
-    tabulated = replace(s, mechanism=ks.cam_crank_slider(sampled, 0.8))
-    six_bar = ks.Mechanism(
-        "six-bar",
-        ks.Crank(0.1),
-        (ks.RockerGroup(0.4, 0.3, (0.35, 0.05)), ks.SliderGroup(0.5, on="B", pin="C", label="2")),
-    )
-    designs = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), ANGLES, crank_speed=1.0)
-    rhombus = ks.four_bar(0.2, 0.2, 0.2, rocker_pivot=(0.2, 0.0), assembly="open")
-    for prepare, refused, wanted, words in [
-        (PAPERS.prepare, tabulated, "O", "this cam"),
-        (PAPERS.prepare, replace(s, mechanism=six_bar), "O", "six-bar"),
-        *((method.prepare, designs, "O", r"not a batch of shape \(2, 31\)") for method in METHODS),
-        (KANE.prepare, replace(s, mechanism=rhombus), "O", "four-bar passes change points"),
-        (KANE.prepare, s, "shaking_force", "not set up to give shaking_force"),
-    ]:
-        with pytest.raises(NotGivenError, match=words):
-            prepare(refused, wanted, None)

@@ -102,20 +102,6 @@ def test_printed_method_gives_the_printed_solution(quantity):
     np.testing.assert_array_equal(found, components(papers.as_printed(CIRCLE), quantity))
 
 
-@pytest.mark.parametrize(
-    ("refused", "words"),
-    [
-        (PLAIN, "circular cam; crank-slider has none"),
-        (COSINE, "circular cam; cam-balanced crank-slider has the cam CosineLaw"),
-        (CANCELLED, "no spring that could cancel"),
-        (ks.load_case("chain_unit").solve("rho-0.1", 8), "circular cam; four-bar has none"),
-    ],
-)
-def test_missing_equations_are_refused(refused, words):
-    with pytest.raises(ks.errors.NotGivenError, match=words):
-        papers.AS_PRINTED.prepare(refused, "O", None)
-
-
 # Formulas as the studies print them
 
 
