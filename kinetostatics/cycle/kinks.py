@@ -142,17 +142,27 @@ def sign_changes(function, period, samples):
     low, high, row = _sign_change_brackets(evaluate, values, angle)
     if not low.size:
         return row, low
-    known = np.nan_to_num(row).astype(int)
+    design, place = np.nonzero(~np.isnan(low))
+    lows, highs, rows = (part[design, place] for part in (low, high, row))
 
     def own(angle, asked):
-        everywhere = low.copy()
-        everywhere.flat[asked] = angle
-        return np.take_along_axis(evaluate(everywhere), known[None], axis=0)[0].flat[asked]
+        return _values_at(evaluate, len(low), design[asked], rows[asked], angle)
 
-    root = find_roots(own, low, high)
-    first = own(low.ravel(), np.arange(low.size)).reshape(low.shape)
-    ends = np.where(first == 0.0, low, high)
-    return row, np.mod(np.where(np.isnan(root), ends, root), period)
+    first, root = own(lows, np.arange(lows.size)), find_roots(own, lows, highs)
+    found = np.full(low.shape, np.nan)
+    found[design, place] = np.mod(np.where(np.isnan(root), np.where(first == 0.0, lows, highs), root), period)
+    return row, found
+
+
+def _values_at(evaluate, designs, design, row, angle):
+    """Values of functions, by their number `row`, of designs at crank angles, all (K,)."""
+    order = np.argsort(design, kind="stable")
+    at, own = pad_rows(design[order], designs, angle[order], row[order])
+    known = ~np.isnan(at)
+    values = evaluate(np.where(known, at, SAMPLE_OFFSET))
+    found = np.empty(angle.size)
+    found[order] = np.take_along_axis(values, np.nan_to_num(own).astype(int)[None], axis=0)[0][known]
+    return found
 
 
 def _sign_change_brackets(evaluate, values, angle):
@@ -177,11 +187,7 @@ def _sign_change_brackets(evaluate, values, angle):
     if place.size:
         place = place + 1
         vertex = angle[0, place] + shift[near]
-        at, known, order = pad_rows(design, values.shape[1], vertex, row, np.arange(vertex.size))
-        there = evaluate(np.where(np.isnan(at), angle[0, 0], at))
-        there = np.take_along_axis(there, np.nan_to_num(known).astype(int)[None], axis=0)[0]
-        own = np.empty(vertex.size)
-        own[order[~np.isnan(order)].astype(int)] = there[~np.isnan(order)]
+        own = _values_at(evaluate, values.shape[1], design, row, vertex)
         beyond = np.signbit(own) != sign[row, design, place]
         row, design, place, vertex = (part[beyond] for part in (row, design, place, vertex))
         brackets += [(design, angle[0, place - 1], vertex, row), (design, vertex, angle[0, place + 1], row)]
