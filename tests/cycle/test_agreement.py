@@ -15,7 +15,7 @@ MEANS = ("mean", "mean_absolute", "swing")
 AGREEMENT = 1e-9
 """Of extremes and their like, relative to the largest value of the quantity."""
 AGREEMENT_OF_SWEEPS = 1e-8
-"""The same of sweeps and tolerances, which resolve outputs to that (`cycle.pieces.MAX_OUTPUT_ERROR`)."""
+"""The same of sweeps and tolerances, which resolve outputs to that; of a swing relative to the largest torque."""
 
 
 def figures(pulsed, names, outputs, flywheel):
@@ -29,9 +29,10 @@ def figures(pulsed, names, outputs, flywheel):
     row = ks.sweep(scene, pd.DataFrame({column: [mass]}), outputs, progress=False).iloc[0]
     assert row["failed"] == ""
     spread = {path: f"{mass!r}..{float(np.nextafter(mass, np.inf))!r} kg"}
-    quantiles = ks.tolerances(scene, outputs, spread, count=2, progress=False).quantiles([0.5]).iloc[0]
-    for part, numbers in (("sweep", row.iloc[1:-1]), ("tolerances", quantiles)):
-        yield from ((part, output, number) for output, number in zip(outputs, numbers, strict=True))
+    few = outputs[1::2]
+    quantiles = ks.tolerances(scene, few, spread, count=2, progress=False).quantiles([0.5]).iloc[0]
+    for part, asked, numbers in (("sweep", outputs, row.iloc[1:-1]), ("tolerances", few, quantiles)):
+        yield from ((part, output, number) for output, number in zip(asked, numbers, strict=True))
     compared = ks.compare(solution, solution)
     yield "compare", f"mean_absolute {TORQUE}", compared.mean_torques[0]
     yield "compare", "largest O", compared.peak_reactions("O")[0]
@@ -55,19 +56,19 @@ def disagreements(seed, flywheel=False, count=40_000):
     true.pop("smallest contact_pressure", None)  # 0 where the roller changes sides, as the root of a force near 0
     wrong = {}
     for part, output, number in figures(pulsed, names, list(true), flywheel):
-        size = true[output] if output.startswith("swing") else sizes[output.split()[1]]
+        size = true[output] if part == "flywheel" else sizes[output.split()[1]]
         error = (number - true[output]) / size
         if not abs(error) <= (AGREEMENT_OF_SWEEPS if part in ("sweep", "tolerances") else AGREEMENT):
             wrong[part, output] = float(error)
     return wrong
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [2, 5, 6, 12, 55])
 def test_all_parts_agree(seed):
     assert disagreements(seed) == {}
 
 
 @pytest.mark.slow
-@every("seed", range(4, 200))
+@every("seed", range(200))
 def test_all_parts_agree_on_many_scenes(seed):
     assert disagreements(seed, flywheel=seed % 10 == 0) == {}

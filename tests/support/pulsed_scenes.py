@@ -15,7 +15,7 @@ TURN = 2 * np.pi
 KINDS = ("slider", "yoke", "four-bar", "cam")
 CANDIDATES = 12
 """Highest angles that are closed in on."""
-ROUNDS, PLACES = 14, np.linspace(0.0, 1.0, 41)[:, None]
+ROUNDS, PLACES = 9, np.linspace(0.0, 1.0, 41)[:, None]
 """Rounds of closing in, each to a twentieth, and the places at which a round looks."""
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(10)
 
@@ -181,18 +181,26 @@ class Dense:
         """Mean, mean of the size, and range of the integral of function less mean."""
         low, high, sums = self._intervals(function)
         mean = sums.sum() / self.period
-        sizes = self._intervals(lambda at: np.abs(function(at)))[2]
-        return mean, sizes.sum() / self.period, self._swing(function, mean, low, high, sums)
+        size = sum(np.abs(part).sum() for part in self._parted(function, 0.0, low, high, sums)) / self.period
+        first, rest = self._parted(function, mean, low, high, sums)
+        gained = np.append(0.0, np.cumsum(first + rest))
+        return mean, size, np.ptp(np.append(gained, gained[:-1] + first))
 
-    def _swing(self, function, mean, low, high, sums):
+    def _parted(self, function, level, low, high, sums):
+        """Integrals of function less level up to where its sign changes in an interval, and from there."""
+
         def beyond(at):
-            return np.asarray(function(at)) - mean
+            return np.asarray(function(at)) - level
 
-        gained = np.append(0.0, np.cumsum(sums - mean * (high - low)))
-        value = np.signbit(self._values(beyond, np.append(low, high[-1])))
-        inner = np.flatnonzero(value[:-1] != value[1:])
+        above = np.signbit(self._values(beyond, np.append(low, high[-1])))
+        inner = np.flatnonzero(above[:-1] != above[1:])
+        first = sums - level * (high - low)
+        rest = np.zeros(low.size)
         zero = _crossing(lambda angle: self._values(beyond, angle), low[inner], high[inner])
-        return np.ptp(np.append(gained, gained[inner] + self._sums(beyond, low[inner], zero)[0]))
+        before = self._sums(beyond, low[inner], zero)[0]
+        rest[inner] = first[inner] - before
+        first[inner] = before
+        return first, rest
 
     def _intervals(self, function):
         """Starts and ends of intervals that Gauss points resolve, rising, and the integrals over them."""
