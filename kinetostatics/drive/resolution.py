@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 
-from ..cycle.kinks import FUNCTION_STEP, undeclared_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError
 from ..machine.loads import TURN
@@ -29,14 +28,18 @@ MIN_INERTIA_RATIO = 1e-10
 NO_ANGLES = np.empty(0)
 
 
+def plain_pieces(driven):
+    """Pieces of the period between the kinks of loads."""
+    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), MAX_WIDTH)
+    return Pieces(edges, point_count(edges))
+
+
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    widest = 4.0 * FUNCTION_STEP if undeclared_functions(driven.scene.loads) else MAX_WIDTH
-    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), widest)
-    pieces, kinks = Pieces(edges, point_count(edges)), NO_ANGLES
+    pieces, kinks = plain_pieces(driven), NO_ANGLES
     for _ in range(MAX_ROUNDS):
-        forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
-        split = split_at_kinks(driven, pieces, forces, kinks)
+        rows = driven.kink_rows(pieces.angle, np.full(pieces.angle.shape, speed), np.zeros(pieces.angle.shape))
+        split = split_at_kinks(driven, pieces, rows, kinks)
         if split is None:
             break
         pieces, kinks = split
@@ -46,7 +49,7 @@ def resolved(driven, speed):
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
         edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
-        again = _halve_unresolved(driven, Pieces(edges_between(edges, widest), pieces.count), speed)
+        again = _halve_unresolved(driven, Pieces(edges_between(edges, MAX_WIDTH), pieces.count), speed)
         pieces = again if len(again.half) < len(pieces.half) else pieces
     return _split_at_jumps(driven, pieces, speed), kinks
 
@@ -58,20 +61,21 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
     """
     if not rows:
         return None
-    period = pieces.edges[-1] - pieces.edges[0]
+    period = driven.period
     angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]])
     zeros = []
     for value in map(pieces.with_ends, rows):  # a jump from one piece to the next is no zero
         at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
         (low, high), (first, second) = ((part[:, :-1][at], part[:, 1:][at]) for part in (angle, value))
         zeros.append(low + (high - low) * first / (first - second))
-    fixed = np.concatenate([pieces.edges[:1], driven.kinks, pieces.edges[-1:]])
-    kinks = np.mod(np.concatenate(zeros), period)
+    first, last = pieces.edges[[0, -1]]
+    fixed = np.concatenate([[first], driven.kinks[(driven.kinks > first) & (driven.kinks < last)], [last]])
+    kinks = np.concatenate(zeros)
     kinks = kinks[_distance(kinks, fixed) > KINK_TOLERANCE * period]
     if np.all(_distance(kinks, pieces.edges) <= KINK_TOLERANCE * period):
         return None
     other = np.setdiff1d(pieces.edges, before)
-    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * period]
+    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * pieces.period]
     return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), kinks
 
 

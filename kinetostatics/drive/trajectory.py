@@ -109,8 +109,8 @@ class Trajectory:
             checks.require(
                 "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
             )
-        angle, speed, sense = self._dense(time)[[0, 1, 4]]
-        found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed, sense)))
+        angle, speed, _, sense = self._dense(time)
+        found = map(read_only, (time, angle, speed, accelerations(self._driven, angle, speed, sense)))
         return replace_unchecked(
             self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True))
         )
@@ -123,7 +123,7 @@ class Trajectory:
     @property
     def _moving(self):
         """The scene at the speeds, accelerations and senses of the motion."""
-        sense = np.where(self.speed == 0.0, self._dense(self.time)[4], np.sign(self.speed))
+        sense = np.where(self.speed == 0.0, self._dense(self.time)[3], np.sign(self.speed))
         return replace_unchecked(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration, sense=sense)
 
     @property
@@ -152,7 +152,7 @@ class Trajectory:
     @property
     def friction_energy(self):
         """Energy lost by friction since the start, J."""
-        return read_only(self._dense(self.time)[3])
+        return read_only(self._dense(self.time)[2])
 
     @property
     def motor_torque(self):
@@ -193,3 +193,12 @@ class Trajectory:
         ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
         ax.grid(alpha=0.3)
         return ax
+
+
+def accelerations(driven, angle, speed, sense):
+    """Crank accelerations at angles, speeds and senses of a motion that may turn back, rad/s2."""
+    found = np.empty(angle.shape)
+    for way in np.unique(sense):
+        own = sense == way
+        found[own] = driven.along(way).acceleration(angle[own], speed[own])
+    return found
