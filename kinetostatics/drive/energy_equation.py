@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL
-from .resolution import split_at_kinks
+from .resolution import split_at_kinks, weights
 
 MAX_GROWTH_EXPONENT = 4.0
 """Largest integral of a over a piece; a larger one costs digits."""
@@ -23,38 +23,49 @@ MAX_NEWTON_STEPS = 40
 MAX_STEPS_FROM_START = 12
 """The same from a start, where a failure only halves the angle."""
 ENERGY_TOLERANCE = 1e-14
+MAX_NEAR_CHANGE = 1e-2
+"""Relative change of the energy in a step after which the derivatives are kept."""
 
 
 class Linear(NamedTuple):
-    """A machine at the points of pieces: its state, total inertia, speed, net torque and a = d(net torque)/dU."""
+    """A machine at the points of pieces: its state, total inertia, speed, net torque and a = d(net torque)/dU.
+
+    `motion` is that of `DrivenMachine.motion_with_friction`.
+    """
 
     state: Any
     inertia: np.ndarray
     speed: np.ndarray
     net: np.ndarray
     growth: np.ndarray
+    motion: Any = None
 
 
-def linearise(driven, pieces, energy) -> Linear:
-    """Torques of a machine with given energies at the points of pieces, linearised."""
+def linearise(driven, pieces, energy, near=None) -> Linear:
+    """Torques of a machine with given energies at the points of pieces, linearised; `near` is that of near energies."""
     angle = pieces.angle
     inertia = driven.inertia(angle)
     speed = driven.direction * np.sqrt(2.0 * energy / inertia)
-    state = driven.at(angle, speed)
-    by_speed = driven.motor_slope(speed) - driven.torque_by_speed(angle, speed, state.torque)
-    growth = by_speed / (inertia * speed)
-    growth = pieces.smoothed(growth) if driven.smooth_by_speed else growth
-    return Linear(state, inertia, speed, driven.motor_torque(speed) - state.torque, growth)
+    state = driven.at(angle, speed, near and near.motion)
+    motion = driven.motion_with_friction
+    if near is None:
+        outputs = driven.motor_slope(speed) - driven.torque_by_speed(angle, speed, state.torque)
+        growth = outputs / (inertia * speed)
+        growth = pieces.smoothed(growth) if driven.smooth_by_speed else growth
+    else:
+        growth = near.growth
+    return Linear(state, inertia, speed, driven.motor_torque(speed) - state.torque, growth, motion)
 
 
-def solve_energy(driven, pieces, energy, start=None):
+def solve_energy(driven, pieces, energy, start=None, near=None):
     """Energy at the points near a guess, energy at the far end, and the `Linear`; None without convergence.
 
-    `start` is the energy where the motion enters the pieces; without it running is periodic, and stable.
+    `start` is the energy where the motion enters the pieces; without it running is periodic, and stable. `near` is the
+    `Linear` of near energies at the points.
     """
     before = math.inf
     for _ in range(MAX_NEWTON_STEPS if start is None else MAX_STEPS_FROM_START):
-        linear = linearise(driven, pieces, energy)
+        linear = linearise(driven, pieces, energy, near)
         solution = _linear_solution(pieces, linear.growth, linear.net - linear.growth * energy, start, driven.direction)
         if solution is None:
             return None
@@ -67,9 +78,11 @@ def solve_energy(driven, pieces, energy, start=None):
                 return None
         energy = energy + factor * change
         size = float(np.abs(change).max() / np.abs(energy).max())
-        if factor == 1.0 and (size < ENERGY_TOLERANCE or (size < 1e-10 and size >= 0.1 * before)):
+        slow = size >= 0.1 * before
+        if factor == 1.0 and (size < ENERGY_TOLERANCE or (near is None and size < 1e-10 and slow)):
             settles = far > 0.0 if start is not None else driven.direction * pieces.total(linear.growth) < 0.0
             return (energy, far, linear) if settles else None
+        near = linear if size < MAX_NEAR_CHANGE and not slow else None
         before = size
     return None
 
@@ -116,8 +129,8 @@ def resolve_energy(driven, pieces, found, kinks, again):
     kinks : array
         Crank angles of kinks of friction among the edges, which move.
     again : function
-        From finer pieces and a guess of the energy, a function of pieces, to pieces and a solution; or to None, which
-        ends the search.
+        From finer pieces, a guess of the energy, a function of pieces, and a `Linear` of near energies, to pieces and
+        a solution; or to None, which ends the search.
     """
     for _ in range(MAX_HALVINGS):
         energy, _, linear = found
@@ -129,8 +142,15 @@ def resolve_energy(driven, pieces, found, kinks, again):
             finer = pieces.split(marked)
         else:
             finer, kinks = moved
-        series = pieces.series(energy)
-        solved = again(finer, lambda finer, old=pieces, series=series: old.evaluate(series, finer.angle))
+
+        def interpolated(values, finer=finer, old=pieces):
+            return old.evaluate(old.series(values), finer.angle)
+
+        motion = linear.motion and [interpolated(values) for values in linear.motion]
+        near = linear._replace(growth=interpolated(linear.growth), motion=motion)
+        solved = again(
+            finer, lambda finer, old=pieces, energy=energy: old.evaluate(old.series(energy), finer.angle), near
+        )
         if solved is None:
             return None
         pieces, found = solved
@@ -139,11 +159,11 @@ def resolve_energy(driven, pieces, found, kinks, again):
 
 def _unresolved(driven, pieces, energy, linear):
     """Mask of the pieces whose series are not resolved and that can be halved."""
-    state, inertia, speed, net, growth = linear
+    state, inertia, speed, net, growth, _ = linear
     wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
     rounding = SPEED_ROUNDING * np.abs(driven.motor_slope(speed) * speed).max()
     floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(net + state.torque).max()), rounding)
-    rough = pieces.tails(net) > floor
+    rough = pieces.tails(net) * weights(pieces) > floor
     tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
     tails += [pieces.tail(part) > 10.0 * TAIL for part in (speed, 1.0 / speed)]
     return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split

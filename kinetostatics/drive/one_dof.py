@@ -109,6 +109,8 @@ class DrivenMachine:
             friction = replace_unchecked(self.scene.friction, rubs=rubs)
             self._friction_scene = replace_unchecked(self.scene, friction=friction)
             self._last_solution: tuple[Any, ...] = (None,)
+            self._last_senses: tuple[Any, ...] = (None,)
+            self._last_outputs: dict[str, Any] = {}
 
     @cached_property
     def _reversed(self):
@@ -166,12 +168,21 @@ class DrivenMachine:
         """Crank angles in [0, period) at which friction torque jumps, rad, exact."""
         return np.empty(0) if self._slip is None else self._slip.all_edges
 
-    def at(self, angle, speed=None) -> State:
-        """State at crank angles; `speed` counts where loads or friction depend on it."""
+    def at(self, angle, speed=None, near=None) -> State:
+        """State at crank angles; `speed` counts where loads or friction depend on it.
+
+        `near` are the acceleration and the slope of `motion_with_friction` at nearly this speed: with them friction is
+        linear in the acceleration.
+        """
         state = self.without_friction(angle, speed)
         if self._slip is None:
             return state
-        return state._replace(torque=state.torque + self._solve_friction(angle, speed, state)[0])
+        return state._replace(torque=state.torque + self._solve_friction(angle, speed, state, near)[0])
+
+    @property
+    def motion_with_friction(self):
+        """Acceleration, and slope of friction by it, that friction was last solved for; None without friction."""
+        return None if self._slip is None else self._last_solution[1:]
 
     def at_acceleration(self, angle, speed, acceleration) -> State:
         """State at given crank angles, speeds and accelerations."""
@@ -229,14 +240,14 @@ class DrivenMachine:
     def kink_rows(self, angle, speed, acceleration=None):
         """Rows over the crank angles, zero where friction or the motor's table has a kink.
 
-        By default the acceleration is the one that follows, as last solved at these angles.
+        By default they are those of the friction last solved, at these angles.
         """
         rows = [] if self.motor is None else [self.motor.transmission * speed - knot for knot in self.motor.knots]
         if self._slip is None or not self._friction_pairs:
             return rows
-        if acceleration is None:
-            acceleration = self._last_solution[1]
-        return rows + self._kink_values(self._converged_outputs(angle, speed, acceleration))
+        if acceleration is not None:
+            self._converged_outputs(angle, speed, acceleration)
+        return rows + self._kink_values(self._last_outputs)
 
     def torque_by_speed(self, angle, speed, torque):
         """Derivative by the crank speed of `torque`, the load and friction torque there, N m s.
@@ -331,18 +342,25 @@ class DrivenMachine:
         rows = self._program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         return {name: value.reshape(angle.shape) for name, value in rows.items()}
 
-    def _solve_friction(self, angle, speed, state):
+    def _solve_friction(self, angle, speed, state, near=None):
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
-        rest = self._accelerating_torque(state, speed)
-        guess = self._last_solution[1:] if self._last_solution[0] is angle else ()
-        inertia = self.flywheel + state.inertia
-        friction, acceleration, slope = self._solve_acceleration(angle, speed, inertia, rest, *guess)
+        rest, inertia = self._accelerating_torque(state, speed), self.flywheel + state.inertia
+        if near is None:
+            friction, acceleration, slope = self._solve_acceleration(angle, speed, inertia, rest)
+        else:
+            acceleration, slope = near
+            friction = self._converged_outputs(angle, speed, acceleration)[FRICTION]
+            left = (rest - friction - inertia * acceleration) / (inertia + slope)
+            friction, acceleration = friction + slope * left, acceleration + left
         self._last_solution = angle, acceleration, slope
         return friction, acceleration
 
     def _converged_outputs(self, angle, speed, acceleration, senses=None):
         """Outputs of the friction program after as many passes as it needs."""
-        senses = self._slip.at(angle, self.direction) if senses is None else senses
+        if senses is None:
+            if self._last_senses[0] is not angle:
+                self._last_senses = angle, self._slip.at(angle, self.direction)
+            senses = self._last_senses[1]
         found: dict[str, Any] = {}
 
         def evaluate(scene):
@@ -355,6 +373,7 @@ class DrivenMachine:
             return [found[name] for name in CHECKS]
 
         solve_friction(self._friction_scene, evaluate)
+        self._last_outputs = found
         return found
 
     def _solve_acceleration(self, angle, speed, inertia, rest, acceleration=None, slope=0.0):

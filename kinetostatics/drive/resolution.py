@@ -118,11 +118,17 @@ def _state_at(driven, angle, speed):
 def _halve_unresolved(driven, pieces, speed):
     for _ in range(MAX_HALVINGS):
         state = _state_at(driven, pieces.angle, speed)
-        marked = ((pieces.tail(state.inertia) > TAIL) | (pieces.tail(state.torque) > TAIL)) & pieces.can_split
+        rough = pieces.tail(state.torque) * weights(pieces) > TAIL
+        marked = (rough | (pieces.tail(state.inertia) > TAIL)) & pieces.can_split
         if not marked.any() or len(marked) > MAX_PIECES:
             break
         pieces = pieces.split(marked)
     return pieces
+
+
+def weights(pieces):
+    """Weights of the errors of a torque: a narrow piece adds little to the energy, and its angles are rounded."""
+    return np.minimum(2.0 * pieces.half[:, 0], 1.0)
 
 
 def _require_resolved(driven, pieces, torque):

@@ -139,6 +139,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
         ended, last_rows = np.array([end]), path(np.array([end]))
     else:
         ended, last_rows = path.at_place(*(np.array([part]) for part in last or (path.starts.size - 1, 1.0)))
+    time[0], rows[:, 0] = 0.0, (angle, speed, 0.0, rows[3, 0])
     before = time < ended
     time, rows = np.append(time[before], ended), np.hstack([rows[:, before], last_rows])
     return Motion(time, rows, path, reversals, what)
@@ -288,19 +289,20 @@ class March:
         count, target = len(stretch.speed), stretch.direction[0] * self.target
         places = np.concatenate([[-1.0], rule(count).points, [1.0]])
 
-        def spare(place, series, root):
-            value = chebyshev.chebval(place, series, tensor=False)
+        def spare(value, place, root):
             return value * np.where(root == 0, 1.0, 0.5 * (1.0 + root * place)) - target
 
-        values = np.array([spare(place, stretch.speed, stretch.root) for place in places]).T.ravel()
+        speed = chebyshev.chebvander(places, count - 1) @ stretch.speed
+        values = spare(speed.T, places, stretch.root[:, None]).ravel()
         changes = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
         if not changes.size:
             return None
         piece, place = divmod(int(changes[0]), places.size)
         if place == places.size - 1:
             return self.passed + piece, 1.0
-        own = stretch.speed[:, [piece]], stretch.root[[piece]]
-        found = find_roots(lambda place, _: spare(place, *own), places[[place]], places[[place + 1]])
+        series, root = stretch.speed[:, piece], stretch.root[piece]
+        low, high = places[[place]], places[[place + 1]]
+        found = find_roots(lambda place, _: spare(chebyshev.chebval(place, series), place, root), low, high)
         return self.passed + piece, float(found[0])
 
 
@@ -318,8 +320,8 @@ def pass_part(driven, pieces, kinks, start, before):
     if found is None:
         return None
 
-    def again(finer, guess):
-        solved = solve_energy(driven, finer, guess(finer), start)
+    def again(finer, guess, near):
+        solved = solve_energy(driven, finer, guess(finer), start, near)
         return solved and (finer, solved)
 
     resolved = resolve_energy(driven, pieces, found, kinks, again)

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.resolution import require_inertia, resolved
-from kinetostatics.drive.steady_running import operating_speed, settle_by_integration
+from kinetostatics.drive.steady_running import operating_speed, settle_from_above
 from support.drives import DISC, DISC_MOTOR, driven
 from support.every import every
 
@@ -150,7 +150,7 @@ def test_declared_kinks_may_depend_on_speed():
 def test_standstill_names_angle_and_missing_torque():
     machine = driven(DISC, ks.Torque(-1e3, on="crank"))
     with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
-        settle_by_integration(machine, resolved(machine, 10.0)[0], 10.0)
+        settle_from_above(machine, resolved(machine, 10.0)[0], 10.0)
     assert caught.value.missing == pytest.approx(1e3 - float(machine.motor_torque(0.0)), rel=1e-6)
 
 
