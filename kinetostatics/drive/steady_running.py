@@ -56,16 +56,18 @@ def settle_from_above(driven, pieces, start):
     Motions of one degree of freedom do not cross, so a motion from above reaches the fastest periodic running, or
     there is none.
     """
-    direction = driven.direction
+    direction, turns, inertia = driven.direction, 0, driven.inertia(pieces.angle)
+    growth = linearise(driven, pieces, 0.5 * inertia * start * start).growth
+    share = float(np.abs(pieces.whole(growth)).sum())
     march = March(driven, 0.0, 2.0 * direction * abs(start))
-    for turn in range(MAX_TURNS):
-        last = march.energy
+    while turns < MAX_TURNS and share <= MAX_GROWTH:
+        last, turns = march.energy, turns + 1
         if not march.turn(direction):
             missing = abs(driven.torque_at_rest(march.inside)[0])
             raise DriveError(
                 f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
-                f"{math.degrees(march.inside):.6g} deg in turn {turn + 1}, where {missing:.6g} N m are missing at the "
+                f"{math.degrees(march.inside):.6g} deg in turn {turns}, where {missing:.6g} N m are missing at the "
                 "crank; give a larger flywheel or a stronger motor",
                 missing,
                 march.inside,
@@ -77,20 +79,17 @@ def settle_from_above(driven, pieces, start):
             if abs(march.energy - last) < 1e-4 * last:
                 break
     raise DriveError(
-        f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
-        f"{2.0 * abs(start):.6g} rad/s; {_remedy(driven, pieces, start)}"
+        f"{driven.scene.mechanism.name}: no periodic running was found in {turns} turns from "
+        f"{2.0 * abs(start):.6g} rad/s; {_remedy(share, inertia.max())}"
     )
 
 
-def _remedy(driven, pieces, start):
+def _remedy(share, inertia):
     """Remedy to name where no running converges, by how much the torque depends on the speed."""
-    inertia = driven.inertia(pieces.angle)
-    growth = linearise(driven, pieces, 0.5 * inertia * start * start).growth
-    share = float(np.abs(pieces.whole(growth)).sum())
     if share < MIN_GROWTH:
         return (
             f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
-            f"{inertia.max():.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+            f"{inertia:.6g} kg m2 at the crank; give a stronger motor, or less inertia"
         )
     if share > MAX_GROWTH:
         return (
