@@ -6,10 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import kinks_and_jumps
+from ..machine.friction import NO_FRICTION
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from ..numbers.brackets import find_roots
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
@@ -19,6 +22,8 @@ from .one_dof import DrivenMachine
 TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Gauss points and weights of the work in a step of the integration."""
+KINK_TOLERANCE = 1e-9
+"""Crank angles, rad, between a kink and the end of a step that count as none."""
 
 
 class Event(NamedTuple):
@@ -136,11 +141,13 @@ class Trajectory:
     def energy_drift(self):
         """Largest difference of kinetic energy and work done since the start, J: the error of the integration.
 
-        The work is the integral of the torques of `solve` along the motion, by Gauss' rule in each step.
+        The work is the integral of the torques of `solve` along the motion, by Gauss' rule in each step; steps end at
+        the kinks of the loads.
         """
         ends = self._ends
         if ends.size < 2:
             return 0.0
+        ends = np.union1d(ends, self._kink_times)
         half, at_ends = 0.5 * np.diff(ends), self.at(ends)
         energy = at_ends._unchecked.kinetic_energy + 0.5 * self.flywheel * at_ends.speed**2
         inside = self.at(np.ravel(0.5 * (ends[:-1] + ends[1:])[:, None] + half[:, None] * NODES))
@@ -148,6 +155,21 @@ class Trajectory:
         power = (drive - asked.load_torque - asked.friction_torque) * inside.speed
         work = np.cumsum(half * (power.reshape(half.size, NODES.size) @ WEIGHTS))
         return float(np.abs(energy[1:] - energy[0] - work).max())
+
+    @property
+    def _kink_times(self):
+        """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
+        free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
+        kinks, angle = kinks_and_jumps(free, 0)[0], self._dense(self._ends)[0]
+        low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
+        turns = np.arange(np.floor(low.min() / free.period), np.floor(high.max() / free.period) + 1.0)
+        kinks = (kinks + free.period * turns[:, None]).ravel()
+        first, last = np.searchsorted(kinks, low + KINK_TOLERANCE), np.searchsorted(kinks, high - KINK_TOLERANCE)
+        step = np.repeat(np.arange(low.size), np.maximum(last - first, 0))
+        passed = kinks[first[step] + np.arange(step.size) - np.searchsorted(step, step)]
+        return find_roots(
+            lambda time, some: self._dense(time)[0] - passed[some], self._ends[step], self._ends[step + 1]
+        )
 
     @property
     def friction_energy(self):
