@@ -22,9 +22,19 @@ SPEED_ROUNDING = 1e-14
 MAX_NEWTON_STEPS = 40
 MAX_STEPS_FROM_START = 12
 """The same from a start, where a failure only halves the angle."""
+STEPS_BELOW_ZERO = 2
+"""Steps from a start after which an energy below 0 counts as a standstill."""
 ENERGY_TOLERANCE = 1e-14
 MAX_NEAR_CHANGE = 1e-2
 """Relative change of the energy in a step after which the derivatives are kept."""
+
+
+class Standstill(Exception):
+    """The energy falls to 0 about at a crank angle, rad."""
+
+    def __init__(self, angle):
+        super().__init__(f"the motion stops at crank angle {angle:.9g} rad")
+        self.angle = float(angle)
 
 
 class Linear(NamedTuple):
@@ -61,10 +71,10 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
     """Energy at the points near a guess, energy at the far end, and the `Linear`; None without convergence.
 
     `start` is the energy where the motion enters the pieces; without it running is periodic, and stable. `near` is the
-    `Linear` of near energies at the points.
+    `Linear` of near energies at the points. Raises `Standstill` where a motion from a start stops.
     """
     before = math.inf
-    for _ in range(MAX_NEWTON_STEPS if start is None else MAX_STEPS_FROM_START):
+    for step in range(MAX_NEWTON_STEPS if start is None else MAX_STEPS_FROM_START):
         linear = linearise(driven, pieces, energy, near)
         solution = _linear_solution(pieces, linear.growth, linear.net - linear.growth * energy, start, driven.direction)
         if solution is None:
@@ -74,14 +84,18 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
         if not found.min() > 0.0:
             falling = change < 0.0
             factor = 0.7 * float(np.min(energy[falling] / -change[falling]))
+            if start is not None and (step >= STEPS_BELOW_ZERO or factor < 1e-6):
+                raise Standstill(pieces.angle[found <= 0.0][0 if driven.direction > 0.0 else -1])
             if factor < 1e-6:
                 return None
         energy = energy + factor * change
         size = float(np.abs(change).max() / np.abs(energy).max())
         slow = size >= 0.1 * before
         if factor == 1.0 and (size < ENERGY_TOLERANCE or (near is None and size < 1e-10 and slow)):
-            settles = far > 0.0 if start is not None else driven.direction * pieces.total(linear.growth) < 0.0
-            return (energy, far, linear) if settles else None
+            if start is not None and not far > 0.0:
+                raise Standstill(pieces.edges[-1 if driven.direction > 0.0 else 0])
+            stable = start is not None or driven.direction * pieces.total(linear.growth) < 0.0
+            return (energy, far, linear) if stable else None
         near = linear if size < MAX_NEAR_CHANGE and not slow else None
         before = size
     return None

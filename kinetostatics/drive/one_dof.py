@@ -346,7 +346,8 @@ class DrivenMachine:
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
         rest, inertia = self._accelerating_torque(state, speed), self.flywheel + state.inertia
         if near is None:
-            friction, acceleration, slope = self._solve_acceleration(angle, speed, inertia, rest)
+            guess = self._last_solution[1:] if self._last_solution[0] is angle else ()
+            friction, acceleration, slope = self._solve_acceleration(angle, speed, inertia, rest, *guess)
         else:
             acceleration, slope = near
             friction = self._converged_outputs(angle, speed, acceleration)[FRICTION]

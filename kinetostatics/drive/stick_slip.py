@@ -16,7 +16,7 @@ from numpy.polynomial import chebyshev
 from ..cycle.piecewise import TAIL, Pieces, rule
 from ..errors import DriveError, KinetostaticsError
 from ..numbers.brackets import find_roots
-from .energy_equation import resolve_energy, solve_energy
+from .energy_equation import Standstill, resolve_energy, solve_energy
 from .resolution import MIN_INERTIA_RATIO, plain_pieces, resolved
 
 MAX_PARTS = 10_000
@@ -25,6 +25,8 @@ ANGLE_TOLERANCE = 1e-12
 """Crank angles nearer than this to an edge, rad, count as there."""
 MAX_STEPS_AT_REST = 40
 """Fixed-point steps of the energy beside a standstill."""
+MAX_REACH_GROWTH = 8.0
+"""Ratio of the crank angles that are tried one after the other."""
 MIN_SPEED = 1e-3
 """Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
 MIN_PART = 1e-6
@@ -173,11 +175,11 @@ class March:
             if found is None:
                 reach = 0.5 * length
                 if reach < ANGLE_TOLERANCE:
-                    if self.problem is not None:
+                    if isinstance(self.problem, KinetostaticsError):
                         raise self.problem
                     return "lost", None
                 continue
-            reach = min(2.0 * reach, self.driven.period)
+            reach = min(MAX_REACH_GROWTH * reach, self.driven.period)
             stretch, far, self.energy = found
             self.left -= abs(far - self.inside)
             self.inside = far
@@ -238,17 +240,22 @@ class March:
             if whole:
                 self._keep(machine, *solved)
             return (stretch, far, energy), reach
-        if inner.size:
-            return None, reach
+        stops = reach
+        if isinstance(self.problem, Standstill):
+            stops = max(abs(self.problem.angle - self.inside), reach / MAX_REACH_GROWTH)
+        before = np.abs(inner - self.inside)
+        before = before[before < stops]
+        if before.size:  # the next attempt ends at the last edge before the standstill, or at half the angle
+            return None, 2.0 * before[-1] if isinstance(self.problem, Standstill) else reach
         found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, base.count)
-        return found and (found[0], self.inside + direction * found[1], 0.0), reach
+        return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
 
     def _attempt(self, function, *parts):
         """Result of a function, or None where it has none or fails; `problem` is its error."""
         self.problem = None
         try:
             return function(*parts)
-        except KinetostaticsError as error:
+        except (KinetostaticsError, Standstill) as error:
             self.problem = error
             return None
 
