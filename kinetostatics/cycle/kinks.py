@@ -36,6 +36,10 @@ FUNCTION_STEP = np.radians(0.05)
 """Step of crank angles, rad, at which load functions without declared kinks are searched for pulses and jumps."""
 ROUGHNESS = 1e-5
 """Fourth difference, relative to the largest value, above which a function is not smooth: that of a 64th harmonic."""
+SECTION_ANGLES, SECTIONS = 33, 9
+"""Crank angles that section an interval with a jump, and how often they do, to its last digits."""
+JUMP_TOLERANCE = 1e-6
+"""Change of a function in the last section, relative to its largest value, above which it jumps."""
 BLOCK_VALUES = 2**20
 """Values of such functions that are computed at a time."""
 
@@ -132,6 +136,22 @@ def rough_places(item, solution):
     inside = beside(rough, -1) & beside(rough, 1) & (np.arange(angle.size) % 4 > 0)
     design, place = np.nonzero(rough & ~inside)
     return pad_rows(design, len(value), angle[place])[0]
+
+
+def undeclared_jumps(function, places):
+    """Crank angles at which a function of the crank angle jumps between neighbouring `rough_places`, (K,), rising."""
+    narrow = np.diff(places) < 1.5 * FUNCTION_STEP
+    low, high = places[:-1][narrow], places[1:][narrow]
+    if not low.size:
+        return low
+    row = np.arange(low.size)
+    for _ in range(SECTIONS):
+        angle = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, SECTION_ANGLES)
+        value = function(angle)
+        change = abs(np.diff(value))
+        place = change.argmax(axis=1)
+        low, high = angle[row, place], angle[row, place + 1]
+    return np.unique(high[change.max(axis=1) > JUMP_TOLERANCE * abs(value).max()])
 
 
 def law_kinks(solution, jumps=False):

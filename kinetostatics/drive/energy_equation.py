@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL
-from .resolution import split_at_kinks, weights
+from .resolution import MAX_ROUNDS, split_at_kinks, weights
 
 MAX_GROWTH_EXPONENT = 4.0
 """Largest integral of a over a piece; a larger one costs digits."""
@@ -29,7 +29,7 @@ MAX_NEAR_CHANGE = 1e-2
 """Relative change of the energy in a step after which the derivatives are kept."""
 
 
-class Standstill(Exception):
+class StandstillError(Exception):
     """The energy falls to 0 about at a crank angle, rad."""
 
     def __init__(self, angle):
@@ -71,7 +71,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
     """Energy at the points near a guess, energy at the far end, and the `Linear`; None without convergence.
 
     `start` is the energy where the motion enters the pieces; without it running is periodic, and stable. `near` is the
-    `Linear` of near energies at the points. Raises `Standstill` where a motion from a start stops.
+    `Linear` of near energies at the points. Raises `StandstillError` where a motion from a start stops.
     """
     before = math.inf
     for step in range(MAX_NEWTON_STEPS if start is None else MAX_STEPS_FROM_START):
@@ -85,7 +85,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
             falling = change < 0.0
             factor = 0.7 * float(np.min(energy[falling] / -change[falling]))
             if start is not None and (step >= STEPS_BELOW_ZERO or factor < 1e-6):
-                raise Standstill(pieces.angle[found <= 0.0][0 if driven.direction > 0.0 else -1])
+                raise StandstillError(pieces.angle[found <= 0.0][0 if driven.direction > 0.0 else -1])
             if factor < 1e-6:
                 return None
         energy = energy + factor * change
@@ -93,7 +93,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
         slow = size >= 0.1 * before
         if factor == 1.0 and (size < ENERGY_TOLERANCE or (near is None and size < 1e-10 and slow)):
             if start is not None and not far > 0.0:
-                raise Standstill(pieces.edges[-1 if driven.direction > 0.0 else 0])
+                raise StandstillError(pieces.edges[-1 if driven.direction > 0.0 else 0])
             stable = start is not None or driven.direction * pieces.total(linear.growth) < 0.0
             return (energy, far, linear) if stable else None
         near = linear if size < MAX_NEAR_CHANGE and not slow else None
@@ -146,9 +146,10 @@ def resolve_energy(driven, pieces, found, kinks, again):
         From finer pieces, a guess of the energy, a function of pieces, and a `Linear` of near energies, to pieces and
         a solution; or to None, which ends the search.
     """
-    for _ in range(MAX_HALVINGS):
+    for step in range(MAX_ROUNDS + MAX_HALVINGS):
         energy, _, linear = found
-        moved = split_at_kinks(driven, pieces, driven.kink_rows(pieces.angle, linear.speed), kinks)
+        rows = driven.kink_rows(pieces.angle, linear.speed) if step < MAX_ROUNDS else []
+        moved = split_at_kinks(driven, pieces, rows, kinks)
         if moved is None:
             marked = _unresolved(driven, pieces, energy, linear)
             if not marked.any() or len(pieces.half) > MAX_PIECES:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import kinks_and_jumps
+from ..cycle.kinks import kinks_and_jumps, undeclared_functions, undeclared_jumps
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
@@ -161,7 +161,15 @@ class DrivenMachine:
     def kinks(self):
         """Crank angles in (0, period) at which loads have kinks, or may have them, or friction jumps, rad."""
         free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
-        return _distinct_angles(np.concatenate([kinks_and_jumps(free, 0)[0], self.jumps]), self.period)
+        angles = [kinks_and_jumps(free, 0)[0], self.jumps]
+        if undeclared_functions(self.scene.loads):
+            angles.append(
+                undeclared_jumps(lambda angle: self.without_friction(angle, self._speeds(angle)).torque, angles[0])
+            )
+        return _distinct_angles(np.concatenate(angles), self.period)
+
+    def _speeds(self, angle):
+        return np.full(angle.shape, self.direction)
 
     @property
     def jumps(self):
@@ -275,8 +283,7 @@ class DrivenMachine:
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
-        speed = np.full(np.shape(angle), self.direction) if self.loads_by_speed else None
-        return self.flywheel + self.without_friction(angle, speed).inertia
+        return self.flywheel + self.without_friction(angle, self._speeds(angle)).inertia
 
     def motor_torque(self, speed):
         """Torque of the motor on the crank, N m; without motor `constant_torque`."""

@@ -19,8 +19,8 @@ KINK_TOLERANCE = 1e-9
 """Shift of an edge, relative to the period, that is harmless."""
 MIN_EDGE_DISTANCE = 1e-6
 """Distance of edges from a new one, relative to the period, below which they are removed."""
-JUMP_TOLERANCE = 1e-9
-"""Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
+MIN_RESOLVED_WIDTH = 1e-6
+"""Width of a piece, relative to the period, below which a torque may be without bound."""
 MAX_UNRESOLVED = 1e-6
 """Share of a torque in unresolved pieces above which running is refused."""
 MIN_INERTIA_RATIO = 1e-10
@@ -44,14 +44,9 @@ def resolved(driven, speed):
             break
         pieces, kinks = split
     pieces = _halve_unresolved(driven, pieces, speed)
-    width = 2.0 * pieces.half[:, 0]
-    if np.any(width < 1e-6 * driven.period) or len(width) > MAX_PIECES:
+    if np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period) or len(pieces.half) > MAX_PIECES:
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
-        jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
-        edges = np.unique(np.concatenate([[0.0], driven.kinks, kinks, jumps, [driven.period]]))
-        again = _halve_unresolved(driven, Pieces(edges_between(edges, MAX_WIDTH), pieces.count), speed)
-        pieces = again if len(again.half) < len(pieces.half) else pieces
-    return _split_at_jumps(driven, pieces, speed), kinks
+    return pieces, kinks
 
 
 def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
@@ -82,33 +77,6 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
 def _distance(angles, others):
     """Distance of each angle to the nearest of others; infinite where there are none."""
     return np.abs(angles[:, None] - others).min(axis=1, initial=np.inf)
-
-
-def _split_at_jumps(driven, pieces, speed):
-    """Pieces with further edges where the load torque jumps between an edge and the points beside it."""
-    torque = _state_at(driven, pieces.angle, speed).torque
-    both = pieces.with_ends(torque)
-    starts, ends = both[:, 0], both[:, -1]
-    starts = np.append(starts[1:], starts[0])
-    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP_TOLERANCE * np.abs(torque).max())
-    known = np.isin(np.mod(pieces.edges[1:], driven.period), driven.jumps)
-    jumping = jumping[~known[jumping]]
-    found = []
-    for piece in jumping:
-        low = pieces.angle[piece, -1]
-        high = pieces.angle[(piece + 1) % len(ends), 0] + (driven.period if piece + 1 == len(ends) else 0.0)
-        while high - low > 1e-15 * driven.period:
-            inner = np.linspace(low, high, 34)[1:-1]
-            if not (inner[0] > low and inner[-1] < high):
-                break
-            values = _state_at(driven, np.mod(inner, driven.period), speed).torque
-            after = np.abs(values - starts[piece]) < np.abs(values - ends[piece])
-            first = int(np.argmax(after)) if after.any() else after.size
-            bounds = np.concatenate([[low], inner, [high]])
-            low, high = bounds[first], bounds[first + 1]
-        found.append(high % driven.period)
-    edges = np.unique(np.concatenate([pieces.edges, found]))
-    return Pieces(edges, pieces.count) if found else pieces
 
 
 def _state_at(driven, angle, speed):

@@ -16,7 +16,7 @@ from numpy.polynomial import chebyshev
 from ..cycle.piecewise import TAIL, Pieces, rule
 from ..errors import DriveError, KinetostaticsError
 from ..numbers.brackets import find_roots
-from .energy_equation import Standstill, resolve_energy, solve_energy
+from .energy_equation import StandstillError, resolve_energy, solve_energy
 from .resolution import MIN_INERTIA_RATIO, plain_pieces, resolved
 
 MAX_PARTS = 10_000
@@ -241,12 +241,12 @@ class March:
                 self._keep(machine, *solved)
             return (stretch, far, energy), reach
         stops = reach
-        if isinstance(self.problem, Standstill):
+        if isinstance(self.problem, StandstillError):
             stops = max(abs(self.problem.angle - self.inside), reach / MAX_REACH_GROWTH)
         before = np.abs(inner - self.inside)
         before = before[before < stops]
         if before.size:  # the next attempt ends at the last edge before the standstill, or at half the angle
-            return None, 2.0 * before[-1] if isinstance(self.problem, Standstill) else reach
+            return None, 2.0 * before[-1] if isinstance(self.problem, StandstillError) else reach
         found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, base.count)
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
 
@@ -255,7 +255,7 @@ class March:
         self.problem = None
         try:
             return function(*parts)
-        except (KinetostaticsError, Standstill) as error:
+        except (KinetostaticsError, StandstillError) as error:
             self.problem = error
             return None
 
