@@ -9,6 +9,7 @@ from .cycle.comparison import Comparison as Comparison
 from .cycle.comparison import compare as compare
 from .cycle.extremes import Extremes as Extremes
 from .cycle.extremes import extremes as extremes
+from .cycle.kinks import ResolutionCheck as ResolutionCheck
 from .cycle.losses import Losses as Losses
 from .design import balancing as balancing
 from .design import linkage as linkage

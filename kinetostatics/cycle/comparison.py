@@ -11,7 +11,7 @@ from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
-from .kinks import ANGLE_TOLERANCE
+from .kinks import ANGLE_TOLERANCE, with_resolution
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .rounding import MAX_LISTED, BoundedExtremes, without_rounding
@@ -125,7 +125,8 @@ class Comparison:
     def _as_frame(self, rows):
         import pandas as pd
 
-        return pd.DataFrame(list(rows), columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
+        columns = ["quantity", "unit", *self.names, "ratio"]
+        return with_resolution(pd.DataFrame(list(rows), columns=columns).set_index("quantity"), *self._both)
 
     @cached_property
     def rows(self):

@@ -15,6 +15,7 @@ from ..mechanics.quantities import Quantity, components, largest_term, of_scene,
 from ..numbers import checks
 from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
+from .kinks import resolution_note, with_resolution
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turn import MAX_WIDTH, require_single
 from .turning_points import extrema_of, paths, turning_points
@@ -56,6 +57,8 @@ class Extremes:
         Crank angles around which no value has a correct digit, rad.
     solution : Solution or None
         None for a function of the user's.
+    note : str
+        Resolution of load functions without `kinks`; empty where none acts on the quantity.
 
     Examples
     --------
@@ -74,6 +77,7 @@ class Extremes:
     constant: float = np.nan
     left_out: np.ndarray = field(default_factory=lambda: np.empty(0), repr=False)
     solution: Any = field(default=None, repr=False)
+    note: str = ""
 
     @cached_property
     def error_bound(self):
@@ -114,7 +118,7 @@ def extremes(solution, quantity):
 
     The turn is split at the kinks of loads, friction and laws of cams, and the quantity is a Chebyshev series on each
     piece, halved until the series is exact to rounding; the zeros of its slope are evaluated by the mechanism itself.
-    Load functions that declare no kinks are evaluated every twentieth of a degree at first, a `quantity` that is a
+    Load functions that declare no kinks are sampled at the `resolution` of the solution first, a `quantity` that is a
     function every quarter of a degree. At a jump the extrema are the values on its two sides.
 
     Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
@@ -146,6 +150,8 @@ def extremes(solution, quantity):
     ConditionWarning
         Values around some crank angles have no correct digit, or the quantity grows without bound there; or friction
         jams there.
+    HintWarning
+        A load function without `kinks` changes between its samples (`Scene.check_resolution`).
 
     Examples
     --------
@@ -193,13 +199,14 @@ def extrema(solution, quantity):
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
+    note = resolution_note(solution, quantity)
     if callable(quantity):
-        return _extrema(solution, turn, quantity)
+        return replace(_extrema(solution, turn, quantity), note=note)
     if quantity not in turn.extrema:
         turn.extrema[quantity] = replace(_extrema(solution, turn, quantity), solution=None)
     found = turn.extrema[quantity]
     arrays = {name: getattr(found, name).copy() for name in ("angle", "value", "maximum", "left_out")}
-    return replace(found, solution=solution, **arrays)
+    return replace(found, solution=solution, note=note, **arrays)
 
 
 def largest_of(found):
@@ -342,14 +349,15 @@ def extremes_frame(solution):
     """Smallest and largest true extremum of every quantity over the period, with its crank angle, a pandas DataFrame.
 
     Values within their proven rounding error, or small beside the largest term of their kind, are 0; so are angles
-    within `PLACED` of 0.
+    within `PLACED` of 0. ``attrs["resolution"]`` tells the resolution of load functions without `kinks`, if there are
+    any.
 
     Warns
     -----
     ConditionWarning
         Once for all quantities: values around some crank angles have no correct digit, or grow without bound there.
     """
-    return frames(extremes_by_name(solution))[0]
+    return with_resolution(frames(extremes_by_name(solution))[0], solution)
 
 
 def frames(rows):

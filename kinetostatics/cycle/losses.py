@@ -23,10 +23,11 @@ import numpy as np
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics.energy_contact import work_of
-from ..mechanics.load_values import title_of
+from ..mechanics.load_values import numbered_titles
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number_or_zero
 from .extremes import extrema, largest_of
+from .kinks import resolution_note, with_resolution
 from .means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from .rounding import PLACED, zeroed
 
@@ -123,7 +124,8 @@ class Losses:
         with np.errstate(invalid="ignore"):
             share = 100.0 * mean / self.total
         columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": degrees}
-        return pd.DataFrame(columns | {"per turn [J]": mean * self.turn_time}, pd.Index(names, name="lost at"))
+        columns |= {"per turn [J]": mean * self.turn_time}
+        return with_resolution(pd.DataFrame(columns, pd.Index(names, name="lost at")), self.solution)
 
     def power(self, at):
         """Lost by friction and dampers at the crank angles of a solution, W."""
@@ -138,7 +140,7 @@ class Losses:
         )
 
     def __repr__(self):
-        return f"<Losses: {self}>"
+        return f"<Losses: {'; '.join(filter(None, [str(self), resolution_note(self.solution)]))}>"
 
 
 def lose(*solutions):
@@ -172,12 +174,8 @@ def losses(solution) -> Losses:
     at = turn.at.at(turn.angle[turn.usable])
     if not np.all(np.asarray(at.crank_speed)):
         raise ParameterError("losses: the crank stands still, so no power flows; give a crank_speed")
-    items: dict[str, Any] = {}  # by title; loads of one title get numbers
-    for item in solution.loads:
-        if not hasattr(item, "potential"):
-            title = title_of(item)
-            count = sum(name.partition(" #")[0] == title for name in items)
-            items[f"{title} #{count + 1}" if count else title] = item
+    own = [item for item in solution.loads if not hasattr(item, "potential")]
+    items = dict(zip(numbered_titles(own), own, strict=True))
     dampers = {name: item for name, item in items.items() if getattr(item, "DISSIPATES", False)}
     loads = {name: item for name, item in items.items() if name not in dampers}
     lost: dict[str, Any] = {joint: methodcaller("friction_loss_at", joint) for joint in solution.friction}

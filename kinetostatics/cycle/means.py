@@ -30,8 +30,8 @@ def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the period of the solution, N m.
 
     By Chebyshev series between changes of sign. Pieces are halved until the series are exact to rounding, which closes
-    in on jumps and kinks. Load functions that declare no kinks are looked at every twentieth of a degree; a narrower
-    pulse may be missed.
+    in on jumps and kinks. Load functions that declare no kinks are sampled at the `resolution` of the solution; a
+    narrower pulse may be missed.
 
     Raises
     ------

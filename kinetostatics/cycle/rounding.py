@@ -113,7 +113,7 @@ def extremes_text(extremes):
         unit, gaps = f" {own}" if own != "1" else "", gaps and f"; it {gaps}"
     if not len(extremes):
         same = "no value" if np.isnan(extremes.constant) else f"{number(extremes.constant)}{unit} all over the period"
-        return f"no extremes of {name}: {same}{gaps}"
+        return "\n".join(filter(None, [f"no extremes of {name}: {same}{gaps}", extremes.note]))
     known = zip(np.degrees(extremes.angle), values, errors, strict=True)
     rows = [f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known]
     lines = [f"{len(extremes)} extremes of {name}{gaps}", *rows]
@@ -121,7 +121,7 @@ def extremes_text(extremes):
         ends = sorted({int(np.argmin(extremes.value)), int(np.argmax(extremes.value))})
         more = f"the smallest and the largest; .angle and .value have {len(rows) - len(ends)} more between"
         lines = [*lines[:1], *(rows[place] for place in ends), more]
-    return "\n".join(lines)
+    return "\n".join(filter(None, [*lines, extremes.note]))
 
 
 def zeroed(values, floor):

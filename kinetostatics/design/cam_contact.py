@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import resolution_note
 from ..cycle.turn import require_single
 from ..errors import ParameterError
 from ..machine.cams import roller
@@ -260,7 +261,7 @@ class Contact:
         ]
         if self.force_error is not None:
             lines.append(f"  uncertain        forces by {self.force_error:.2g} of the largest")
-        return "\n".join(lines) + ">"
+        return "\n  ".join(filter(None, ["\n".join(lines), resolution_note(self.solution)])) + ">"
 
     @property
     def force_error(self):

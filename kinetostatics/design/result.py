@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import with_resolution
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
@@ -97,7 +98,8 @@ class Found:
         Warns
         -----
         HintWarning
-            The cam cuts into the shaft, if the shaft's radius is known.
+            The cam cuts into the shaft, if the shaft's radius is known; or load functions without `kinks` change
+            between their samples.
         """
         import pandas as pd
 
@@ -107,6 +109,8 @@ class Found:
             hint = shaft_hint(nearest, mechanism.rollers.get("A"), self.shaft_radius)
             if hint:
                 warnings.warn(HintWarning(mechanism.name, hint), stacklevel=2)
+        for text in self.scene.check_resolution().hints:
+            warnings.warn(HintWarning(mechanism.name, text), stacklevel=2)
         limits: dict[str, list[Constraint]] = {}
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
@@ -128,7 +132,7 @@ class Found:
                 "binds": any(str(limit) in self.active for limit in own),
                 "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
             }
-        return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
+        return with_resolution(pd.DataFrame.from_dict(rows, orient="index").rename_axis("output"), self.scene)
 
     def numbers(self):
         """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import QuantityError
 from ..machine.friction import NO_FRICTION
-from ..mechanics.load_values import title_of
+from ..mechanics.load_values import numbered_titles
 from ..numbers import checks
 from ..numbers.formatting import number
 from ..numbers.parameter_tree import replace_unchecked
@@ -120,9 +120,7 @@ def energy_flow(run) -> EnergyFlow:
         parts.append(Part(ROTOR, LOSS, run.rotor_loss_per_turn))
     else:
         parts = [Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)]
-    titles = [title_of(item) for item in run.scene.loads]
-    for place, (title, item) in enumerate(zip(titles, run.scene.loads, strict=True), 1):
-        name = f"{title} {titles[:place].count(title)}" if titles.count(title) > 1 else title
+    for name, item in zip(numbered_titles(run.scene.loads), run.scene.loads, strict=True):
         torque = replace_unchecked(moving, loads=(item,), friction=NO_FRICTION).solve(angle).load_torque
         torque = np.broadcast_to(torque, angle.shape).reshape(shape)
         energy = zero_if_rounding(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))

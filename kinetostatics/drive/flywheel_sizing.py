@@ -6,9 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from ..cycle.kinks import resolution_note
 from ..numbers import checks
 from .one_dof import DrivenMachine
-from .resolution import resolved
+from .resolution import resolve_and_hint
 from .running import Running, find_flywheel, parse_fluctuation
 from .steady_running import steady
 
@@ -28,6 +29,8 @@ class Flywheel:
         Coefficient of fluctuation reached.
     running : Running or None
         Periodic running with it, where a motor is given.
+    note : str
+        Resolution of load functions without `kinks`; empty where there are none.
 
     Examples
     --------
@@ -42,6 +45,7 @@ class Flywheel:
     energy: float
     fluctuation: float
     running: Running | None = field(default=None, repr=False)
+    note: str = ""
 
 
 def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
@@ -87,15 +91,17 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
         unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
         inertia, running = find_flywheel(wanted, partial(steady, scene, motor, engine=engine), unit)
         low, high = running.speed_range
-        return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)
+        return Flywheel(
+            inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running, resolution_note(scene)
+        )
     speed = getattr(scene, "crank_speed", 1.0)
     speed, wrong = checks.single_number("crank_speed of the scene", speed, "rad/s", unequal=0.0)
     checks.require("flywheel", wrong)
     driven = DrivenMachine("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
-    pieces, _ = resolved(driven, speed)
+    pieces, _ = resolve_and_hint(driven, speed)
     speeds = np.full(pieces.angle.shape, speed)
     state = driven.at_acceleration(pieces.angle, speeds if driven.by_speed else None, 0.0)
     spare = pieces.total(state.torque) / driven.period - state.torque
     gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
     energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
-    return Flywheel(energy / (wanted * speed * speed), energy, wanted)
+    return Flywheel(energy / (wanted * speed * speed), energy, wanted, note=resolution_note(scene))

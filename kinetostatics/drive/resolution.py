@@ -5,12 +5,15 @@ repeat until they stop moving. An error d of an edge changes the result by about
 """
 
 import math
+import warnings
 
 import numpy as np
 
+from ..cycle.kinks import check_resolution, samples_of_functions, undeclared_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
-from ..errors import DriveError
+from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
+from ..numbers.parameter_tree import replace_unchecked
 
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
@@ -28,15 +31,28 @@ MIN_INERTIA_RATIO = 1e-10
 NO_ANGLES = np.empty(0)
 
 
-def plain_pieces(driven):
-    """Pieces of the period between the kinks of loads."""
-    edges = edges_between(np.concatenate([[0.0], driven.kinks, [driven.period]]), MAX_WIDTH)
+def plain_pieces(driven, speed):
+    """Pieces of the period between the kinks of loads at a speed."""
+    driven.locate_kinks(speed)
+    # a load function that depends on the speed may jump elsewhere at another one
+    moves = driven.loads_by_speed and undeclared_functions(driven.scene.loads)
+    edges = np.concatenate([[0.0], driven.kinks, [driven.period]])
+    edges = edges_between(edges, 4.0 * driven.scene.resolution if moves else MAX_WIDTH)
     return Pieces(edges, point_count(edges))
+
+
+def resolve_and_hint(driven, speed):
+    """`resolved`, with a hint at load functions without `kinks` that change between their samples."""
+    found = resolved(driven, speed)
+    running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
+    for text in check_resolution(running, samples_of_functions(running), running.resolution).hints:
+        warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
+    return found
 
 
 def resolved(driven, speed):
     """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
-    pieces, kinks = plain_pieces(driven), NO_ANGLES
+    pieces, kinks = plain_pieces(driven, speed), NO_ANGLES
     for _ in range(MAX_ROUNDS):
         rows = driven.kink_rows(pieces.angle, np.full(pieces.angle.shape, speed), np.zeros(pieces.angle.shape))
         split = split_at_kinks(driven, pieces, rows, kinks)

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..cycle.kinks import resolution_note
 from ..cycle.piecewise import Pieces
 from ..errors import DriveError
 from ..machine.loads import TURN
@@ -152,13 +153,13 @@ class Running:
     def __repr__(self):
         lines = [
             f"<Running: {self.scene.mechanism.name}, period {self.turns} turn{'s' * (self.turns > 1)}",
-            f"  mean speed      {self.mean_speed:.9g} rad/s",
-            f"  fluctuation     {self.fluctuation:.9g} ({self.speed_range[0]:.9g} to {self.speed_range[1]:.9g} rad/s)",
-            f"  energy a turn   {self.energy_per_turn:.9g} J",
-            f"  motor power     {self.mean_power:.9g} W mean, {self.rms_power:.9g} W rms, "
-            f"{self.peak_power:.9g} W peak>",
+            f"mean speed      {self.mean_speed:.9g} rad/s",
+            f"fluctuation     {self.fluctuation:.9g} ({self.speed_range[0]:.9g} to {self.speed_range[1]:.9g} rad/s)",
+            f"energy a turn   {self.energy_per_turn:.9g} J",
+            f"motor power     {self.mean_power:.9g} W mean, {self.rms_power:.9g} W rms, {self.peak_power:.9g} W peak",
+            *filter(None, [resolution_note(self.scene)]),
         ]
-        return "\n".join(lines)
+        return "\n  ".join(lines) + ">"
 
     # the period
 

@@ -19,7 +19,7 @@ from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
 from .energy_equation import MAX_GROWTH_EXPONENT, linearise, resolve_energy, solve_energy
 from .one_dof import DrivenMachine
-from .resolution import require_inertia, resolved, split_at_kinks
+from .resolution import require_inertia, resolve_and_hint, split_at_kinks
 from .running import Running
 from .stick_slip import March
 
@@ -261,7 +261,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
 def _run_under_motor(driven, scene):
     """Pieces, and energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
-    pieces, kinks = resolved(driven, start)
+    pieces, kinks = resolve_and_hint(driven, start)
     require_inertia(driven, pieces)
 
     def near(pieces, guess, _=None):
@@ -281,7 +281,7 @@ def _run_at_mean_speed(driven, scene):
             "give a motor"
         )
     speed = abs(scene.crank_speed)
-    pieces, kinks = resolved(driven, driven.direction * speed)
+    pieces, kinks = resolve_and_hint(driven, driven.direction * speed)
     require_inertia(driven, pieces)
     for _ in range(MAX_HALVINGS):
         energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)

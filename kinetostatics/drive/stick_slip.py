@@ -272,8 +272,9 @@ class March:
     def _pieces(self, machine):
         """Pieces of the period, kinks of friction among their edges, and a function that guesses the energy."""
         if machine.direction not in self.known:
-            found = self._attempt(resolved, machine, machine.direction * self.fastest)
-            self.known[machine.direction] = *(found or (plain_pieces(machine), np.empty(0))), []
+            speed = machine.direction * self.fastest
+            found = self._attempt(resolved, machine, speed)
+            self.known[machine.direction] = *(found or (plain_pieces(machine, speed), np.empty(0))), []
         return self.known[machine.direction]
 
     def _keep(self, machine, pieces, kinks, series):

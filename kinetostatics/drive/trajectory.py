@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import kinks_and_jumps
+from ..cycle.kinks import kinks_and_jumps, resolution_note
 from ..machine.friction import NO_FRICTION
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
@@ -94,12 +94,12 @@ class Trajectory:
     _ends: np.ndarray = field(repr=False)
 
     def __repr__(self):
-        last = self.events[-1]
+        last, note = self.events[-1], resolution_note(self.scene)
         turns = (self.crank_angle[-1] - self.crank_angle[0]) / TURN
         return (
             f"<Trajectory: {self.scene.mechanism.name}, {self.time[-1]:.9g} s, {turns:.6g} turns, {last.name} at "
             f"{math.degrees(last.crank_angle):.6g} deg with {self.speed[-1]:.9g} rad/s, "
-            f"energy drift {self.energy_drift:.2g} J>"
+            f"energy drift {self.energy_drift:.2g} J{note and '; '}{note}>"
         )
 
     def at(self, time):
@@ -160,6 +160,7 @@ class Trajectory:
     def _kink_times(self):
         """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
         free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
+        free = replace_unchecked(free, silent=True)
         kinks, angle = kinks_and_jumps(free, 0)[0], self._dense(self._ends)[0]
         low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
         turns = np.arange(np.floor(low.min() / free.period), np.floor(high.max() / free.period) + 1.0)

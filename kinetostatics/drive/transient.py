@@ -157,6 +157,8 @@ def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine
             "so there is no acceleration there; give a flywheel, or the crank its inertia",
             crank_angle=angle,
         )
+    for hint in driven.scene.check_resolution().hints:
+        warnings.warn(HintWarning(owner, hint), stacklevel=3)
     return driven, inertia, angle, speed
 
 

@@ -190,7 +190,8 @@ class Program:
         angle = numba_backend.angle_rows(angle, shape_of_rows)
         parameters = numba_backend.parameter_table(_plain_numbers(numbers) if len(shape) < 2 else numbers, shape[:-1])
         tables = numba_backend.row_table(rows, shape_of_rows)
-        parameters, tables = (array.astype(angle.dtype, copy=False) for array in (parameters, tables))
+        if angle.dtype != float:
+            parameters, tables = (array.astype(angle.dtype) for array in (parameters, tables))
         results = np.empty((len(parameters), len(self.outputs), angle.shape[1]), angle.dtype)
         sine, cosine = sines(angle)
         numba_backend.run_loop(loop or self.loop, angle, sine, cosine, parameters, tables, results)

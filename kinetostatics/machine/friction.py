@@ -228,7 +228,7 @@ class Frictions(Mapping, Batched):
     @property
     def acting(self):
         """Friction by joint, without zero coefficients."""
-        return {name: friction for name, friction in self.items() if present(friction.mu) is not None}
+        return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
 
     @property
     def senses(self):

@@ -118,10 +118,11 @@ def _table(name, doc):
     """Cached property: a table of all parts, or all entries of one, from the crank outwards."""
 
     def collect(mechanism):
-        tables = [getattr(part, name) for part in mechanism.parts]
-        if isinstance(tables[0], tuple):
-            return sum(tables, ())
-        return {key: item for table in tables for key, item in table.items()}
+        found = getattr(mechanism.crank, name)
+        for group in mechanism.groups:
+            if more := getattr(group, name):
+                found = found | more if isinstance(more, dict) else found + more
+        return found
 
     found = cached_property(collect)
     found.__doc__ = doc

@@ -120,6 +120,13 @@ def title_of(item):
     return item.title if isinstance(item, Load) else f"{type(item).__name__} on {item.on!r}"
 
 
+def numbered_titles(loads):
+    """Title of each load; those of one title are numbered from the second on: "Torque on 'crank' #2"."""
+    titles = [title_of(item) for item in loads]
+    numbers = [titles[: place + 1].count(title) for place, title in enumerate(titles)]
+    return [f"{title} #{number}" if number > 1 else title for title, number in zip(titles, numbers, strict=True)]
+
+
 def _checked(item, found, motion):
     if isinstance(found, np.ndarray) and found.dtype == object:
         return found

@@ -226,9 +226,10 @@ def _flatten_tabulated(item, leaves):
 def _flatten_tuple(item, leaves):
     found: list[Any] = [tuple]
     for part in item:
-        if type(part) is float and part != 0.0:  # most are
-            leaves.numbers.append(part)
-            found.append(NUMBER)
+        if type(part) is float:  # most are
+            if part:
+                leaves.numbers.append(part)
+            found.append(NUMBER if part else 0.0)
         else:
             found.append(_FLATTENERS[type(part)](part, leaves))
     return tuple(found)
@@ -273,31 +274,42 @@ _FLATTENERS |= {np.ndarray: _flatten_array, KeptZero: _flatten_kept_zero, Functi
 _CONSTANT_TYPES = frozenset((bool, int, float, str, type(None)))
 
 
+_STRUCTURAL_SOURCE = """
+    field_{name} = item.{name}
+    if type(field_{name}) not in CONSTANT_TYPES:
+        field_{name} = by_content(field_{name}, leaves)"""
+_NUMERIC_SOURCE = """
+    field_{name} = item.{name}
+    if type(field_{name}) is float:
+        if field_{name}:
+            append(field_{name})
+            field_{name} = NUMBER
+        else:
+            field_{name} = 0.0
+    elif type(field_{name}) is ndarray:
+        field_{name} = {of_array}(field_{name}, leaves)
+    elif field_{name} is not None:
+        field_{name} = by_type[type(field_{name})](field_{name}, leaves)"""
+
+
 def _dataclass_flattener(kind):
-    """Function that flattens items of a dataclass; it runs for each part of each scene solved, mostly on floats."""
-    over_angles = getattr(kind, "OVER_ANGLES", ())
-    plan = [
-        (name, structural, _flatten_array if name in over_angles else _flatten_constants)
-        for name, structural in field_kinds(kind)
-    ]
+    """Function that flattens items of a dataclass; it runs for each part of each scene that is solved.
 
-    def flattened(item, leaves):
-        found = [kind]
-        for name, structural, of_array in plan:
-            value = getattr(item, name)
-            part = type(value)
-            if part is float and not structural:
-                if value != 0.0:
-                    leaves.numbers.append(value)
-                    value = NUMBER
-                else:
-                    value = 0.0
-            elif not structural or part not in _CONSTANT_TYPES:
-                flattener = _flatten_by_content if structural else of_array if part is np.ndarray else _FLATTENERS[part]
-                value = flattener(value, leaves)
-            found.append(value)
-        return tuple(found)
-
+    Its source names the fields one after another: Python 3.11 finds named attributes at a known place, while a loop
+    with `getattr` looks each up again, which made a scene's flattening 1.6 times as long.
+    """
+    over_angles, source = (
+        getattr(kind, "OVER_ANGLES", ()),
+        "def flattened(item, leaves):\n    append = leaves.numbers.append",
+    )
+    for name, structural in field_kinds(kind):
+        of_array = "of_table" if name in over_angles else "of_constants"
+        source += (_STRUCTURAL_SOURCE if structural else _NUMERIC_SOURCE).format(name=name, of_array=of_array)
+    source += f"\n    return (kind, {' '.join(f'field_{field.name},' for field in fields(kind))})"
+    scope = {"kind": kind, "NUMBER": NUMBER, "CONSTANT_TYPES": _CONSTANT_TYPES, "by_type": _FLATTENERS}
+    scope |= {"by_content": _flatten_by_content, "of_table": _flatten_array, "of_constants": _flatten_constants}
+    exec(source, scope | {"ndarray": np.ndarray}, scope)
+    flattened: Any = scope["flattened"]
     return flattened if kind.__module__.partition(".")[0] == LIBRARY else _with_class_key(kind, flattened)
 
 

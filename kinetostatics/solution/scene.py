@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import FUNCTION_STEP, check_resolution, function_step, samples_of_functions
 from ..engines.engines import COMPILED, FASTEST, is_plain
 from ..engines.numba_backend import numba_available, require_numba
 from ..engines.program import program_of
@@ -16,6 +17,7 @@ from ..machine import plausibility
 from ..machine.loads import KINDS, MAX_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.load_values import require_pure
 from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.arithmetic import concrete_array
@@ -34,6 +36,8 @@ from .parameters import (
 from .solution import Solution
 
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
+PARTS = (*SceneParts._fields, "resolution")
+"""Fields of a scene that its solutions share."""
 MIN_VALUES_COMPILED = 1_000_000
 """Crank angles times designs from which a compiled loop is worth its preparation."""
 
@@ -54,6 +58,8 @@ class Scene(Parameters):
         By joint, as for `solve`.
     sense : +1, -1 or array, optional
         Which way a crank at rest is about to turn, as for `solve`.
+    resolution : float, optional
+        Step of crank angles, rad, at which load functions without `kinks` are sampled, as for `solve`.
 
     Raises
     ------
@@ -77,6 +83,7 @@ class Scene(Parameters):
     loads: Any = ()
     friction: Any = None
     sense: Any = field(default=None, kw_only=True)
+    resolution: float = field(default=FUNCTION_STEP, kw_only=True, metadata={"structural": True})
 
     def __post_init__(self):
         self._admit("scene")
@@ -88,6 +95,8 @@ class Scene(Parameters):
         DRIVE.keep(values, owner)
         if self.sense is not None:
             values.update(sense=_sense(owner, self.sense, values["crank_speed"]))
+        if self.resolution is not FUNCTION_STEP:
+            values.update(resolution=function_step(owner, "resolution", self.resolution))
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
         if self.friction is not None and self.friction is not rubbing.NO_FRICTION:
@@ -111,7 +120,7 @@ class Scene(Parameters):
         100.0
         """
         checks.require("scene", checks.solution("solution", solution))
-        return cls(**{name: getattr(solution, name) for name in SceneParts._fields})
+        return cls(**{name: getattr(solution, name) for name in PARTS})
 
     @property
     def period(self):
@@ -163,12 +172,47 @@ class Scene(Parameters):
 
     def dynamics(self, angle):
         """Motion and forces at crank angles as engines take them, without any check."""
-        return Dynamics(crank_angle=angle, **self._parts)
+        return Dynamics(crank_angle=angle, **{name: getattr(self, name) for name in SceneParts._fields})
 
     @property
     def _parts(self):
         """All fields by name."""
-        return {name: getattr(self, name) for name in SceneParts._fields}
+        return {name: getattr(self, name) for name in PARTS}
+
+    def check_resolution(self, step=None):
+        """Look for features of load functions without `kinks` that the resolution misses.
+
+        Every such function is sampled at the crank angles of `step`, and compared with what its samples at the
+        resolution of the scene let expect. Differences below 1e-5 of its largest value do not count.
+
+        Parameters
+        ----------
+        step : float, optional
+            rad, at most the resolution: ``np.radians(0.005)``. By default the resolution, midway between the samples.
+
+        Returns
+        -------
+        ResolutionCheck
+            Empty if nothing is missed.
+
+        Raises
+        ------
+        ParameterError
+            The step is larger than the resolution, or less than 1e-5 rad; or a function is not pure.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kinetostatics as ks
+        >>> work = ks.ProcessForce(lambda q: -200.0 * (q.slider_velocity > 0.0))
+        >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=work)
+        >>> pump.check_resolution(np.radians(0.005))
+        <ResolutionCheck every 0.005 deg: no features narrower than 0.05 deg>
+        """
+        step = function_step("check_resolution", "step", self.resolution if step is None else step, self.resolution)
+        solution = self.unsolved(np.zeros(1))
+        require_pure(solution)
+        return check_resolution(solution, samples_of_functions(solution), step)
 
     def turn(self, angles):
         """Even crank angles over one period from 0, end excluded; anything but a whole number is returned as it is."""
@@ -195,6 +239,7 @@ def solve(
     loads=(),
     friction=None,
     sense=None,
+    resolution=FUNCTION_STEP,
     on_gap="raise",
     engine=None,
 ):
@@ -220,6 +265,10 @@ def solve(
     sense : +1, -1 or array, optional
         Which way a crank at rest is about to turn, counter-clockwise positive: friction, and tables with values for the
         stroke back, depend on it. Unless given, the sign of the crank speed, at rest of the crank acceleration.
+    resolution : float
+        Step of crank angles, rad, at which extremes, means, sweeps, searches and drives sample load functions that
+        declare no `kinks`, from 1e-5 rad to 0.25 deg; by default 0.05 deg. They close in on every jump between two
+        samples, and find every pulse that is wider than the step.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (as needed under ``jax.jit``). If one of several groups is open, NaN
@@ -279,6 +328,7 @@ def solve(
         loads=loads,
         friction=friction,
         sense=sense,
+        resolution=resolution,
     )
     scene._admit("solve")
     return _start(scene, crank_angle, on_gap, engine).check(on_gap)

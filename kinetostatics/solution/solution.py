@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cycle.kinks import FUNCTION_STEP
 from ..cycle.turn import Turn
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
@@ -76,6 +77,8 @@ class Solution(Certainty, Motion):
     friction : mapping of joint to friction
     engine, silent
         Engine that computes it; whether it warns no more.
+    resolution : float
+        Step of crank angles at which load functions without `kinks` are sampled, rad.
     shape, period, crank_sense, closed, closure
     reactions, scalars
     slider_position, slider_velocity, slider_acceleration, pressure_angle
@@ -130,6 +133,7 @@ class Solution(Certainty, Motion):
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
+    resolution: float = FUNCTION_STEP
 
     def __repr__(self):
         return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads_text(self)}>"

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from ..cycle.extremes import extrema
-from ..cycle.kinks import LOAD_FREE_KINDS
+from ..cycle.kinks import LOAD_FREE_KINDS, with_resolution
 from ..cycle.rounding import AT_JUMP, BoundedExtremes
 from ..cycle.turn import NEAR
 from ..errors import ConditionWarning, ParameterError
@@ -110,7 +110,7 @@ def largest_with_uncertainty(solution, inputs):
         doubts += [] if doubt is None else [doubt]
     if doubts:
         warnings.warn(f"{solution.mechanism.name}: {doubt_text(doubts)}", ConditionWarning, stacklevel=2)
-    return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
+    return with_resolution(pd.DataFrame(rows, columns=COLUMNS).set_index("quantity"), solution)
 
 
 def _changed(item, **fields):

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from ..cycle.compiled_reductions import CompiledReductions
-from ..cycle.kinks import has_kinks
+from ..cycle.kinks import has_kinks, resolution_note
 from ..cycle.peaks import lowest
 from ..cycle.reductions import Output
 from ..cycle.rounding import FLOOR
@@ -155,7 +155,9 @@ class Job:
     kink_tolerance : float
         Change of slope of a table, relative to its largest value, from which on the turn is split there.
     hints : tuple of HintWarning
-        Implausible values of the design of the dry run.
+        Implausible values of the design of the dry run, and load functions that change between their samples.
+    resolution : str
+        Sentence on the resolution of load functions without `kinks`; empty where none acts.
     """
 
     make: Callable[[dict], Any]
@@ -169,6 +171,7 @@ class Job:
     kinked: bool = False
     kink_tolerance: float = KINK_TOLERANCE
     hints: tuple[HintWarning, ...] = ()
+    resolution: str = ""
 
     @property
     def ratios(self):
@@ -225,17 +228,19 @@ def dry_run(job, designs, engines):
                 for name in quantity_names(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
+            missed = scenes[0].check_resolution().hints
         except QuantityError:
             raise
         except Exception:
             continue
         checks.require("sweep", *problems)
-        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in scene_hints(solutions[0]))
+        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in (*scene_hints(solutions[0]), *missed))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine, streams = _engine_of(pairs, engines)
         kinked = any(has_kinks(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
         angles = max(job.angles, (START_ANGLES if kinked else MIN_ANGLES_PER_TURN) * round(scenes[0].period / TURN))
-        return replace(job, engine=engine, outputs=outputs, streams=streams, kinked=kinked, angles=angles, hints=hints)
+        found = {"kinked": kinked, "angles": angles, "hints": hints, "resolution": resolution_note(scenes[0])}
+        return replace(job, engine=engine, outputs=outputs, streams=streams, **found)
     return None
 
 

@@ -285,7 +285,8 @@ def sweep(
     pandas.DataFrame
         The designs with a column for each output, in SI, and a column "failed": the reason if a design has none, else
         empty. Last bits may differ with the chunk: if a design comes near a singular position, its whole chunk is
-        computed by special formulas.
+        computed by special formulas. ``attrs["resolution"]`` tells the resolution of load functions without `kinks`, if
+        there are any.
 
     Raises
     ------
@@ -299,7 +300,8 @@ def sweep(
     Warns
     -----
     HintWarning
-        Implausible numbers of the first valid design, before the sweep begins.
+        Implausible numbers of the first valid design, before the sweep begins; or its load functions without `kinks`
+        change between their samples.
 
     Examples
     --------
@@ -336,7 +338,10 @@ def sweep(
             for number, rows in found:
                 parts.keep(number, rows)
                 bar.update(len(rows))
-    return parts.table()
+    table = parts.table()
+    if job.resolution:
+        table.attrs["resolution"] = job.resolution
+    return table
 
 
 def _dry_run(job, designs, engines, pool):

@@ -380,6 +380,10 @@ def panels(count, columns, width, height, more=0.0):
     return figure, list(grid.flat[:count])
 
 
+DPI = 150
+"""Dots per inch of figures in files."""
+
+
 def save_figure(figure, path, salt=None, **options):
     """Save a figure in the format of its file's ending, the same bytes each time; returns the path."""
     import matplotlib.pyplot as plt
@@ -387,7 +391,11 @@ def save_figure(figure, path, salt=None, **options):
     kind = Path(path).suffix[1:] or "png"
     with plt.rc_context({"svg.hashsalt": salt}), write_atomically(path) as temporary:
         metadata = {"Date": None} if kind == "svg" else {}
-        figure.savefig(temporary, format=kind, dpi=150, metadata=metadata, **options)
+        if engine := figure.get_layout_engine():  # once; `savefig` would draw the figure for it, and again
+            figure.set_dpi(DPI)
+            engine.execute(figure)
+            figure.set_layout_engine("none")
+        figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata, **options)
     plt.close(figure)
     return Path(path)
 

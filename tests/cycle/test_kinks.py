@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.cycle.kinks import FUNCTION_STEP, rough_places
+from kinetostatics.cycle.kinks import FUNCTION_STEP, FunctionSamples
 
 
 def places(function):
     load = ks.ProcessForce(function)
     solution = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=5.0, loads=load)
-    return rough_places(load, solution)
+    return FunctionSamples.of(load, solution).rough_places
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_designs_have_their_own_places():
     mass = np.array([[1.0], [2.0]])
     load = ks.ProcessForce(lambda q: np.where(q.crank_angle > mass, 1.0, 0.0))
     solution = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(mass)), 0.0, crank_speed=5.0, loads=load)
-    found = rough_places(load, solution)
+    found = FunctionSamples.of(load, solution).rough_places
     for row, jump in zip(found, mass.ravel(), strict=True):
         assert np.nanmin(np.abs(row - jump)) <= 4.0 * FUNCTION_STEP
 

@@ -244,6 +244,7 @@ def test_synonyms_are_of_words_that_the_library_has():
         ("max", REDUCTIONS, "largest"),
         ("argmax", REDUCTIONS, "largest_at"),
         ("larges", REDUCTIONS, "largest"),
+        ("proces force", ("force", "process force"), "process force"),
         ("zzz", REDUCTIONS, None),
         (3, REDUCTIONS, None),
         ("", REDUCTIONS, None),

@@ -24,7 +24,7 @@ A load or its value (a `Table`, a function of the motion) may declare kinks and 
     bends(motion, straight),    the same for each of many designs, without kinks smaller than `straight` times its
     is_bent(straight)           largest value, as `Table` does
 
-Values without declared kinks are sampled; a peak narrower than two degrees may pass unseen.
+Functions without declared kinks are sampled at the resolution of the scene; narrower features may be missed.
 """
 
 from contextlib import suppress

@@ -56,6 +56,8 @@ _WORDS_BY_SYNONYM: dict[str, list[str]] = {}
 for _word, _others in SYNONYMS.items():
     for _other in _others:
         _WORDS_BY_SYNONYM.setdefault(_other, []).append(_word)
+MIN_SIMILARITY_OF_ALL = 0.9
+"""Similarity from which a text of several words is that of an allowed word rather than its last word alone."""
 _UNIT = re.compile(r"\s*(?:\([^()]*\)|\[[^\[\]]*\])\s*$")
 """A unit after a name, as in headings."""
 _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")
@@ -67,11 +69,17 @@ def nearest(value, allowed):
     import difflib
 
     text, allowed = _UNIT.sub("", str(value)[:100]).strip("|"), list(allowed)
-    for spelled in (text, *_synonym_spellings(text.lower()), text.rpartition(" ")[2]):
-        found = next((word for word in allowed if str(word).lower() == spelled.lower()), None)
-        if found is not None:
-            return found
-    return next(iter(difflib.get_close_matches(text, allowed, n=1)), None)
+    by_lower = {str(word).lower(): word for word in reversed(allowed)}
+    for spelled in (text, *_synonym_spellings(text.lower())):
+        if spelled.lower() in by_lower:
+            return by_lower[spelled.lower()]
+    last = by_lower.get(text.rpartition(" ")[2].lower())
+    for cutoff in (MIN_SIMILARITY_OF_ALL, 0.6):
+        if found := difflib.get_close_matches(text, allowed, 1, cutoff):
+            return found[0]
+        if last is not None:
+            return last
+    return None
 
 
 def _synonym_spellings(text):

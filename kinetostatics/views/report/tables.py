@@ -13,6 +13,7 @@ import numpy as np
 from ...casefile.reading import require
 from ...casefile.variant import run_under_motors
 from ...cycle.comparison import Comparison, Row, left_out
+from ...cycle.kinks import resolution_note
 from ...cycle.losses import lose
 from ...cycle.means import mean_absolute_torque
 from ...cycle.rounding import FLOOR, zeroed
@@ -289,7 +290,7 @@ def extremes(subject):
             rows.append(
                 [quantity.label, pretty_unit(quantity.unit), smallest, angle(low_at), largest, angle(high_at), told]
             )
-        tables.append(Table(machine.name, heads, rows, 2))
+        tables.append(Table(machine.name, heads, rows, 2, resolution_note(machine.scene)))
     return tables
 
 

@@ -33,6 +33,18 @@ def test_glance_shows_lost_power():
     assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
 
 
+def test_extremes_state_the_resolution_of_load_functions():
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(2.0))
+    scenes = {
+        name: ks.Scene(machine, 10.0, loads=ks.ProcessForce(value))
+        for name, value in {"known": -50.0, "function": lambda q: -50.0 * np.sign(q.slider_velocity)}.items()
+    }
+    known, function = tables.extremes(subject_of(scenes))
+    assert known.note == ""
+    assert "ProcessForce on 'slider'" in function.note
+    assert "every 0.05 deg" in function.note
+
+
 def test_comparison_of_all_machines_is_one_table():
     (found,) = tables.comparisons(subject("sawframe_2r63"))
     assert found.columns == ["", "unit", "plain", "cam-circle", "cam-cosine", "published"]
