@@ -252,5 +252,7 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     last = stopped if found.end in ("standstill", "stuck") else "end"
     turns = (Event("reversal", *turn) for turn in found.reversals)
     events = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(rows[0, -1]))
-    moving = map(read_only, (time, *rows[:2], accelerations(driven, *rows[[0, 1, 3]])))
-    return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, time)
+    times, angles, speeds, rates = map(read_only, (time, *rows[:2], accelerations(driven, *rows[[0, 1, 3]])))
+    return Trajectory(
+        scene, driven.motor, driven.flywheel, times, angles, speeds, rates, events, driven, found.path, times
+    )
