@@ -96,7 +96,6 @@ class DrivenMachine:
         self._engine, self._compiled = engine, engine == "compiled"
         self.constant_torque = 0.0
         self._cached_state: tuple[Any, State] | None = None
-        self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
         if any("crank_acceleration" in inputs for _, inputs in self._function_loads):
             checks.require(
                 owner,
@@ -141,15 +140,9 @@ class DrivenMachine:
         )
 
     @cached_property
-    def loads_by_sense(self):
-        """Whether the torque of the loads depends on the sense of rotation, or on the speed."""
-        by_function = any("sense" in inputs for _, inputs in self._function_loads)
-        return by_function or self.loads_by_speed or self.program.depends_on("sense")
-
-    @cached_property
     def _function_loads(self):
         """Load functions, each with the inputs of the crank's drive that it reads somewhere in the period."""
-        if not self._has_load_functions:
+        if all(map(has_no_user_code, self.scene.loads)):
             return []
         motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
         functions = [
@@ -231,8 +224,9 @@ class DrivenMachine:
 
     def balance(self, angle, speed):
         """Total inertia, its slope, and motor torque less load torque without friction at one place, as floats."""
-        sense = math.copysign(1.0, speed) if speed else self.direction
-        found = self.program.unlooked(angle, self._drive_values(speed, sense), self._compiled)
+        machine = self.along(math.copysign(1.0, speed)) if speed else self
+        values = {"crank_speed": speed, "sense": machine.direction} if self.loads_by_speed else {}
+        found = machine.program.unlooked(angle, values, self._compiled)
         inertia, slope, load = float(found[INERTIA]), float(found[SLOPE]), float(found[TORQUE])
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
@@ -309,22 +303,13 @@ class DrivenMachine:
             return self._solve_friction(angle, speed, state)[1]
         return self._accelerating_torque(state, speed) / (self.flywheel + state.inertia)
 
-    def _drive_values(self, speed, sense):
-        """Program inputs that differ from the scene's: speeds and senses that the loads depend on."""
-        if self.loads_by_speed:
-            return {"crank_speed": speed, "sense": sense}
-        if self.loads_by_sense and np.any(sense != self.direction):
-            return {"crank_speed": sense, "sense": sense}
-        return {}
-
     def _values(self, angle, speed):
         angle = np.asarray(angle, dtype=float)
-        values = self._drive_values(speed, self.direction)
-        if not values:
+        if not self.loads_by_speed:
             found = self.program.evaluated(angle)
             return tuple(found[name] for name in QUANTITIES)
-        columns = {name: np.broadcast_to(np.asarray(value, dtype=float), angle.shape) for name, value in values.items()}
-        columns = {name: value.reshape(-1, 1) for name, value in columns.items()}
+        given = {"crank_speed": speed, "sense": self.direction}
+        columns = {name: np.broadcast_to(value, angle.shape).reshape(-1, 1) for name, value in given.items()}
         found = self.program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
         return *(part[0] for part in scalars), closure
