@@ -23,6 +23,10 @@ ROUGHNESS = 1e-5
 """Fourth difference, relative to the largest value, of a function that is not smooth: by default of a 64th harmonic."""
 BLOCK_VALUES = 2**20
 """Values of such functions that are computed at a time."""
+SECTION_ANGLES, SECTIONS = 33, 9
+"""Crank angles that section an interval with a jump, and how often they do, to its last digits."""
+JUMP_TOLERANCE = 1e-6
+"""Change of a function in the last section, relative to its largest value, above which it jumps."""
 MAX_SHOWN_FEATURES = 3
 """Missed features of a load in texts."""
 MAX_PERIODS = 6
@@ -222,6 +226,22 @@ class FunctionSamples(NamedTuple):
         runs = np.split(found, np.flatnonzero(np.diff(found) > 1) + 1) if found.size else []
         tops = np.array([run[abs(excess[run]).argmax()] for run in runs], dtype=int)
         return MissedFeatures(title_of(self.item), getattr(self.item, "UNIT", "N"), angle[tops], excess[tops])
+
+
+def undeclared_jumps(function, places):
+    """Crank angles at which a function of the crank angle jumps between neighbouring `rough_places`, (K,), rising."""
+    narrow = np.diff(places) < 1.5 * MAX_FUNCTION_STEP
+    low, high = places[:-1][narrow], places[1:][narrow]
+    if not low.size:
+        return low
+    row = np.arange(low.size)
+    for _ in range(SECTIONS):
+        angle = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, SECTION_ANGLES)
+        value = function(angle)
+        change = abs(np.diff(value))
+        place = change.argmax(axis=1)
+        low, high = angle[row, place], angle[row, place + 1]
+    return np.unique(high[change.max(axis=1) > JUMP_TOLERANCE * abs(value).max()])
 
 
 def _values_of(item, solution, angle):

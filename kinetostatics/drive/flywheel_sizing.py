@@ -9,7 +9,7 @@ import numpy as np
 from ..cycle.load_functions import resolution_note
 from ..numbers import checks
 from .one_dof import DrivenMachine
-from .resolution import resolved
+from .resolution import resolve_and_hint
 from .running import Running, find_flywheel, parse_fluctuation
 from .steady_running import steady
 
@@ -98,7 +98,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     speed, wrong = checks.single_number("crank_speed of the scene", speed, "rad/s", unequal=0.0)
     checks.require("flywheel", wrong)
     driven = DrivenMachine("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
-    pieces, _ = resolved(driven, speed)
+    pieces, _ = resolve_and_hint(driven, speed)
     speeds = np.full(pieces.angle.shape, speed)
     state = driven.at_acceleration(pieces.angle, speeds if driven.by_speed else None, 0.0)
     spare = pieces.total(state.torque) / driven.period - state.torque

@@ -182,6 +182,11 @@ class Motor:
         return -math.inf, math.inf
 
     @property
+    def knots(self):
+        """Speeds of the motor's shaft at which its torque has kinks, rad/s."""
+        return ()
+
+    @property
     def direction(self):
         """+1 if its positive speed turns the crank counter-clockwise, else -1."""
         return math.copysign(1.0, self.transmission)
@@ -280,6 +285,10 @@ class TableMotor(Motor):
     @property
     def limits(self):
         return float(self.speeds[0]), float(self.speeds[-1])
+
+    @property
+    def knots(self):
+        return self.speeds
 
     @property
     def top(self):

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import declared_kinks
-from ..engines.numba_backend import numba_available
+from ..cycle.kinks import kinks_and_jumps
+from ..cycle.load_functions import undeclared_functions, undeclared_jumps
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
@@ -52,8 +52,8 @@ MAX_DOUBLINGS = 50
 """Doublings of the acceleration bracket before friction counts as jamming."""
 BRACKET_TOLERANCE = 1e-16
 """Error of an acceleration relative to its bracket."""
-PREPARED_ANGLES = 180
-"""Crank angles over the period at which `prepare` solves friction."""
+ANGLE_AHEAD = 1e-9
+"""Crank angle, rad, ahead of a crank at rest where the senses of motion are read."""
 BLOCK_SIZE = 4096
 """Crank angles of one call of the friction program."""
 
@@ -70,8 +70,8 @@ class State(NamedTuple):
 class DrivenMachine:
     """A scene as one degree of freedom; `flywheel` is all inertia on the crank besides the links.
 
-    Of the scene's crank speed only the sign counts, and only without a motor. `direction`, +1 or -1, is the sense of
-    rotation; methods take another `sense` because a coasting machine may turn back.
+    The scene's crank speed does not count. `direction`, +1 or -1, is the sense of rotation, that of the motor by
+    default; `along` returns the machine that turns the other way.
     """
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
@@ -85,7 +85,8 @@ class DrivenMachine:
         )
         checks.require(owner, *_load_problems(scene))
         self.motor = motor
-        self.direction = motor.direction if motor is not None else direction or 1.0
+        self.direction = direction or (1.0 if motor is None else motor.direction)
+        self._made = owner, scene, motor, flywheel, engine
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
         self.scene = replace_unchecked(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
@@ -95,9 +96,7 @@ class DrivenMachine:
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         self._engine, self._compiled = engine, engine == "compiled"
         self.constant_torque = 0.0
-        self.last_forces: list[Any] = []
-        self._cached_state: tuple[Any, Any, State] | None = None
-        self._has_load_functions = not all(map(has_no_user_code, self.scene.loads))
+        self._cached_state: tuple[Any, State] | None = None
         if any("crank_acceleration" in inputs for _, inputs in self._function_loads):
             checks.require(
                 owner,
@@ -105,13 +104,24 @@ class DrivenMachine:
                 "depend on angle, position and velocity alone",
             )
         self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
+        self.kinks = np.empty(0)
         if self._slip is not None:
             rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
             friction = replace_unchecked(self.scene.friction, rubs=rubs)
             self._friction_scene = replace_unchecked(self.scene, friction=friction)
-            self._single_by_loop = self._compiled or (engine is None and numba_available())
             self._last_solution: tuple[Any, ...] = (None,)
-            self._last_solution_at_angle: Any = ()
+            self._last_senses: tuple[Any, ...] = (None,)
+            self._last_outputs: dict[str, Any] = {}
+
+    @cached_property
+    def _reversed(self):
+        found = DrivenMachine(*self._made, -self.direction)
+        found._reversed = self
+        return found
+
+    def along(self, sense):
+        """The machine that turns in a sense, +1 or -1."""
+        return self if sense == self.direction else self._reversed
 
     @property
     def by_speed(self):
@@ -131,15 +141,9 @@ class DrivenMachine:
         )
 
     @cached_property
-    def loads_by_sense(self):
-        """Whether the torque of the loads depends on the sense of rotation, or on the speed."""
-        by_function = any("sense" in inputs for _, inputs in self._function_loads)
-        return by_function or self.loads_by_speed or self.program.depends_on("sense")
-
-    @cached_property
     def _function_loads(self):
         """Load functions, each with the inputs of the crank's drive that it reads somewhere in the period."""
-        if not self._has_load_functions:
+        if all(map(has_no_user_code, self.scene.loads)):
             return []
         motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
         functions = [
@@ -148,23 +152,45 @@ class DrivenMachine:
         with np.errstate(all="ignore"):
             return [(item, drive_dependence(item, motion)) for item in functions]
 
-    @cached_property
-    def kinks(self):
-        """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
-        declared, _ = declared_kinks(self.scene.unsolved(np.zeros(1)))
-        return _distinct_angles(np.concatenate([declared, self.jumps]), self.period)
+    def locate_kinks(self, speed):
+        """Find `kinks`, crank angles in (0, period) at which loads have or may have kinks or friction jumps, rad.
+
+        Load functions without kinks are sampled at a crank speed.
+        """
+        scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
+        free = replace_unchecked(scene.unsolved(np.zeros(1)), silent=True)
+        angles = [kinks_and_jumps(free, 0)[0], self.jumps]
+        if undeclared_functions(self.scene.loads):
+
+            def torque(angle):
+                return self.without_friction(angle, np.full(angle.shape, speed)).torque
+
+            angles.append(undeclared_jumps(torque, angles[0]))
+        self.kinks = _distinct_angles(np.concatenate(angles), self.period)
+
+    def _speeds(self, angle):
+        return np.full(angle.shape, self.direction)
 
     @property
     def jumps(self):
         """Crank angles in [0, period) at which friction torque jumps, rad, exact."""
         return np.empty(0) if self._slip is None else self._slip.all_edges
 
-    def at(self, angle, speed=None) -> State:
-        """State at crank angles; `speed` counts where loads or friction depend on it."""
+    def at(self, angle, speed=None, near=None) -> State:
+        """State at crank angles; `speed` counts where loads or friction depend on it.
+
+        `near` are the acceleration and the slope of `motion_with_friction` at nearly this speed: with them friction is
+        linear in the acceleration.
+        """
         state = self.without_friction(angle, speed)
         if self._slip is None:
             return state
-        return state._replace(torque=state.torque + self._solve_friction(angle, speed, state)[0])
+        return state._replace(torque=state.torque + self._solve_friction(angle, speed, state, near)[0])
+
+    @property
+    def motion_with_friction(self):
+        """Acceleration, and slope of friction by it, that friction was last solved for; None without friction."""
+        return None if self._slip is None else self._last_solution[1:]
 
     def at_acceleration(self, angle, speed, acceleration) -> State:
         """State at given crank angles, speeds and accelerations."""
@@ -177,15 +203,15 @@ class DrivenMachine:
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
-    def without_friction(self, angle, speed=None, sense=None) -> State:
+    def without_friction(self, angle, speed=None) -> State:
         """State without friction; the last one is cached where loads do not depend on the speed.
 
         Raises the error of `solve` at these crank angles where the state is not finite.
         """
         cached = self._cached_state
-        if cached and cached[0] is angle and cached[1] is sense and not self.loads_by_speed:
-            return cached[2]
-        state = State(*self._values(angle, speed, sense))
+        if cached and cached[0] is angle and not self.loads_by_speed:
+            return cached[1]
+        state = State(*self._values(angle, speed))
         finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
         if not (finite and state.closure.min(initial=0.0) >= 0.0):
             try:
@@ -194,70 +220,43 @@ class DrivenMachine:
                 raise AssemblyError(error.condition, error.intervals, ": a drive turns the crank all round") from None
         if not finite:
             raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
-        self._cached_state = angle, sense, state
+        self._cached_state = angle, state
         return state
 
-    def _balance_without_friction(self, angle, speed, sense):
-        values = self._drive_values(_clip_at_standstill(speed, sense), sense)
-        found = self.program.unlooked(angle, values, self._compiled)
+    def balance(self, angle, speed):
+        """Total inertia, its slope, and motor torque less load torque without friction at one place, as floats."""
+        machine = self.along(math.copysign(1.0, speed)) if speed else self
+        values = {"crank_speed": speed, "sense": machine.direction} if self.loads_by_speed else {}
+        found = machine.program.unlooked(angle, values, self._compiled)
         inertia, slope, load = float(found[INERTIA]), float(found[SLOPE]), float(found[TORQUE])
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
-    def balance(self, angle, speed, sense=None):
-        """Total inertia, its slope, and motor torque less load torque at one crank angle and speed, as floats."""
-        if self._slip is None:
-            sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
-            return self._balance_without_friction(angle, speed, sense)
-        senses = {name: float(sign) for name, sign in self._slip.at(angle, sense or self.direction).items()}
-        return self.balance_along(angle, speed, senses)[:3]
+    def torque_at(self, angle, speed):
+        """Motor torque less load and friction torque at one crank angle and speed, N m."""
+        angle, speed = np.array([angle]), np.array([speed])
+        return float(self.motor_torque(speed)[0] - self.at(angle, speed).torque[0])
 
-    def senses_ahead(self, angle, sense):
-        """Senses just ahead of a crank angle in [0, period], and the next angle at which one changes."""
-        return ({"sense": sense}, sense * math.inf) if self._slip is None else self._slip.ahead(angle, sense)
-
-    def balance_along(self, angle, speed, senses):
-        """`balance` and the friction torque, with the senses of `senses_ahead`; sets `last_forces` (`kink_forces`)."""
-        inertia, slope, spare = self._balance_without_friction(angle, speed, senses["sense"])
-        if self._slip is None:
-            return inertia, slope, spare, 0.0
-        friction, *self._last_solution_at_angle = self._solve_at_angle(
-            lambda acceleration: self.friction_outputs(angle, speed, acceleration, senses),
-            angle,
-            speed,
-            inertia,
-            spare - 0.5 * speed * speed * slope,
-            *self._last_solution_at_angle,
-        )
-        return inertia, slope, spare - friction, friction
-
-    def inertia_at(self, angle):
-        """Total inertia at one crank angle, kg m2, as a float."""
-        return self._balance_without_friction(angle, self.direction, self.direction)[0]
-
-    def torque_at_rest(self, angle, sense):
-        """Net torque on a crank at rest, about to start in a sense, and the friction torque in it, N m."""
-        spare = self._balance_without_friction(angle, 0.0, sense)[2]
-        if self._slip is None:
-            return spare, 0.0
-        senses, _ = self._slip.ahead(angle % self.period, sense)
-        friction = self.friction_outputs(angle, 0.0, 0.0, senses)[FRICTION]
+    def torque_at_rest(self, angle):
+        """Net torque on a crank at rest, about to start, and the friction torque in it, N m."""
+        angle = np.array([angle])
+        rest = 0.0 * angle
+        spare, friction = float(self.motor_torque(0.0) - self.without_friction(angle, rest).torque[0]), 0.0
+        if self._slip is not None:
+            senses = self._slip.at(angle + self.direction * ANGLE_AHEAD, self.direction)
+            friction = float(self._converged_outputs(angle, rest, rest, senses)[FRICTION][0])
         return spare - friction, friction
 
-    def prepare(self, speed):
-        """Run the friction program for speeds from 0 to `speed`, so that the number of its passes is known."""
-        if self._slip is None:
-            return
-        angle = np.linspace(0.0, self.period, PREPARED_ANGLES, endpoint=False) + 0.5 * self.period / PREPARED_ANGLES
-        for part in (0.0, 0.5, 1.0):
-            self._converged_outputs(angle, np.full(PREPARED_ANGLES, self.direction * part * speed), 0.0)
+    def kink_rows(self, angle, speed, acceleration=None):
+        """Rows over the crank angles, zero where friction or the motor's table has a kink.
 
-    def kink_forces(self, angle, speed, acceleration=None):
-        """Rows over the crank angles, zero where friction has a kink; by default at the acceleration that follows."""
+        By default they are those of the friction last solved, at these angles.
+        """
+        rows = [] if self.motor is None else [self.motor.transmission * speed - knot for knot in self.motor.knots]
         if self._slip is None or not self._friction_pairs:
-            return []
-        if acceleration is None:
-            acceleration = self._solve_friction(angle, speed, self.without_friction(angle, speed))[1]
-        return self._kink_values(self._converged_outputs(angle, speed, acceleration))
+            return rows
+        if acceleration is not None:
+            self._converged_outputs(angle, speed, acceleration)
+        return rows + self._kink_values(self._last_outputs)
 
     def torque_by_speed(self, angle, speed, torque):
         """Derivative by the crank speed of `torque`, the load and friction torque there, N m s.
@@ -278,46 +277,40 @@ class DrivenMachine:
         _, acceleration, by_acceleration = self._last_solution
         changed = self._converged_outputs(angle, speed + step, acceleration)[FRICTION]
         own = own + (changed - torque + state.torque) / step
-        drive = 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
-        rising = (drive - own - speed * state.slope) / (self.flywheel + state.inertia + by_acceleration)
+        rising = (self.motor_slope(speed) - own - speed * state.slope) / (
+            self.flywheel + state.inertia + by_acceleration
+        )
         return own + by_acceleration * rising
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
-        speed = np.full(np.shape(angle), self.direction) if self.loads_by_speed else None
-        return self.flywheel + self.without_friction(angle, speed).inertia
+        return self.flywheel + self.without_friction(angle, self._speeds(angle)).inertia
 
     def motor_torque(self, speed):
         """Torque of the motor on the crank, N m; without motor `constant_torque`."""
         return 0.0 * speed + self.constant_torque if self.motor is None else self.motor.torque_at_crank(speed)
 
+    def motor_slope(self, speed):
+        """Derivative of the motor's torque on the crank by the crank speed, N m s."""
+        return 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
+
     def _accelerating_torque(self, state, speed):
         return self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
 
-    def acceleration_along(self, angle, speed, sense):
-        """Crank acceleration at crank angles, speeds and senses of a motion that may turn back, rad/s2."""
-        state = self.without_friction(angle, speed, sense)
-        rest, inertia = self._accelerating_torque(state, speed), self.flywheel + state.inertia
-        if self._slip is None:
-            return rest / inertia
-        return self._solve_acceleration(angle, speed, self._slip.at(angle, sense), inertia, rest)[1]
+    def acceleration(self, angle, speed):
+        """Crank acceleration at crank angles and speeds, rad/s2."""
+        state = self.without_friction(angle, speed)
+        if self._slip is not None:
+            return self._solve_friction(angle, speed, state)[1]
+        return self._accelerating_torque(state, speed) / (self.flywheel + state.inertia)
 
-    def _drive_values(self, speed, sense):
-        """Program inputs that differ from the scene's: speeds and senses that the loads depend on."""
-        if self.loads_by_speed:
-            return {"crank_speed": speed, "sense": sense}
-        if self.loads_by_sense and np.any(sense != self.direction):
-            return {"crank_speed": sense, "sense": sense}
-        return {}
-
-    def _values(self, angle, speed, sense=None):
+    def _values(self, angle, speed):
         angle = np.asarray(angle, dtype=float)
-        values = self._drive_values(speed, self.direction if sense is None else sense)
-        if not values:
+        if not self.loads_by_speed:
             found = self.program.evaluated(angle)
             return tuple(found[name] for name in QUANTITIES)
-        columns = {name: np.broadcast_to(np.asarray(value, dtype=float), angle.shape) for name, value in values.items()}
-        columns = {name: value.reshape(-1, 1) for name, value in columns.items()}
+        given = {"crank_speed": speed, "sense": self.direction}
+        columns = {name: np.broadcast_to(value, angle.shape).reshape(-1, 1) for name, value in given.items()}
         found = self.program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
         return *(part[0] for part in scalars), closure
@@ -341,52 +334,53 @@ class DrivenMachine:
         sliding = [name for name in acting if isinstance(pairs[name], Sliding)]
         return rolling + [(pairs[name].force, pairs[name].couple, acting[name].half_length) for name in sliding]
 
-    def friction_outputs(self, angle, speed, acceleration, senses):
+    def _friction_outputs(self, angle, speed, acceleration, senses):
         """Outputs of the friction program at crank angles, speeds and accelerations of one shape."""
-        shape = np.shape(angle)
-        if self._has_load_functions:
-            speed = _clip_at_standstill(speed, senses["sense"])
         given = {"crank_speed": speed, "crank_acceleration": acceleration} | senses
-        if not shape:
-            found = self._program.unlooked(float(angle), given, self._single_by_loop)
-            return {name: float(value) for name, value in found.items()}
-        columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
-        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")
-        return {name: value.reshape(shape) for name, value in rows.items()}
+        columns = {path: np.broadcast_to(value, angle.shape).reshape(-1, 1) for path, value in given.items()}
+        rows = self._program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
+        return {name: value.reshape(angle.shape) for name, value in rows.items()}
 
-    def _solve_friction(self, angle, speed, state):
+    def _solve_friction(self, angle, speed, state, near=None):
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
-        rest = self._accelerating_torque(state, speed)
-        guess = self._last_solution[1:] if self._last_solution[0] is angle else ()
-        inertia = self.flywheel + state.inertia
-        friction, acceleration, slope = self._solve_acceleration(angle, speed, None, inertia, rest, *guess)
+        rest, inertia = self._accelerating_torque(state, speed), self.flywheel + state.inertia
+        if near is None:
+            guess = self._last_solution[1:] if self._last_solution[0] is angle else ()
+            friction, acceleration, slope = self._solve_acceleration(angle, speed, inertia, rest, *guess)
+        else:
+            acceleration, slope = near
+            friction = self._converged_outputs(angle, speed, acceleration)[FRICTION]
+            left = (rest - friction - inertia * acceleration) / (inertia + slope)
+            friction, acceleration = friction + slope * left, acceleration + left
         self._last_solution = angle, acceleration, slope
         return friction, acceleration
 
     def _converged_outputs(self, angle, speed, acceleration, senses=None):
         """Outputs of the friction program after as many passes as it needs."""
-        senses = self._slip.at(angle, self.direction) if senses is None else senses
+        if senses is None:
+            if self._last_senses[0] is not angle:
+                self._last_senses = angle, self._slip.at(angle, self.direction)
+            senses = self._last_senses[1]
         found: dict[str, Any] = {}
 
         def evaluate(scene):
             if scene is not self._friction_scene:
                 self._friction_scene = scene
                 del self._program
-            found.update(self.friction_outputs(angle, speed, acceleration, senses))
+            found.update(self._friction_outputs(angle, speed, acceleration, senses))
             if not np.isfinite(found[FRICTION]).all():
                 require_free(self.scene.solve(np.ravel(angle), on_gap="nan"), "drive")
             return [found[name] for name in CHECKS]
 
         solve_friction(self._friction_scene, evaluate)
+        self._last_outputs = found
         return found
 
-    def _solve_acceleration(self, angle, speed, senses, inertia, rest, acceleration=None, slope=0.0):
+    def _solve_acceleration(self, angle, speed, inertia, rest, acceleration=None, slope=0.0):
         """Friction torque Tf, acceleration a and dTf/da with Tf(a) + inertia a = rest, by the secant rule."""
 
         def friction_at(acceleration, place=...):
-            own = None if senses is None else {name: _at_places(sense, place) for name, sense in senses.items()}
-            angles, speeds = _at_places(angle, place), _at_places(speed, place)
-            return self._converged_outputs(angles, speeds, acceleration, own)[FRICTION]
+            return self._converged_outputs(angle[place], speed[place], acceleration)[FRICTION]
 
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = friction_at(acceleration)
@@ -411,35 +405,8 @@ class DrivenMachine:
         friction, acceleration, slope = friction + slope * left, acceleration + left, slope + 0.0 * left
         friction[place], acceleration[place], slope[place] = self._bracket_acceleration(
             lambda acceleration, some: friction_at(acceleration, tuple(row[some] for row in place)),
-            *(_at_places(part, place) for part in (angle, speed, inertia, rest)),
+            *(part[place] for part in (angle, speed, inertia, rest)),
         )
-        return friction, acceleration, slope
-
-    def _solve_at_angle(self, values_at, angle, speed, inertia, rest, acceleration=None, slope=0.0):
-        """`_solve_acceleration` at one crank angle, in floats; `values_at(a)` returns all outputs of the program."""
-        acceleration = rest / inertia if acceleration is None else acceleration
-        friction = values_at(acceleration)[FRICTION]
-        size = abs(rest) + abs(friction)
-        for _ in range(MAX_SECANT_STEPS):
-            step = (rest - friction - inertia * acceleration) / (inertia + slope)
-            acceleration += step
-            found = values_at(acceleration)
-            change, friction = found[FRICTION] - friction, found[FRICTION]
-            known = abs(change) > MIN_FRICTION_CHANGE * size
-            if known:
-                slope = change / step
-            left = (rest - friction - inertia * acceleration) / (inertia + slope)
-            doubt = abs(slope * left) / FRICTION_TOLERANCE if known else abs(inertia * left) / TORQUE_TOLERANCE
-            if not (doubt > size or inertia + slope <= 0.0):  # also where friction is NaN
-                self.last_forces = self._kink_values(found)
-                return friction + slope * left, acceleration + left, slope
-
-        def friction_at(accelerations, _):
-            return np.array([values_at(float(one))[FRICTION] for one in accelerations])
-
-        rows = self._bracket_acceleration(friction_at, *(np.array([part]) for part in (angle, speed, inertia, rest)))
-        friction, acceleration, slope = (float(row[0]) for row in rows)
-        self.last_forces = self._kink_values(values_at(acceleration))
         return friction, acceleration, slope
 
     def _bracket_acceleration(self, friction_at, angle, speed, inertia, rest):
@@ -489,17 +456,6 @@ class DrivenMachine:
             else:
                 rows += kink_functions("larger", (found[force], found[couple] / half))
         return rows
-
-
-def _at_places(values, place):
-    """Values at indices; a number holds at every index."""
-    return values[place] if np.ndim(values) else values
-
-
-def _clip_at_standstill(speed, sense):
-    """Speeds against the sense become 0: a step may end beyond a standstill, where loads continue smoothly."""
-    forward = sense * speed
-    return sense * (max(forward, 0.0) if isinstance(forward, float) else np.maximum(forward, 0.0))
 
 
 def _distinct_angles(angles, period):

@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 
-from ..cycle.load_functions import FUNCTION_STEP, check_resolution, samples_of_functions
+from ..cycle.load_functions import check_resolution, samples_of_functions, undeclared_functions
 from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
@@ -22,8 +22,8 @@ KINK_TOLERANCE = 1e-9
 """Shift of an edge, relative to the period, that is harmless."""
 MIN_EDGE_DISTANCE = 1e-6
 """Distance of edges from a new one, relative to the period, below which they are removed."""
-JUMP_TOLERANCE = 1e-9
-"""Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
+MIN_RESOLVED_WIDTH = 1e-6
+"""Width of a piece, relative to the period, below which a torque may be without bound."""
 MAX_UNRESOLVED = 1e-6
 """Share of a torque in unresolved pieces above which running is refused."""
 MIN_INERTIA_RATIO = 1e-10
@@ -31,35 +31,38 @@ MIN_INERTIA_RATIO = 1e-10
 NO_ANGLES = np.empty(0)
 
 
-def resolved(driven, speed):
-    """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction.
+def plain_pieces(driven, speed):
+    """Pieces of the period between the kinks of loads at a speed."""
+    driven.locate_kinks(speed)
+    # a load function that depends on the speed may jump elsewhere at another one
+    moves = driven.loads_by_speed and undeclared_functions(driven.scene.loads)
+    edges = np.concatenate([[0.0], driven.kinks, [driven.period]])
+    edges = edges_between(edges, 4.0 * driven.scene.resolution if moves else MAX_WIDTH)
+    return Pieces(edges, point_count(edges))
 
-    Warns of load functions without `kinks` that change between their samples.
-    """
+
+def resolve_and_hint(driven, speed):
+    """`resolved`, with a hint at load functions without `kinks` that change between their samples."""
+    found = resolved(driven, speed)
     running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
-    functions = samples_of_functions(running)
-    rough = [function.rough_places.ravel() for function in functions]
-    fixed = np.unique(np.concatenate([[0.0], driven.kinks, *rough, [driven.period]]))
-    widest = 4.0 * FUNCTION_STEP if rough else MAX_WIDTH  # a function may jump elsewhere at another speed
-    edges = edges_between(fixed, widest)
-    pieces, kinks = Pieces(edges, point_count(edges)), NO_ANGLES
+    for text in check_resolution(running, samples_of_functions(running), running.resolution).hints:
+        warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
+    return found
+
+
+def resolved(driven, speed):
+    """Pieces with resolved series of inertia and torque at a speed, and the crank angles of kinks of friction."""
+    pieces, kinks = plain_pieces(driven, speed), NO_ANGLES
     for _ in range(MAX_ROUNDS):
-        forces = driven.kink_forces(pieces.angle, np.full(pieces.angle.shape, speed), 0.0)
-        split = split_at_kinks(driven, pieces, forces, kinks)
+        rows = driven.kink_rows(pieces.angle, np.full(pieces.angle.shape, speed), np.zeros(pieces.angle.shape))
+        split = split_at_kinks(driven, pieces, rows, kinks)
         if split is None:
             break
         pieces, kinks = split
     pieces = _halve_unresolved(driven, pieces, speed)
-    width = 2.0 * pieces.half[:, 0]
-    if np.any(width < 1e-6 * driven.period) or len(width) > MAX_PIECES:
+    if np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period) or len(pieces.half) > MAX_PIECES:
         _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
-        jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
-        edges = np.unique(np.concatenate([fixed, kinks, jumps]))
-        again = _halve_unresolved(driven, Pieces(edges_between(edges, widest), pieces.count), speed)
-        pieces = again if len(again.half) < len(pieces.half) else pieces
-    for text in check_resolution(running, functions, running.resolution).hints:
-        warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
-    return _split_at_jumps(driven, pieces, speed), kinks
+    return pieces, kinks
 
 
 def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
@@ -69,53 +72,27 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
     """
     if not rows:
         return None
-    period = pieces.edges[-1] - pieces.edges[0]
+    period = driven.period
     angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]])
     zeros = []
     for value in map(pieces.with_ends, rows):  # a jump from one piece to the next is no zero
         at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
         (low, high), (first, second) = ((part[:, :-1][at], part[:, 1:][at]) for part in (angle, value))
         zeros.append(low + (high - low) * first / (first - second))
-    fixed = np.concatenate([pieces.edges[:1], driven.kinks, pieces.edges[-1:]])
-    kinks = np.mod(np.concatenate(zeros), period)
+    first, last = pieces.edges[[0, -1]]
+    fixed = np.concatenate([[first], driven.kinks[(driven.kinks > first) & (driven.kinks < last)], [last]])
+    kinks = np.concatenate(zeros)
     kinks = kinks[_distance(kinks, fixed) > KINK_TOLERANCE * period]
     if np.all(_distance(kinks, pieces.edges) <= KINK_TOLERANCE * period):
         return None
     other = np.setdiff1d(pieces.edges, before)
-    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * period]
+    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * pieces.period]
     return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), kinks
 
 
 def _distance(angles, others):
     """Distance of each angle to the nearest of others; infinite where there are none."""
     return np.abs(angles[:, None] - others).min(axis=1, initial=np.inf)
-
-
-def _split_at_jumps(driven, pieces, speed):
-    """Pieces with further edges where the load torque jumps between an edge and the points beside it."""
-    torque = _state_at(driven, pieces.angle, speed).torque
-    both = pieces.with_ends(torque)
-    starts, ends = both[:, 0], both[:, -1]
-    starts = np.append(starts[1:], starts[0])
-    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP_TOLERANCE * np.abs(torque).max())
-    known = np.isin(np.mod(pieces.edges[1:], driven.period), driven.jumps)
-    jumping = jumping[~known[jumping]]
-    found = []
-    for piece in jumping:
-        low = pieces.angle[piece, -1]
-        high = pieces.angle[(piece + 1) % len(ends), 0] + (driven.period if piece + 1 == len(ends) else 0.0)
-        while high - low > 1e-15 * driven.period:
-            inner = np.linspace(low, high, 34)[1:-1]
-            if not (inner[0] > low and inner[-1] < high):
-                break
-            values = _state_at(driven, np.mod(inner, driven.period), speed).torque
-            after = np.abs(values - starts[piece]) < np.abs(values - ends[piece])
-            first = int(np.argmax(after)) if after.any() else after.size
-            bounds = np.concatenate([[low], inner, [high]])
-            low, high = bounds[first], bounds[first + 1]
-        found.append(high % driven.period)
-    edges = np.unique(np.concatenate([pieces.edges, found]))
-    return Pieces(edges, pieces.count) if found else pieces
 
 
 def _state_at(driven, angle, speed):
@@ -125,11 +102,17 @@ def _state_at(driven, angle, speed):
 def _halve_unresolved(driven, pieces, speed):
     for _ in range(MAX_HALVINGS):
         state = _state_at(driven, pieces.angle, speed)
-        marked = ((pieces.tail(state.inertia) > TAIL) | (pieces.tail(state.torque) > TAIL)) & pieces.can_split
+        rough = pieces.tail(state.torque) * weights(pieces) > TAIL
+        marked = (rough | (pieces.tail(state.inertia) > TAIL)) & pieces.can_split
         if not marked.any() or len(marked) > MAX_PIECES:
             break
         pieces = pieces.split(marked)
     return pieces
+
+
+def weights(pieces):
+    """Weights of the errors of a torque: a narrow piece adds little to the energy, and its angles are rounded."""
+    return np.minimum(2.0 * pieces.half[:, 0], 1.0)
 
 
 def _require_resolved(driven, pieces, torque):

@@ -86,17 +86,3 @@ class SlipDirections:
             for name, rate in zip(found, self.rates(angle), strict=False):
                 found[name] = np.where(close < ANGLE_TOLERANCE, direction * np.copysign(1.0, rate), found[name])
         return found | {"sense": np.broadcast_to(direction, inside.shape)}
-
-    def ahead(self, angle, direction):
-        """Signs as of `at` just ahead of a crank angle in [0, period], and the next angle at which one changes."""
-        own = self.all_edges
-        if not own.size:
-            ahead = angle + direction * self.period
-            return {name: float(sign) for name, sign in self.at(np.array(angle), direction).items()}, ahead
-        around = np.concatenate([own - self.period, own, own + self.period])
-        if direction > 0.0:
-            end = float(around[np.searchsorted(around, angle + ANGLE_TOLERANCE, side="right")])
-        else:
-            end = float(around[np.searchsorted(around, angle - ANGLE_TOLERANCE, side="left") - 1])
-        inside = np.array(0.5 * (angle + end))
-        return {name: float(sign) for name, sign in self.at(inside, direction).items()}, end

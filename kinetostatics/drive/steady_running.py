@@ -1,15 +1,12 @@
 """Periodic running of a machine under its motor, or under a constant torque, exact to rounding.
 
-The state is the energy U = (Jf + J(phi)) omega^2 / 2 over the crank angle: dU/dphi = motor torque - load torque, which
-needs no derivative of J. Newton's method linearises this to u' = a u + g, with a = d(net torque)/dU, and solves it by
-its integrating factor in Chebyshev series between the kinks; about four steps reach rounding. The start is the
-operating speed, at which the mean torques of motor and loads agree; where Newton's method does not converge from
-there, an integration in time from a high speed gives the start.
+`energy_equation` solves for the energy over the crank angle. The start is the operating speed, at which the mean
+torques of motor and loads agree; where Newton's method does not converge from there, a motion from a high speed gives
+the start.
 """
 
 import math
-from functools import partial, reduce
-from itertools import accumulate
+from functools import partial
 
 import numpy as np
 
@@ -20,176 +17,79 @@ from ..numbers import checks
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
+from .energy_equation import MAX_GROWTH_EXPONENT, linearise, resolve_energy, solve_energy
 from .one_dof import DrivenMachine
-from .resolution import require_inertia, resolved, split_at_kinks
+from .resolution import require_inertia, resolve_and_hint, split_at_kinks
 from .running import Running
+from .stick_slip import March
 
-MAX_GROWTH_EXPONENT = 4.0
-"""Largest integral of a over a piece; a larger one costs digits."""
-SPEED_ROUNDING = 1e-14
-"""Rounding of the speed, relative; the motor's slope turns it into rounding of the torque."""
-MAX_NEWTON_STEPS = 40
 MAX_STIFF_HALVINGS = 3
 """Halvings of all pieces where the iteration does not converge, as with stiff motors."""
-ENERGY_TOLERANCE = 1e-14
 
 
 def solve_near(driven, pieces, guess):
-    """Pieces and energy of periodic running near `guess(pieces)`, on finer pieces if needed; else None."""
+    """Pieces and `solve_energy` of periodic running near `guess(pieces)`, on finer pieces if needed; else None."""
     for halving in range(MAX_STIFF_HALVINGS + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
-        growth = np.abs(pieces.whole(linearise(driven, pieces, guess(pieces))[3]))
+        growth = np.abs(pieces.whole(linearise(driven, pieces, guess(pieces)).growth))
         parts = np.ceil(np.fmin(growth / MAX_GROWTH_EXPONENT, MAX_PIECES + 1.0)).astype(int)
         if parts.max() > 1 and parts.sum() <= MAX_PIECES:
             spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
             edges = [np.linspace(low, high, max(count, 1), endpoint=False) for low, high, count in spans]
             pieces = Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
-        energy = _newton(driven, pieces, guess(pieces))
-        if energy is not None:
-            return pieces, energy
+        found = solve_energy(driven, pieces, guess(pieces))
+        if found is not None:
+            return pieces, found
     return None
 
 
-def linearise(driven, pieces, energy):
-    """State, total inertia, speed, and a = d(net torque)/dU at the points of pieces."""
-    angle = pieces.angle
-    inertia = driven.inertia(angle)
-    speed = driven.direction * np.sqrt(2.0 * energy / inertia)
-    state = driven.at(angle, speed)
-    by_speed = driven.motor.slope_at_crank(speed) - driven.torque_by_speed(angle, speed, state.torque)
-    growth = by_speed / (inertia * speed)
-    return state, inertia, speed, pieces.smoothed(growth) if driven.smooth_by_speed else growth
-
-
-def _newton(driven, pieces, energy):
-    """Energy U of stable periodic running near a guess, by Newton's method; None without convergence."""
-    before = math.inf
-    for _ in range(MAX_NEWTON_STEPS):
-        state, _, speed, growth = linearise(driven, pieces, energy)
-        net = driven.motor_torque(speed) - state.torque
-        found = _periodic_solution(pieces, growth, net - growth * energy)
-        if found is None:
-            return None
-        change, factor = found - energy, 1.0
-        if not found.min() > 0.0:
-            falling = change < 0.0
-            factor = 0.7 * float(np.min(energy[falling] / -change[falling]))
-            if factor < 1e-6:
-                return None
-        energy = energy + factor * change
-        size = float(np.abs(change).max() / np.abs(energy).max())
-        if factor == 1.0 and (size < ENERGY_TOLERANCE or (size < 1e-10 and size >= 0.1 * before)):
-            stable = driven.direction * pieces.total(growth) < 0.0
-            return energy if stable else None
-        before = size
-    return None
-
-
-def _periodic_solution(pieces, growth, rest):
-    """Periodic solution of u' = growth u + rest; None where it overflows or growth vanishes over the period."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        raised = pieces.integral(growth)
-        gathered = pieces.integral(rest * np.exp(-raised))
-        ends = np.exp(pieces.whole(growth))
-        added = ends * pieces.whole(rest * np.exp(-raised))
-    if not (np.isfinite(ends).all() and np.isfinite(added).all()):
-        return None
-    whole = pieces.total(growth)
-    if not abs(whole) > 1e-15:
-        return None
-    chain = list(zip(ends.tolist(), added.tolist(), strict=True))
-    if whole < 0.0:
-        starts = _fixed_chain(chain, lambda value, piece: value * piece[0] + piece[1], whole)[:-1]
-    else:  # backward, where errors decay
-        starts = _fixed_chain(chain[::-1], lambda value, piece: (value - piece[1]) / piece[0], -whole)[:0:-1]
-    return np.exp(raised) * (np.array(starts)[:, None] + gathered)
-
-
-def _fixed_chain(chain, step, exponent):
-    """Values before, between and after linear steps whose product is exp(exponent), the last equal to the first."""
-    start = reduce(step, chain, 0.0) / -math.expm1(exponent)
-    return list(accumulate(chain, step, initial=start))
-
-
-INTEGRATION_TOLERANCE = 1e-6
-"""Relative tolerance of the integration from a high speed."""
-STANDSTILL_ENERGY = 1e-9
-"""Energy of motion at which a machine stands still, relative to that at the start."""
 MIN_GROWTH, MAX_GROWTH = 1e-10, 1e6
-"""Integrals of abs(a) over the period between which an integration in time reaches periodic running."""
+"""Integrals of abs(a) over the period between which a motion reaches periodic running."""
 MAX_TURNS = 100
-"""Periods of that integration."""
+"""Periods of that motion."""
 
 
-def integrate_energy(driven, angle, way, energy, scale, tolerance):
-    """Energy of motion over a period from a crank angle, by `solve_ivp`; ends at once where it falls to a standstill.
-
-    `scale` is the energy, J, against which small energies are judged.
-    """
-    from scipy.integrate import solve_ivp
-
-    def net(place, energy):
-        place = float(place)
-        speed = math.sqrt(2.0 * max(float(energy[0]), 0.0) / driven.inertia_at(place))
-        return driven.balance(place, way * speed, way)[2]
-
-    def standstill(place, energy):
-        return energy[0] - STANDSTILL_ENERGY * scale
-
-    vars(standstill)["terminal"] = True
-    options = {"rtol": tolerance, "atol": 0.1 * STANDSTILL_ENERGY * scale, "dense_output": True, "events": standstill}
-    return solve_ivp(net, (angle, angle + way * driven.period), [energy], "LSODA", **options)
-
-
-def settle_by_integration(driven, pieces, start):
-    """Pieces and energy of periodic running, by integration from a high speed where Newton's method alone fails.
+def settle_from_above(driven, pieces, start):
+    """Pieces and `solve_energy` of periodic running, from a motion at high speed where Newton's method alone fails.
 
     Motions of one degree of freedom do not cross, so a motion from above reaches the fastest periodic running, or
     there is none.
     """
-    period, direction = driven.period, driven.direction
-    most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
-
-    def path_energy(path, pieces):
-        return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), STANDSTILL_ENERGY * most)
-
-    energy, beginning = most, 0.0 if direction > 0 else period
-    for turn in range(MAX_TURNS):
-        found = integrate_energy(driven, beginning, direction, energy, most, INTEGRATION_TOLERANCE)
-        if found.status != 0:
-            angle = float(found.t[-1]) % period
-            missing = abs(driven.balance(angle, direction * 0.0)[2])
+    direction, turns, inertia = driven.direction, 0, driven.inertia(pieces.angle)
+    growth = linearise(driven, pieces, 0.5 * inertia * start * start).growth
+    share = float(np.abs(pieces.whole(growth)).sum())
+    march = March(driven, 0.0, 2.0 * direction * abs(start))
+    while turns < MAX_TURNS and share <= MAX_GROWTH:
+        last, turns = march.energy, turns + 1
+        if not march.turn(direction):
+            missing = abs(driven.torque_at_rest(march.inside)[0])
             raise DriveError(
                 f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
-                f"{math.degrees(angle):.6g} deg in turn {turn + 1}, where {missing:.6g} N m are missing at the crank; "
-                "give a larger flywheel or a stronger motor",
+                f"{math.degrees(march.inside):.6g} deg in turn {turns}, where {missing:.6g} N m are missing at the "
+                "crank; give a larger flywheel or a stronger motor",
                 missing,
-                angle,
+                march.inside,
             )
-        last, energy = energy, float(found.y[0, -1])
-        if abs(energy - last) < 0.05 * last:
-            running = solve_near(driven, pieces, partial(path_energy, found.sol))
+        if abs(march.energy - last) < 0.05 * last:
+            running = solve_near(driven, pieces, march.energy_at)
             if running is not None:
                 return running
-            if abs(energy - last) < 1e-4 * last:
+            if abs(march.energy - last) < 1e-4 * last:
                 break
     raise DriveError(
-        f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
-        f"{2.0 * abs(start):.6g} rad/s; {_remedy(driven, pieces, start)}"
+        f"{driven.scene.mechanism.name}: no periodic running was found in {turns} turns from "
+        f"{2.0 * abs(start):.6g} rad/s; {_remedy(share, inertia.max())}"
     )
 
 
-def _remedy(driven, pieces, start):
+def _remedy(share, inertia):
     """Remedy to name where no running converges, by how much the torque depends on the speed."""
-    inertia = driven.inertia(pieces.angle)
-    *_, growth = linearise(driven, pieces, 0.5 * inertia * start * start)
-    share = float(np.abs(pieces.whole(growth)).sum())
     if share < MIN_GROWTH:
         return (
             f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
-            f"{inertia.max():.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+            f"{inertia:.6g} kg m2 at the crank; give a stronger motor, or less inertia"
         )
     if share > MAX_GROWTH:
         return (
@@ -361,38 +261,16 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
 def _run_under_motor(driven, scene):
     """Pieces, and energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
-    pieces, kinks = resolved(driven, start)
+    pieces, kinks = resolve_and_hint(driven, start)
     require_inertia(driven, pieces)
-    found = solve_near(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
-    pieces, energy = found or settle_by_integration(driven, pieces, start)
-    for _ in range(MAX_HALVINGS):
-        speed = linearise(driven, pieces, energy)[2]
-        moved = split_at_kinks(driven, pieces, driven.kink_forces(pieces.angle, speed), kinks)
-        if moved is None:
-            marked = _unresolved(driven, pieces, energy)
-            if not marked.any() or len(pieces.half) > MAX_PIECES:
-                break
-            finer = pieces.split(marked)
-        else:
-            finer, kinks = moved
-        series = pieces.series(energy)
-        found = solve_near(driven, finer, lambda finer, old=pieces, series=series: old.evaluate(series, finer.angle))
-        pieces, energy = found or settle_by_integration(driven, finer, start)
-    require_within_motor_table(driven, linearise(driven, pieces, energy)[2])
+
+    def near(pieces, guess, _=None):
+        return solve_near(driven, pieces, guess) or settle_from_above(driven, pieces, start)
+
+    pieces, found = near(pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
+    pieces, (energy, _, linear), _ = resolve_energy(driven, pieces, found, kinks, near)
+    require_within_motor_table(driven, linear.speed)
     return pieces, energy
-
-
-def _unresolved(driven, pieces, energy):
-    """Mask of the pieces whose series are not resolved and that can be halved."""
-    state, inertia, speed, growth = linearise(driven, pieces, energy)
-    drive = driven.motor_torque(speed)
-    wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
-    rounding = SPEED_ROUNDING * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
-    floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
-    rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
-    tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
-    tails.append(pieces.tail(speed) > 10.0 * TAIL)
-    return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
 
 
 def _run_at_mean_speed(driven, scene):
@@ -403,11 +281,11 @@ def _run_at_mean_speed(driven, scene):
             "give a motor"
         )
     speed = abs(scene.crank_speed)
-    pieces, kinks = resolved(driven, driven.direction * speed)
+    pieces, kinks = resolve_and_hint(driven, driven.direction * speed)
     require_inertia(driven, pieces)
     for _ in range(MAX_HALVINGS):
         energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)
-        rows = driven.kink_forces(pieces.angle, driven.direction / slow, acceleration)
+        rows = driven.kink_rows(pieces.angle, driven.direction / slow, acceleration)
         moved = split_at_kinks(driven, pieces, rows, kinks)
         if moved is not None:
             pieces, kinks = moved

@@ -1,71 +1,97 @@
-"""Motion over time with friction, stretch by stretch: within each, crank and joints keep their senses of motion.
+"""Motion from a crank angle and speed, through standstill and reversal: energy over the crank angle, then time.
 
-A stretch ends where a joint with friction reverses, where a contact force of such a joint changes its sign, or where
-the crank stops. After a stop the machine continues, turns back, or sticks: it stays at rest if the net torque moves it
-in neither sense. `require_standstill` refuses machines that never stop.
+The motion is followed over a part of the period at a time, up to a whole one, by `energy_equation`: pieces end at the
+kinks of loads and friction, so none is crossed. At a standstill the energy vanishes as the distance to it does; with
+the distance as length times u^2, the speed over u, the time and all torques are smooth in u. After a stop the machine
+continues, turns back, or sticks: it stays at rest if the net torque moves it in neither sense.
 """
 
-import itertools
 import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
-from ..errors import DriveError
-from .steady_running import integrate_energy, steady
+from ..cycle.piecewise import TAIL, Pieces, rule
+from ..errors import DriveError, KinetostaticsError
+from ..numbers.brackets import find_roots
+from .energy_equation import StandstillError, resolve_energy, solve_energy
+from .resolution import MIN_INERTIA_RATIO, plain_pieces, resolved
 
-RELATIVE_TOLERANCE = 3e-14
-"""Relative tolerance of a step, the smallest that DOP853 accepts."""
-ABSOLUTE_TOLERANCE = 1e-15
-ANGLE_AHEAD = 1e-6
-"""Crank angle, rad, after the start of a stretch that gives the sign of a force that is 0 at the start."""
-MAX_STRETCHES = 20_000
-"""Stretches after which a motion ends."""
-MAX_EVALUATIONS = 1_000_000
-"""Evaluations of the acceleration before a motion is refused: some thousand turns."""
+MAX_PARTS = 10_000
+"""Parts of the period, most of them whole, after which a motion is refused."""
+ANGLE_TOLERANCE = 1e-12
+"""Crank angles nearer than this to an edge, rad, count as there."""
+MAX_STEPS_AT_REST = 40
+"""Fixed-point steps of the energy beside a standstill."""
+MAX_REACH_GROWTH = 8.0
+"""Ratio of the crank angles that are tried one after the other."""
+MIN_SPEED = 1e-3
+"""Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
+MIN_PART = 1e-6
+"""Smallest part of the period, rad, to which a given end of time shortens it."""
+PLACES = np.array([-1.0, -0.5, 0.0, 0.5])
+"""Places in each piece at which a motion has rows."""
 
 
 class Stretch(NamedTuple):
-    """A part of a motion: start and end time, offset of its crank angles, direction, dense output."""
+    """Pieces of a motion in order: columns of series over a place from -1 to 1 that rises with time.
 
-    start: float
-    end: float
-    shift: float
-    direction: float
-    dense: Any
+    `root` is 1 for a piece that starts at a standstill, -1 for one that ends there, else 0: the speed is that of its
+    series times (1 + root place) / 2.
+    """
+
+    direction: np.ndarray
+    root: np.ndarray
+    angle: np.ndarray
+    time: np.ndarray
+    speed: np.ndarray
+    lost: np.ndarray
 
 
 class MotionPath:
-    """Motion over all stretches: rows of crank angle, speed, work of all torques, friction work, and sense.
+    """Motion over time: rows of crank angle, speed, energy lost by friction, and sense.
 
     At standstill the sense is that of the motion before it.
     """
 
     def __init__(self, stretches):
-        self._stretches = stretches
-        self._starts = np.array([stretch.start for stretch in stretches])
+        self._all = Stretch(*(np.concatenate(parts, axis=-1) for parts in zip(*stretches, strict=True)))
+        ends = np.cumsum([self._all.time.sum(axis=0), self._all.lost.sum(axis=0)], axis=1)
+        self.starts, self._lost = np.column_stack([np.zeros(2), ends[:, :-1]])
+
+    def at_place(self, piece, place):
+        """Times and rows at places from -1 to 1 of pieces."""
+        own = self._all
+        angle, time, speed, lost = (chebyshev.chebval(place, rows[:, piece], tensor=False) for rows in own[2:])
+        root = own.root[piece]
+        speed = own.direction[piece] * np.maximum(speed, 0.0) * np.where(root == 0, 1.0, 0.5 * (1.0 + root * place))
+        before = np.where((place == -1.0) & (piece > 0), piece - 1, piece)
+        rows = np.array([angle, speed, self._lost[piece] + lost, own.direction[before]])
+        return self.starts[piece] + time, rows
 
     def __call__(self, time):
         time = np.asarray(time, dtype=float)
-        before, place = (
-            np.clip(np.searchsorted(self._starts, time.ravel(), side=side) - 1, 0, None) for side in ("left", "right")
-        )
-        found = np.empty((5, place.size))
-        found[4] = np.array([stretch.direction for stretch in self._stretches])[before]
-        for number in np.unique(place):
-            stretch, own = self._stretches[number], place == number
-            rows = stretch.dense(np.clip(time.ravel()[own], stretch.start, stretch.end) - stretch.start)
-            rows[0] += stretch.shift
-            rows[1] = np.copysign(np.maximum(stretch.direction * rows[1], 0.0), stretch.direction)
-            found[:4, own] = rows
-        return found.reshape(5, *time.shape)
+        flat = time.ravel()
+        piece = np.clip(np.searchsorted(self.starts, flat, side="right") - 1, 0, None)
+        whole, asked = self._all.time.sum(axis=0)[piece], flat - self.starts[piece]
+        series = self._all.time[:, piece]
+
+        def late(place, some):
+            found = chebyshev.chebval(place, series[:, some], tensor=False) - asked[some]
+            return np.where(place == -1.0, -asked[some], np.where(place == 1.0, whole[some] - asked[some], found))
+
+        with np.errstate(invalid="ignore"):
+            place = find_roots(late, np.full(flat.size, -1.0), np.full(flat.size, 1.0), 1e-16)
+        place = np.where(np.isnan(place), np.where(asked > 0.5 * whole, 1.0, -1.0), place)
+        return self.at_place(piece, place)[1].reshape(4, *time.shape)
 
 
 class Motion(NamedTuple):
-    """A motion: times, rows of `MotionPath` at these, the path, reversals (time, angle), its end, stretch starts.
+    """A motion: times, rows of `MotionPath` at these, the path, reversals (time, angle), and its end.
 
-    `end` is "end", "ready" (target speed), "standstill", "stuck", or "lost" where the integration failed.
+    `end` is "end", "ready" (target speed), "standstill", "stuck", or "lost" where it cannot be followed.
     """
 
     time: np.ndarray
@@ -73,12 +99,11 @@ class Motion(NamedTuple):
     path: Any
     reversals: list
     end: str
-    starts: list
 
 
 def sense_from_rest(driven, angle):
     """Sense in which a machine starts from rest, +1 or -1; 0 if it stays at rest."""
-    forward, backward = driven.torque_at_rest(angle, 1.0)[0], driven.torque_at_rest(angle, -1.0)[0]
+    forward, backward = (driven.along(sense).torque_at_rest(angle)[0] for sense in (1.0, -1.0))
     if forward > 0.0 > backward:
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
@@ -89,147 +114,320 @@ def sense_from_rest(driven, angle):
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0
 
 
-def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None, dense=True) -> Motion:
+def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Motion:
     """Motion from a crank angle and speed until a time, a target speed, a standstill, or until it sticks.
 
-    `sense` is the sense of a start from rest; without it the net torque decides. `path` needs a dense motion.
+    `sense` is the sense of a start from rest; without it the net torque decides.
     """
-    state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
     direction = math.copysign(1.0, speed) if speed else sense or sense_from_rest(driven, angle)
-    times, rows, reversals = [0.0], [np.append(state, direction or driven.direction)], []
-    stretches: list[Stretch] = []
-    what, crossed, evaluations = "stuck", None, itertools.count()
+    march = March(driven, angle, speed, end, target)
+    reversals: list[tuple[float, float]] = []
+    what, last = "stuck", None
+    while direction:
+        what, last = march.run(direction)
+        if what != "still":
+            break
+        direction = 0.0 if to_standstill else sense_from_rest(driven, march.inside)
+        what = "standstill" if to_standstill else "stuck"
+        if direction:
+            reversals.append((march.time, march.inside + march.shift))
+    if not march.stretches:
+        rows = np.array([[angle], [speed], [0.0], [direction or driven.direction]])
+        return Motion(np.zeros(1), rows, lambda time: np.multiply.outer(rows[:, 0], np.ones(np.shape(time))), [], what)
+    path = MotionPath(march.stretches)
+    piece, place = (part.ravel() for part in np.meshgrid(np.arange(path.starts.size), PLACES, indexing="ij"))
+    time, rows = path.at_place(piece, place)
+    if what == "end":
+        ended, last_rows = np.array([end]), path(np.array([end]))
+    else:
+        ended, last_rows = path.at_place(*(np.array([part]) for part in last or (path.starts.size - 1, 1.0)))
+    time[0], rows[:, 0] = 0.0, (angle, speed, 0.0, rows[3, 0])
+    before = time < ended
+    time, rows = np.append(time[before], ended), np.hstack([rows[:, before], last_rows])
+    return Motion(time, rows, path, reversals, what)
 
-    def count(since, inside):
-        if next(evaluations) > MAX_EVALUATIONS:
+
+class March:
+    """A motion that is followed: its time, s, energy, J, and speed at a crank angle `inside` of the period."""
+
+    def __init__(self, driven, angle, speed, end=math.inf, target=None):
+        self.driven, self.end, self.target = driven, end, target
+        self.left = math.inf
+        self.shift = math.floor(angle / driven.period) * driven.period
+        self.inside, self.time, self.speed = angle - self.shift, 0.0, abs(speed)
+        self.energy = 0.5 * float(driven.inertia(np.array([self.inside]))[0]) * speed * speed
+        self.fastest = max(abs(speed), abs(target or 0.0), MIN_SPEED)
+        self.stretches: list[Stretch] = []
+        self.known: dict[float, tuple] = {}
+        self.first: dict[float, Pieces] = {}
+        self.turned: list[tuple[Pieces, Any]] = []
+        self.problem: Any = None
+        self.parts = self.passed = 0
+
+    def run(self, direction):
+        """Follow the motion in one sense: what ends it, and the piece and place at a target speed, else None.
+
+        It ends with "end", "ready", "still", "turned", or "lost".
+        """
+        machine, reach = self.driven.along(direction), self.driven.period
+        while True:
+            found, length = self._step(machine, reach)
+            if found is None:
+                reach = 0.5 * length
+                if reach < ANGLE_TOLERANCE:
+                    if isinstance(self.problem, KinetostaticsError):
+                        raise self.problem
+                    return "lost", None
+                continue
+            reach = min(MAX_REACH_GROWTH * reach, self.driven.period)
+            stretch, far, self.energy = found
+            self.left -= abs(far - self.inside)
+            self.inside = far
+            ready = None if self.target is None else self._reached(stretch)
+            stretch.angle[0] += self.shift
+            self.stretches.append(stretch)
+            self.passed += stretch.root.size
+            self.time += float(stretch.time.sum())
+            self.speed = float(stretch.speed[:, -1].sum())
+            if ready is not None:
+                return "ready", ready
+            if self.time >= self.end:
+                return "end", None
+            if self.left < ANGLE_TOLERANCE:
+                return "turned", None
+            if self.energy == 0.0:
+                return "still", None
+
+    def turn(self, direction):
+        """Follow the motion over a period: whether it comes round. `energy_at` knows its energy."""
+        self.left, self.turned = self.driven.period, []
+        return self.run(direction)[0] == "turned"
+
+    def energy_at(self, pieces):
+        """Energy of the last `turn` at the points of pieces of the period."""
+        found = np.empty(pieces.angle.shape)
+        for part, series in self.turned:
+            own = (pieces.angle >= part.edges[0]) & (pieces.angle <= part.edges[-1])
+            found[own] = part.evaluate(series, pieces.angle[own])
+        return found
+
+    def _step(self, machine, reach):
+        """Next stretch within a crank angle, with the angle and energy after it, or None; and the angle tried."""
+        direction, period = machine.direction, machine.period
+        self._count()
+        if direction * (self.inside - 0.5 * period) > 0.5 * period - ANGLE_TOLERANCE:
+            self.shift += direction * period
+            self.inside = 0.0 if direction > 0.0 else period
+        base, kinks, guess = self._pieces(machine)
+        ahead = base.edges[:: int(direction)]
+        ahead = ahead[direction * (ahead - self.inside) > ANGLE_TOLERANCE]
+        room = abs(ahead[0] - self.inside)
+        reach = min(reach, self._within_time(machine), abs(ahead[-1] - self.inside) if self.energy else room)
+        reach = min(reach, self.left)
+        near = np.abs(ahead - self.inside - direction * reach)
+        far = float(ahead[near.argmin()] if near.min() < ANGLE_TOLERANCE else self.inside + direction * reach)
+        if self.energy == 0.0:
+            found = self._attempt(leave_rest, machine, self.inside, abs(far - self.inside), base.count)
+            return found and (found[0], far, found[1]), reach
+        inner = ahead[direction * (far - ahead) > 0.0]
+        part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), base.count)
+        whole = part.edges.size == base.edges.size and reach == period
+        found = self._attempt(pass_part, machine, part, kinks, self.energy, guess if whole else None)
+        if found is not None:
+            stretch, energy, solved = found
+            if self.left < math.inf:
+                self.turned.append((solved[0], solved[2]))
+            if whole:
+                self._keep(machine, *solved)
+            return (stretch, far, energy), reach
+        stops = reach
+        if isinstance(self.problem, StandstillError):
+            stops = max(abs(self.problem.angle - self.inside), reach / MAX_REACH_GROWTH)
+        before = np.abs(inner - self.inside)
+        before = before[before < stops]
+        if before.size:  # the next attempt ends at the last edge before the standstill, or at half the angle
+            return None, 2.0 * before[-1] if isinstance(self.problem, StandstillError) else reach
+        found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, base.count)
+        return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
+
+    def _attempt(self, function, *parts):
+        """Result of a function, or None where it has none or fails; `problem` is its error."""
+        self.problem = None
+        try:
+            return function(*parts)
+        except (KinetostaticsError, StandstillError) as error:
+            self.problem = error
+            return None
+
+    def _count(self):
+        self.parts += 1
+        if self.parts > MAX_PARTS:
             raise DriveError(
-                f"{driven.scene.mechanism.name}: the motion is too long to follow: {time + since:.6g} s, to crank "
-                f"angle {math.degrees(inside + shift):.6g} deg, took {MAX_EVALUATIONS} evaluations; give an earlier "
-                "time as until",
-                crank_angle=inside + shift,
+                f"{self.driven.scene.mechanism.name}: the motion is too long to follow: {self.time:.6g} s, to crank "
+                f"angle {math.degrees(self.inside + self.shift):.6g} deg, took {MAX_PARTS} parts of the period; give "
+                "an earlier time as until",
+                crank_angle=self.inside + self.shift,
             )
 
-    while direction and len(stretches) < MAX_STRETCHES:
-        whole = math.floor(state[0] / driven.period) * driven.period
-        shift, state[0] = shift + whole, state[0] - whole
-        found, what, crossed = _integrate_stretch(driven, state, direction, end - time, target, crossed, count, dense)
-        if what == "lost":
-            break
-        stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
-        inner = slice(1, -1 if what in ("edge", "kink") else None)
-        times += (time + found.t[inner]).tolist()
-        rows += [np.array([row[0] + shift, *row[1:], direction]) for row in found.y.T[inner]]
-        time, state = time + found.t[-1], found.y[:, -1].copy()
-        if what == "still":
-            rows[-1][1] = state[1] = 0.0
-            turned = sense_from_rest(driven, float(state[0]))
-            what = "standstill" if to_standstill else "still" if turned else "stuck"
-            direction = turned
-            if what == "still":
-                reversals.append((float(time), float(state[0] + shift)))
-        if what in ("end", "ready", "standstill", "stuck"):
-            break
-    path = MotionPath(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
-    ended = "lost" if what in ("edge", "kink", "still") else what
-    starts = [stretch.start for stretch in stretches]
-    return Motion(np.array(times), np.array(rows).T, path, reversals, ended, starts)
+    def _pieces(self, machine):
+        """Pieces of the period, kinks of friction among their edges, and a function that guesses the energy."""
+        if machine.direction not in self.known:
+            speed = machine.direction * self.fastest
+            found = self._attempt(resolved, machine, speed)
+            self.known[machine.direction] = *(found or (plain_pieces(machine, speed), np.empty(0))), []
+        return self.known[machine.direction]
+
+    def _keep(self, machine, pieces, kinks, series):
+        """Keep the pieces of a whole period for the next one, unless they have become many."""
+        base, _, before = self.known[machine.direction]
+        first = self.first.setdefault(machine.direction, base)
+        kept = pieces if pieces.edges.size <= 2 * first.edges.size + 8 else first
+        self.known[machine.direction] = kept, kinks, [*before[-1:], (pieces, series)]
+
+    def _within_time(self, machine):
+        """Crank angle within which the motion stays until its end time, about."""
+        left = self.end - self.time
+        if self.energy:
+            return max(3.0 * self.speed * left, MIN_PART)
+        inertia = machine.inertia(np.array([self.inside]))[0]
+        return max(abs(machine.torque_at_rest(self.inside)[0]) / inertia * left * left, MIN_PART)
+
+    def _reached(self, stretch):
+        """Piece of the motion and place in it at the target speed, or None."""
+        count, target = len(stretch.speed), stretch.direction[0] * self.target
+        places = np.concatenate([[-1.0], rule(count).points, [1.0]])
+
+        def spare(value, place, root):
+            return value * np.where(root == 0, 1.0, 0.5 * (1.0 + root * place)) - target
+
+        speed = chebyshev.chebvander(places, count - 1) @ stretch.speed
+        values = spare(speed.T, places, stretch.root[:, None]).ravel()
+        changes = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
+        if not changes.size:
+            return None
+        piece, place = divmod(int(changes[0]), places.size)
+        if place == places.size - 1:
+            return self.passed + piece, 1.0
+        series, root = stretch.speed[:, piece], stretch.root[piece]
+        low, high = places[[place]], places[[place + 1]]
+        found = find_roots(lambda place, _: spare(chebyshev.chebval(place, series), place, root), low, high)
+        return self.passed + piece, float(found[0])
 
 
-def _integrate_stretch(driven, state, direction, time, target, crossed, count, dense):
-    """Motion of one stretch, what ended it, and the sign after its end of a force that crossed zero, by row."""
-    from scipy.integrate import solve_ivp
+def pass_part(driven, pieces, kinks, start, before):
+    """Stretch over pieces from an energy at the start, the energy after it, and what to keep of it; or None.
 
-    senses, edge = driven.senses_ahead(float(state[0]), direction)
-
-    def change(time, state):
-        angle, speed = float(state[0]), float(state[1])
-        count(time, angle)
-        inertia, slope, spare, friction = driven.balance_along(angle, speed, senses)
-        return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed, friction * speed
-
-    @lru_cache(maxsize=1)
-    def pressed(angle, speed):
-        driven.balance_along(angle, speed, senses)
-        return driven.last_forces
-
-    def contact_force(row, side):  # the sign after the start, so that no zero counts twice
-        return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side
-
-    events = [
-        _event(lambda time, state: direction * state[1], -1),
-        _event(lambda time, state: direction * (state[0] - edge), 1),
-        _event(lambda time, state: 1.0 if target is None else direction * (state[1] - target), 0),
-    ]
-    names = ["still", "edge", "ready"]
-    here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, ANGLE_AHEAD * direction))
-    for row, pair in enumerate(zip(here, ahead, strict=True)):
-        side = (crossed or {}).get(row) or next((math.copysign(1.0, one) for one in pair if one), 1.0)
-        events.append(_event(contact_force(row, side), 0))
-        names.append("kink")
-    options = {"rtol": RELATIVE_TOLERANCE, "atol": ABSOLUTE_TOLERANCE, "method": "DOP853"}
-    found = solve_ivp(change, (0.0, time), state, dense_output=dense, events=events, **options)
-    if found.status < 0 or not np.isfinite(found.y).all():
-        return found, "lost", None
-    if found.status == 0:
-        return found, "end", None
-    which = next(number for number, times in enumerate(found.t_events) if times.size)
-    if found.t.size > 1:  # integrate the last step to the event; dense output is less accurate
-        again = solve_ivp(change, (found.t[-2], found.t[-1]), found.y[:, -2], **options)
-        found.y[:, -1] = again.y[:, -1]
-    if names[which] == "edge":
-        found.y[0, -1] = edge
-    if names[which] != "kink":
-        return found, names[which], None
-    before = events[which](found.t[-2], found.y[:, -2])
-    return found, "kink", {which - 3: math.copysign(1.0, -before)}
-
-
-def _event(function, direction):
-    """Terminal event of `solve_ivp`."""
-    vars(function).update(terminal=True, direction=direction)
-    return function
-
-
-SLOWING_TOLERANCE = 1e-8
-"""Relative loss of kinetic energy in a period below which a machine does not slow down."""
-ENERGY_TOLERANCE = 1e-9
-"""Energy relative to the energy exchanged in a turn that counts as 0."""
-
-
-def require_standstill(driven, angle, speed):
-    """Refuse a machine that never stops: its motor or loads return in a turn all the energy that they take.
-
-    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and a machine
-    that is not slower after a period never becomes slower.
+    `before` are the pieces and series of the energy of the last periods, the guess; else the energy at the start is.
     """
-    way, name = math.copysign(1.0, speed), driven.scene.mechanism.name
-    if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
-        steady_speed = math.inf
-        if driven.motor is not None and way == driven.direction:
-            try:
-                running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
-                steady_speed = abs(float(running.motion(np.array([angle]))[0][0]))
-            except DriveError:  # no running that keeps it from stopping
-                pass
-        if abs(speed) >= steady_speed:
-            raise DriveError(f"{name}: never comes to a standstill: its motor keeps it running; give a time as until")
-        start = 0.5 * driven.inertia_at(angle) * speed * speed
-        found = integrate_energy(driven, angle, way, start, start, 0.1 * SLOWING_TOLERANCE)
-        left = found.y[0, -1] / start if found.status == 0 else 0.0
-        if left >= 1.0 - SLOWING_TOLERANCE:
-            raise DriveError(
-                f"{name}: never comes to a standstill: after a period it has {left:.6g} times the kinetic energy of "
-                "before; give a time as until"
-            )
-        return
-    places = angle + way * np.linspace(0.0, driven.period, 721)
-    state = driven.without_friction(np.mod(places, driven.period), sense=way)
-    between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
-    taken = np.cumsum(between)
-    motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
-    if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
-        raise DriveError(
-            f"{name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
-            f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
-            "or a load that resists"
-        )
+    guess = np.full(pieces.angle.shape, start)
+    if before:
+        guess, *older = (part.evaluate(series, pieces.angle) for part, series in before[::-1])
+        guess = guess + (guess - older[0] if older else 0.0)
+        guess = guess if guess.min() > 0.0 else np.full(guess.shape, start)
+    found = solve_energy(driven, pieces, guess, start)
+    if found is None:
+        return None
+
+    def again(finer, guess, near):
+        solved = solve_energy(driven, finer, guess(finer), start, near)
+        return solved and (finer, solved)
+
+    resolved = resolve_energy(driven, pieces, found, kinks, again)
+    if resolved is None:
+        return None
+    pieces, (energy, far, linear), kinks = resolved
+    if not linear.inertia.min() > MIN_INERTIA_RATIO * linear.inertia.max():
+        return None
+    way = int(driven.direction)
+    half, middle = pieces.half[::way], 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[::way]
+    friction = linear.state.torque - driven.without_friction(pieces.angle, linear.speed).torque
+    stretch = _stretch(
+        driven,
+        0.0,
+        np.array([middle, driven.direction * half[:, 0], 0.0 * middle]),
+        half / np.abs(linear.speed[::way, ::way]),
+        np.abs(linear.speed[::way, ::way]),
+        driven.direction * half * friction[::way, ::way],
+    )
+    return stretch, far, (pieces, kinks, pieces.series(energy))
+
+
+def leave_rest(driven, angle, length, count):
+    """Stretch over a crank angle from a standstill, and the energy after it; or None."""
+    found = _beside_rest(driven, angle, length, None, count)
+    return found and (found[0], found[1] * found[2])
+
+
+def come_to_rest(driven, angle, energy, room, count):
+    """Stretch from a crank angle and energy to a standstill within `room`, and the angle to it; or None."""
+    net = driven.torque_at(angle, driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0]))
+    length = -energy / (driven.direction * net) if driven.direction * net < 0.0 else room
+    found = _beside_rest(driven, angle, min(length, room), energy, count)
+    return found and (found[0], found[1]) if found and found[1] <= room else None
+
+
+@lru_cache
+def _means(count):
+    """Shares u of the way from rest at the points, and a matrix from values there to means over the way to each."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    share, within = 0.5 * (1.0 + rule(count).points), 0.5 * (1.0 + nodes)
+    table = chebyshev.chebvander(2.0 * np.multiply.outer(np.append(share, 1.0), within) - 1.0, count - 1)
+    means = np.einsum("q,iqk->ik", weights * within, table) @ rule(count).series
+    return share, means[:-1], means[-1]
+
+
+def _beside_rest(driven, angle, length, energy, count):
+    """Stretch beside a standstill, its length, rad, and the mean torque that changes the energy over it; or None.
+
+    It leaves rest at the angle, or, with an energy there, comes to rest at a length that follows from it. With M the
+    mean of the torque over the way from rest, the energy is length u^2 M.
+    """
+    share, means, whole = _means(count)
+    direction, root = driven.direction, 1.0 if energy is None else -1.0
+    mean, before = None, math.inf
+    for _ in range(MAX_STEPS_AT_REST):
+        place = share * share if energy is None else (1.0 - share) * (1.0 + share)
+        places = angle + direction * length * place
+        inertia = driven.inertia(places)
+        if mean is None:
+            mean = direction * driven.torque_at_rest(angle)[0] if energy is None else energy / length
+            mean = np.full(count, mean)
+        pace = np.sqrt(2.0 * length * mean / inertia)
+        state = driven.at(places, direction * share * pace)
+        torque = root * direction * (driven.motor_torque(direction * share * pace) - state.torque)
+        last, mean, total = mean, means @ torque, float(whole @ torque)
+        if not (mean.min() > 0.0 and total > 0.0):
+            return None
+        size = float(np.abs(mean - last).max() / mean.max())
+        if energy is not None:
+            resting = float(rule(count).many[0] @ rule(count).series @ torque)
+            step = (energy / length - total) / (resting if resting > 0.0 else total)
+            length, size = length * (1.0 + max(step, -0.5)), max(size, abs(step))
+        if size < 1e-15 or (size < 1e-12 and size >= 0.5 * before):
+            break
+        before = size
+    else:
+        return None
+    slowness = np.sqrt(2.0 * length * inertia / mean)
+    tails = [Pieces(np.array([-1.0, 1.0]), count).tail(row[None]).max() for row in (torque, pace, slowness)]
+    if max(tails) > 10.0 * TAIL or not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
+        return None
+    friction = state.torque - driven.without_friction(places, direction * share * pace).torque
+    way, reach = int(root), direction * length
+    middle = angle + 0.375 * reach if energy is None else angle + reach - 0.375 * reach
+    stretch = _stretch(
+        driven,
+        root,
+        np.array([[middle], [0.5 * reach], [root * 0.125 * reach]]),
+        0.5 * slowness[None, ::way],
+        pace[None, ::way],
+        reach * (share * friction)[None, ::way],
+    )
+    return stretch, length, total
+
+
+def _stretch(driven, root, angle, slowness, speed, lost):
+    """Stretch of pieces in order of the motion, from values (pieces, points): rates by the place, and speed."""
+    pieces = Pieces(2.0 * np.arange(len(speed) + 1.0) - 1.0, speed.shape[1])
+    rows = [pieces.series(part) for part in (pieces.integral(slowness), speed, pieces.integral(lost))]
+    return Stretch(np.full(len(speed), driven.direction), np.full(len(speed), root), angle, *rows)

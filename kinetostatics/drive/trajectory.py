@@ -6,11 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.kinks import kinks_and_jumps
 from ..cycle.load_functions import resolution_note
+from ..machine.friction import NO_FRICTION
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from ..numbers.brackets import find_roots
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
@@ -20,6 +23,8 @@ from .one_dof import DrivenMachine
 TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Gauss points and weights of the work in a step of the integration."""
+KINK_TOLERANCE = 1e-9
+"""Crank angles, rad, between a kink and the end of a step that count as none."""
 
 
 class Event(NamedTuple):
@@ -110,8 +115,8 @@ class Trajectory:
             checks.require(
                 "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
             )
-        angle, speed, sense = self._dense(time)[[0, 1, 4]]
-        found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed, sense)))
+        angle, speed, _, sense = self._dense(time)
+        found = map(read_only, (time, angle, speed, accelerations(self._driven, angle, speed, sense)))
         return replace_unchecked(
             self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True))
         )
@@ -124,7 +129,7 @@ class Trajectory:
     @property
     def _moving(self):
         """The scene at the speeds, accelerations and senses of the motion."""
-        sense = np.where(self.speed == 0.0, self._dense(self.time)[4], np.sign(self.speed))
+        sense = np.where(self.speed == 0.0, self._dense(self.time)[3], np.sign(self.speed))
         return replace_unchecked(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration, sense=sense)
 
     @property
@@ -137,11 +142,13 @@ class Trajectory:
     def energy_drift(self):
         """Largest difference of kinetic energy and work done since the start, J: the error of the integration.
 
-        The work is the integral of the torques of `solve` along the motion, by Gauss' rule in each step.
+        The work is the integral of the torques of `solve` along the motion, by Gauss' rule in each step; steps end at
+        the kinks of the loads.
         """
         ends = self._ends
         if ends.size < 2:
             return 0.0
+        ends = np.union1d(ends, self._kink_times)
         half, at_ends = 0.5 * np.diff(ends), self.at(ends)
         energy = at_ends._unchecked.kinetic_energy + 0.5 * self.flywheel * at_ends.speed**2
         inside = self.at(np.ravel(0.5 * (ends[:-1] + ends[1:])[:, None] + half[:, None] * NODES))
@@ -151,9 +158,25 @@ class Trajectory:
         return float(np.abs(energy[1:] - energy[0] - work).max())
 
     @property
+    def _kink_times(self):
+        """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
+        free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
+        free = replace_unchecked(free, silent=True)
+        kinks, angle = kinks_and_jumps(free, 0)[0], self._dense(self._ends)[0]
+        low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
+        turns = np.arange(np.floor(low.min() / free.period), np.floor(high.max() / free.period) + 1.0)
+        kinks = (kinks + free.period * turns[:, None]).ravel()
+        first, last = np.searchsorted(kinks, low + KINK_TOLERANCE), np.searchsorted(kinks, high - KINK_TOLERANCE)
+        step = np.repeat(np.arange(low.size), np.maximum(last - first, 0))
+        passed = kinks[first[step] + np.arange(step.size) - np.searchsorted(step, step)]
+        return find_roots(
+            lambda time, some: self._dense(time)[0] - passed[some], self._ends[step], self._ends[step + 1]
+        )
+
+    @property
     def friction_energy(self):
         """Energy lost by friction since the start, J."""
-        return read_only(self._dense(self.time)[3])
+        return read_only(self._dense(self.time)[2])
 
     @property
     def motor_torque(self):
@@ -194,3 +217,12 @@ class Trajectory:
         ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
         ax.grid(alpha=0.3)
         return ax
+
+
+def accelerations(driven, angle, speed, sense):
+    """Crank accelerations at angles, speeds and senses of a motion that may turn back, rad/s2."""
+    found = np.empty(angle.shape)
+    for way in np.unique(sense):
+        own = sense == way
+        found[own] = driven.along(way).acceleration(angle[own], speed[own])
+    return found

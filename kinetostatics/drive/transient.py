@@ -1,7 +1,6 @@
 """Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
 
-The method DOP853 of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and
-II.10) integrates (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2, stretch by stretch (`stick_slip`).
+`stick_slip` integrates the energy over the crank angle between the kinks of loads and friction, and time from it.
 """
 
 import math
@@ -17,8 +16,8 @@ from ..numbers.arithmetic import read_only
 from .motor import Motor
 from .one_dof import DrivenMachine
 from .steady_running import require_within_motor_table, steady
-from .stick_slip import integrate_motion, require_standstill
-from .trajectory import Event, Trajectory
+from .stick_slip import March, integrate_motion
+from .trajectory import Event, Trajectory, accelerations
 
 STARTED_SPEED_RATIO = 0.99
 """Speed over the mean speed of steady running at which a start ends."""
@@ -28,6 +27,10 @@ MAX_ANGLE = 1e6
 """Largest initial crank angle, rad; a larger one costs too many digits."""
 MIN_TORQUE_RATIO = 1e-9
 """Smallest net torque of a start, relative to the largest torque."""
+SLOWING_TOLERANCE = 1e-8
+"""Relative loss of kinetic energy in a period below which a machine does not slow down."""
+ENERGY_TOLERANCE = 1e-9
+"""Energy relative to the energy exchanged in a turn that counts as 0."""
 
 
 def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor=None, *, engine=None) -> Trajectory:
@@ -76,7 +79,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
     else:
-        require_standstill(driven, angle, speed)
+        _require_standstill(driven, angle, speed)
     return _trajectory(driven, scene, angle, speed, until)
 
 
@@ -115,7 +118,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
 
 def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=None):
-    """`start` to a periodic running; if it is not None, the motion is known at the times of its steps only."""
+    """`start` to a periodic running, or without a time or running to the one it finds."""
     if not isinstance(motor, Motor):
         checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
     driven, flywheel, angle, _ = _initial_state("start", scene, motor, flywheel, from_angle, 0.0, engine)
@@ -125,12 +128,12 @@ def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=
     else:
         until, wrong = checks.single_number("until", until, "s", low=0.0, strict=True)
         checks.require("start", wrong)
-    pushing, _ = driven.torque_at_rest(angle, driven.direction)
+    pushing, _ = driven.torque_at_rest(angle)
     places = np.linspace(0.0, driven.period, 96, endpoint=False)
     loads = float(np.abs(driven.at_acceleration(places, 0.0 * places, 0.0).torque).max())
     if not pushing * driven.direction > MIN_TORQUE_RATIO * max(loads, abs(float(driven.motor_torque(0.0)))):
         raise _start_error(driven, angle, "it does not start")
-    found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True, dense=running is None)
+    found = _trajectory(driven, scene, angle, 0.0, until, target, one_way=True)
     if found.events[-1].name == "reversal":
         raise _start_error(driven, found.events[-1].crank_angle, f"it starts and stops after {found.time[-1]:.6g} s")
     return found
@@ -159,12 +162,52 @@ def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine
     return driven, inertia, angle, speed
 
 
+def _require_standstill(driven, angle, speed):
+    """Refuse a machine that never stops: its motor or loads return in a turn all the energy that they take.
+
+    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and a machine
+    that is not slower after a period never becomes slower.
+    """
+    way, name = math.copysign(1.0, speed), driven.scene.mechanism.name
+    machine = driven.along(way)
+    if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
+        steady_speed = math.inf
+        if driven.motor is not None and way == driven.direction:
+            try:
+                running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
+                steady_speed = abs(float(running.motion(np.array([angle]))[0][0]))
+            except DriveError:  # no running that keeps it from stopping
+                pass
+        if abs(speed) >= steady_speed:
+            raise DriveError(f"{name}: never comes to a standstill: its motor keeps it running; give a time as until")
+        march = March(driven, angle, speed)
+        before = march.energy
+        left = march.energy / before if march.turn(way) else 0.0
+        if left >= 1.0 - SLOWING_TOLERANCE:
+            raise DriveError(
+                f"{name}: never comes to a standstill: after a period it has {left:.6g} times the kinetic energy of "
+                "before; give a time as until"
+            )
+        return
+    places = angle + way * np.linspace(0.0, driven.period, 721)
+    state = machine.without_friction(np.mod(places, driven.period))
+    between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
+    taken = np.cumsum(between)
+    motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
+    if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
+        raise DriveError(
+            f"{name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
+            f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
+            "or a load that resists"
+        )
+
+
 def _start_error(driven, angle, what):
     """Error of a machine that does not start, with remedies."""
     rest = float(driven.motor_torque(0.0)) * driven.direction
     places = np.linspace(0.0, driven.period, 720, endpoint=False)
     asked = driven.at_acceleration(places, 0.0 * places, 0.0).torque * driven.direction
-    spare, friction = driven.torque_at_rest(angle, driven.direction)
+    spare, friction = driven.torque_at_rest(angle)
     here, friction = rest - spare * driven.direction, friction * driven.direction
     rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
@@ -185,13 +228,12 @@ def _start_error(driven, angle, what):
     )
 
 
-def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False, dense=True):
+def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
     """`Trajectory` from an angle and speed until a time, a standstill, or a target speed."""
-    driven.prepare(max(abs(speed), abs(target or 0.0)))
     fastest = max(abs(speed if target is None else target), 1e-3)
     end = until if isinstance(until, float) else MAX_TURNS * TURN / fastest
     sense = driven.direction if one_way else None
-    found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense, dense)
+    found = integrate_motion(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
     time, rows = found.time, found.rows
     if found.end == "lost":
         angle, speed = rows[:2, -1]
@@ -210,7 +252,7 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False, 
     last = stopped if found.end in ("standstill", "stuck") else "end"
     turns = (Event("reversal", *turn) for turn in found.reversals)
     events = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(rows[0, -1]))
-    time, angles, speeds, senses = map(read_only, (time, *rows[[0, 1, 4]]))
-    moving = time, angles, speeds, read_only(driven.acceleration_along(angles, speeds, senses))
-    ends = np.union1d(time, found.starts)  # power is smooth between these times
-    return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, ends)
+    times, angles, speeds, rates = map(read_only, (time, *rows[:2], accelerations(driven, *rows[[0, 1, 3]])))
+    return Trajectory(
+        scene, driven.motor, driven.flywheel, times, angles, speeds, rates, events, driven, found.path, times
+    )

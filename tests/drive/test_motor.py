@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.resolution import require_inertia, resolved
-from kinetostatics.drive.steady_running import operating_speed, settle_by_integration
+from kinetostatics.drive.steady_running import operating_speed, settle_from_above
 from support.drives import DISC, DISC_MOTOR, driven
 from support.every import every
 
@@ -137,6 +137,7 @@ class Speedy:
 
 def test_declared_kinks_may_depend_on_speed():
     found = driven(DISC, ks.Torque(Speedy(), on="crank"))
+    found.locate_kinks(5.0)
     assert found.kinks.tolist() == [2.0]
     assert found.loads_by_speed
     left = [found.balance(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
@@ -150,7 +151,7 @@ def test_declared_kinks_may_depend_on_speed():
 def test_standstill_names_angle_and_missing_torque():
     machine = driven(DISC, ks.Torque(-1e3, on="crank"))
     with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
-        settle_by_integration(machine, resolved(machine, 10.0)[0], 10.0)
+        settle_from_above(machine, resolved(machine, 10.0)[0], 10.0)
     assert caught.value.missing == pytest.approx(1e3 - float(machine.motor_torque(0.0)), rel=1e-6)
 
 

@@ -160,7 +160,7 @@ RUNNING = {
     "nothing holds it": (PUMP, (), Motor.constant(5.0), 1.0, r"nothing holds the speed.*a turn leaves 31\.4159 J"),
     "in balance at any speed": (PUMP, (torque(-5.0),), Motor.constant(5.0), 1.0, "nothing holds the speed"),
     "tiny transmission": (PUMP, (), kloss(transmission=1e-12), 1.0, "give a stronger motor, or less inertia"),
-    "huge transmission": (PUMP, (), kloss(transmission=1e12), 1.0, "N m are missing at the crank"),
+    "huge transmission": (PUMP, (), kloss(transmission=1e12), 1.0, "so rigid .*give it its true slip"),
     "huge rotor": (PUMP, (), kloss(inertia=1e50), 1.0, r"an inertia of 1e\+50 kg m2 at the crank"),
     "tiny motor": (PUMP, (), kloss(power=1e-12), 1.0, "give a stronger motor, or less inertia"),
     "tiny slip": (PUMP, (), kloss(speed=104.7 * (1.0 - 1e-12)), 1.0, "so rigid .*give it its true slip"),
@@ -316,9 +316,11 @@ def test_what_cannot_be_driven_says_why(call, kind, words):
 
 
 def test_endless_motion_is_given_up_with_progress(monkeypatch):
-    monkeypatch.setattr(stick_slip, "MAX_EVALUATIONS", 2000)
+    monkeypatch.setattr(stick_slip, "MAX_PARTS", 200)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))
-    with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
+    with pytest.raises(
+        ks.DriveError, match=r"too long to follow: .* took 200 parts of the period; give an earlier time"
+    ):
         coast(damped, 1.0, 0.0, 10.0, 1e9)
     with pytest.raises(ks.DriveError, match="never comes to a standstill"):
         coast(damped, 1.0, 0.0, 10.0, "standstill")
