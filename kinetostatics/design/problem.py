@@ -128,6 +128,11 @@ class Problem:
         self.table_limits = limits if is_moved else ()
         self.quantities = tuple(dict.fromkeys([*quantities, *(positions if is_moved else ())]))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
+        if self.program.unrecorded:
+            raise NotGivenError(
+                f"design: a search needs derivatives, but {', '.join(self.program.unrecorded)} does more than arithmetic "
+                "with sin, cos and sqrt of `arithmetic`; write it with these, or give a ks.Table"
+            )
         self.evaluations = 0
         self.stepped: Any = None
         self._curves = lru_cache(MAX_CACHED_DESIGNS)(lambda design: self._computed(np.frombuffer(design)))

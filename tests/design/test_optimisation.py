@@ -249,6 +249,13 @@ def test_an_unresolved_output_is_refused():
         true_value(parsed("largest B"), scene)
 
 
+def test_a_function_without_derivatives_is_refused():
+    work = ks.ProcessForce(lambda q: np.where(np.cos(q.crank_angle) > 0.0, -9.0, 0.0))
+    scene = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 30.0, loads=work)
+    with pytest.raises(ks.NotGivenError, match="needs derivatives, but ProcessForce on 'slider' does more than"):
+        ks.design.optimise(scene, {"slider.mass": (1.0, 2.0)}, minimise="rms balancing_torque")
+
+
 # Outputs with their derivatives
 
 COUNT = 180
