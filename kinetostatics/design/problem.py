@@ -130,8 +130,8 @@ class Problem:
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         if self.program.unrecorded:
             raise NotGivenError(
-                f"design: a search needs derivatives, but {', '.join(self.program.unrecorded)} does more than arithmetic "
-                "with sin, cos and sqrt of `arithmetic`; write it with these, or give a ks.Table"
+                f"design: a search needs derivatives, but {', '.join(self.program.unrecorded)} does more than "
+                "arithmetic with sin, cos and sqrt of `arithmetic`; write it with these, or give a ks.Table"
             )
         self.evaluations = 0
         self.stepped: Any = None
