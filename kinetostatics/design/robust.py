@@ -130,7 +130,7 @@ def harrell_davis_weights(quantile, count):
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 32
+ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 128
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
 MAX_CACHED_BLOCKS = 64
