@@ -130,7 +130,7 @@ def harrell_davis_weights(quantile, count):
     return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))
 
 
-ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 32
+ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 128
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
 MAX_CACHED_BLOCKS = 64
@@ -245,17 +245,18 @@ class SampledOutput:
         """Yield the curve of each of some samples, on pieces between its own kinks."""
         output = without_ratio(self.output)
         turns = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
-        ((_, pieces, known),) = turns.refined((output,))
-        if self._design_numbers:
-            some = {path: values[pieces.owner] for path, values in numbers.items()}
-            values, slopes = self._curves(some, changes[:, pieces.owner], pieces.angle)
-        else:
-            (((_, squared), rows),) = known.items()
-            values = np.sqrt(rows[:, 1:-1]) if squared else rows[:, 1:-1]
-            slopes = np.zeros((len(values), 0, pieces.count))
-        for sample in range(turns.designs):
-            own, mask = pieces.some(np.arange(turns.designs) == sample)
-            yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), own, bool(self._vector))
+        for samples, pieces, known in turns.refined((output,)):
+            own = samples[pieces.owner]
+            if self._design_numbers:
+                some = {path: values[own] for path, values in numbers.items()}
+                values, slopes = self._curves(some, changes[:, own], pieces.angle)
+            else:
+                (((_, squared), rows),) = known.items()
+                values = np.sqrt(rows[:, 1:-1]) if squared else rows[:, 1:-1]
+                slopes = np.zeros((len(values), 0, pieces.count))
+            for sample in range(samples.size):
+                alone, mask = pieces.some(np.arange(samples.size) == sample)
+                yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), alone, bool(self._vector))
 
     def _curves(self, numbers, changes, angle=None):
         """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""

@@ -48,6 +48,16 @@ def test_spread_outputs_equal_single_machines():
         assert_allclose(value, means[0] / means[1], rtol=2e-4)
 
 
+def test_blocks_of_samples_with_kinks_do_not_matter(monkeypatch):
+    spread = ks.design.Spread(0.9, {"slider.mass": "normal 0 % +- 2 %"})
+    found = []
+    for values in (100_000, 2_000):
+        monkeypatch.setattr("kinetostatics.solution.piecewise_turns.BLOCK_VALUES", values)
+        case = shipped("sawframe_2r63_friction")
+        found.append(ks.design.over_spread(case, "largest O", spread, variant="cam-circle", samples=16))
+    assert np.array_equal(*found)
+
+
 def test_studys_design_has_the_quantile_of_the_study():
     spread = ks.design.Spread(0.05, CIRCLE)
     found = ks.design.over_spread(SAW, RATIO, spread, variant="cam-circle", samples=1024)
