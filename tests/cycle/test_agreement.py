@@ -15,8 +15,8 @@ MEANS = ("mean", "mean_absolute", "swing")
 AGREEMENT = 1e-9
 """Of extremes and their like, relative to the largest value of the quantity."""
 AGREEMENTS = {"sweep": 1e-8, "tolerances": 1e-8, "flywheel": 1e-8}
-"""Parts that agree less: sweeps resolve outputs to that, a swing relative to the largest torque; flywheels find jumps of
-undeclared functions to about that of a radian."""
+"""Parts that agree less: sweeps resolve outputs to that, a swing relative to the largest torque; the energy of a
+flywheel relative to itself, where an undeclared function jumps."""
 
 
 def figures(pulsed, names, outputs, flywheel):
