@@ -24,7 +24,7 @@ MAX_SPEED_RATIO = 1e3
 SPEED_TOLERANCE = 1e-12
 """Relative error of the speed of lift-off."""
 HARMONICS, SURGE_POINTS = 360, 16
-"""Harmonics of the spring's end, and crank angles in half a period of the highest one."""
+"""Harmonics of the spring's end, and crank angles in two periods of the highest one."""
 
 
 class Surge(NamedTuple):
@@ -258,7 +258,7 @@ def spring_surge(solution, spring_mass):
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
-    pieces = Pieces(edges_between(solution.sampled.pieces.edges, 0.5 * TURN / HARMONICS), SURGE_POINTS)
+    pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
     end = solution.at(angle).placement.travels[spring.on].position
     rate = float(weights @ (spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
