@@ -104,7 +104,6 @@ class DrivenMachine:
                 "depend on angle, position and velocity alone",
             )
         self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
-        self.kinks = np.empty(0)
         if self._slip is not None:
             rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
             friction = replace_unchecked(self.scene.friction, rubs=rubs)
@@ -152,11 +151,17 @@ class DrivenMachine:
         with np.errstate(all="ignore"):
             return [(item, drive_dependence(item, motion)) for item in functions]
 
-    def locate_kinks(self, speed):
-        """Find `kinks`, crank angles in (0, period) at which loads have or may have kinks or friction jumps, rad.
+    @cached_property
+    def kinks(self):
+        """Crank angles in (0, period) at which loads have or may have kinks, or friction jumps, rad."""
+        return self._kinks_at(self.direction)
 
-        Load functions without kinks are sampled at a crank speed.
-        """
+    def locate_kinks(self, speed):
+        """Let `kinks` be those of load functions at a crank speed."""
+        if undeclared_functions(self.scene.loads):
+            self.kinks = self._kinks_at(speed)
+
+    def _kinks_at(self, speed):
         scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
         free = replace_unchecked(scene.unsolved(np.zeros(1)), silent=True)
         angles = [kinks_and_jumps(free, 0)[0], self.jumps]
@@ -166,7 +171,7 @@ class DrivenMachine:
                 return self.without_friction(angle, np.full(angle.shape, speed)).torque
 
             angles.append(undeclared_jumps(torque, angles[0]))
-        self.kinks = _distinct_angles(np.concatenate(angles), self.period)
+        return _distinct_angles(np.concatenate(angles), self.period)
 
     def _speeds(self, angle):
         return np.full(angle.shape, self.direction)

@@ -27,6 +27,8 @@ MAX_STEPS_AT_REST = 40
 """Fixed-point steps of the energy beside a standstill."""
 MAX_REACH_GROWTH = 8.0
 """Ratio of the crank angles that are tried one after the other."""
+MAX_ADDED_EDGES = 6
+"""Edges besides those of the first period above which a period begins with the first ones again."""
 MIN_SPEED = 1e-3
 """Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
 MIN_PART = 1e-6
@@ -281,7 +283,7 @@ class March:
         """Keep the pieces of a whole period for the next one, unless they have become many."""
         base, _, before = self.known[machine.direction]
         first = self.first.setdefault(machine.direction, base)
-        kept = pieces if pieces.edges.size <= 2 * first.edges.size + 8 else first
+        kept = pieces if pieces.edges.size <= first.edges.size + MAX_ADDED_EDGES else first
         self.known[machine.direction] = kept, kinks, [*before[-1:], (pieces, series)]
 
     def _within_time(self, machine):

@@ -14,6 +14,7 @@ import kinetostatics as ks
 from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.studies.methods.running import study_running
 from support import DATA
+from support.drives import RUBBING
 from support.speed import PLAIN, SPEED
 
 REFERENCE = json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
@@ -108,3 +109,27 @@ def test_all_running_methods_at_every_accuracy(benchmark, tell):
             tell(f"within {wanted:g}: {method} takes {ratio:.2f} times as long as ours, {mine['time [ms]']:.3g} ms")
             benchmark.extra_info[f"{method}, {wanted:g}"] = ratio
     benchmark(ours)
+
+
+LEAST_WITH_FRICTION = 5.0
+
+
+def test_motion_with_friction_beside_solve_ivp(benchmark, tell):
+    """Coasting for 0.3 s; the rival solves for the same accelerations, one after another."""
+    driven = DrivenMachine("benchmark", RUBBING, None, 20.0)
+
+    def change(time, state):
+        angle, speed = np.array(state)[:, None]
+        return state[1], driven.acceleration(angle, speed)[0]
+
+    def coasting():
+        return ks.drive.coast(RUBBING, 20.0, 1.0, 8.0, until=0.3).crank_angle[-1]
+
+    def rival():
+        return solve_ivp(change, (0.0, 0.3), (1.0, 8.0), "DOP853", rtol=1e-9, atol=1e-9).y[0, -1]
+
+    assert abs(rival() - coasting()) < 1e-6
+    times = [min(timeit.repeat(call, number=1, repeat=3)) for call in (coasting, rival)]
+    tell(f"coasting with friction: {1e3 * times[0]:.3g} ms, DOP853 {times[1] / times[0]:.1f} times as long")
+    benchmark(coasting)
+    assert times[1] > LEAST_WITH_FRICTION * times[0]

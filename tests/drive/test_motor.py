@@ -137,7 +137,6 @@ class Speedy:
 
 def test_declared_kinks_may_depend_on_speed():
     found = driven(DISC, ks.Torque(Speedy(), on="crank"))
-    found.locate_kinks(5.0)
     assert found.kinks.tolist() == [2.0]
     assert found.loads_by_speed
     left = [found.balance(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
