@@ -326,20 +326,21 @@ def pass_part(driven, pieces, kinks, start, before):
         guess, *older = (part.evaluate(series, pieces.angle) for part, series in before[::-1])
         guess = guess + (guess - older[0] if older else 0.0)
         guess = guess if guess.min() > 0.0 else np.full(guess.shape, start)
-    found = solve_energy(driven, pieces, guess, start)
+
+    def again(finer, guess, near=None):
+        solved = solve_energy(driven, finer, guess(finer), start, near)
+        if solved is None or not solved[2].inertia.min() > MIN_INERTIA_RATIO * solved[2].inertia.max():
+            return None
+        return finer, solved
+
+    found = again(pieces, lambda pieces: guess)
     if found is None:
         return None
 
-    def again(finer, guess, near):
-        solved = solve_energy(driven, finer, guess(finer), start, near)
-        return solved and (finer, solved)
-
-    resolved = resolve_energy(driven, pieces, found, kinks, again)
+    resolved = resolve_energy(driven, *found, kinks, again)
     if resolved is None:
         return None
     pieces, (energy, far, linear), kinks = resolved
-    if not linear.inertia.min() > MIN_INERTIA_RATIO * linear.inertia.max():
-        return None
     way = int(driven.direction)
     half, middle = pieces.half[::way], 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[::way]
     friction = linear.state.torque - driven.without_friction(pieces.angle, linear.speed).torque
