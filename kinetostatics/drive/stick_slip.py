@@ -337,10 +337,10 @@ def pass_part(driven, pieces, kinks, start, before):
     if found is None:
         return None
 
-    resolved = resolve_energy(driven, *found, kinks, again)
-    if resolved is None:
+    refined = resolve_energy(driven, found[0], found[1], kinks, again)
+    if refined is None:
         return None
-    pieces, (energy, far, linear), kinks = resolved
+    pieces, (energy, far, linear), kinks = refined
     way = int(driven.direction)
     half, middle = pieces.half[::way], 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[::way]
     friction = linear.state.torque - driven.without_friction(pieces.angle, linear.speed).torque
