@@ -29,6 +29,8 @@ MAX_REACH_GROWTH = 8.0
 """Ratio of the crank angles that are tried one after the other."""
 MAX_ADDED_EDGES = 6
 """Edges besides those of the first period above which a period begins with the first ones again."""
+MAX_EDGES = 200
+"""Edges of a part, besides 8 times those at first, above which a shorter part is tried."""
 MIN_SPEED = 1e-3
 """Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
 MIN_PART = 1e-6
@@ -327,7 +329,11 @@ def pass_part(driven, pieces, kinks, start, before):
         guess = guess + (guess - older[0] if older else 0.0)
         guess = guess if guess.min() > 0.0 else np.full(guess.shape, start)
 
+    most = 8 * pieces.edges.size + MAX_EDGES
+
     def again(finer, guess, near=None):
+        if finer.edges.size > most:
+            return None
         solved = solve_energy(driven, finer, guess(finer), start, near)
         if solved is None or not solved[2].inertia.min() > MIN_INERTIA_RATIO * solved[2].inertia.max():
             return None
