@@ -22,6 +22,7 @@ SPEED_ROUNDING = 1e-14
 MAX_NEWTON_STEPS = 40
 MAX_STEPS_FROM_START = 12
 """The same from a start, where a failure only halves the angle."""
+EPSILON = float(np.finfo(float).eps)
 STEPS_BELOW_ZERO = 2
 """Steps from a start after which an energy below 0 counts as a standstill."""
 ENERGY_TOLERANCE = 1e-14
@@ -176,7 +177,7 @@ def _unresolved(driven, pieces, energy, linear):
     """Mask of the pieces whose series are not resolved and that can be halved."""
     state, inertia, speed, net, growth, _ = linear
     wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
-    rounding = SPEED_ROUNDING * np.abs(driven.motor_slope(speed) * speed).max()
+    rounding = max(SPEED_ROUNDING * np.abs(driven.motor_slope(speed) * speed).max(), EPSILON * energy.max())
     floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(net + state.torque).max()), rounding)
     rough = pieces.tails(net) * weights(pieces) > floor
     tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]

@@ -29,6 +29,8 @@ MAX_REACH_GROWTH = 8.0
 """Ratio of the crank angles that are tried one after the other."""
 MAX_ADDED_EDGES = 6
 """Edges besides those of the first period above which a period begins with the first ones again."""
+MAX_EDGES = 200
+"""Edges of a part, besides 8 times those at first, above which a shorter part is tried."""
 MIN_SPEED = 1e-3
 """Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
 MIN_PART = 1e-6
@@ -326,20 +328,25 @@ def pass_part(driven, pieces, kinks, start, before):
         guess, *older = (part.evaluate(series, pieces.angle) for part, series in before[::-1])
         guess = guess + (guess - older[0] if older else 0.0)
         guess = guess if guess.min() > 0.0 else np.full(guess.shape, start)
-    found = solve_energy(driven, pieces, guess, start)
+
+    most = 8 * pieces.edges.size + MAX_EDGES
+
+    def again(finer, guess, near=None):
+        if finer.edges.size > most:
+            return None
+        solved = solve_energy(driven, finer, guess(finer), start, near)
+        if solved is None or not solved[2].inertia.min() > MIN_INERTIA_RATIO * solved[2].inertia.max():
+            return None
+        return finer, solved
+
+    found = again(pieces, lambda pieces: guess)
     if found is None:
         return None
 
-    def again(finer, guess, near):
-        solved = solve_energy(driven, finer, guess(finer), start, near)
-        return solved and (finer, solved)
-
-    resolved = resolve_energy(driven, pieces, found, kinks, again)
-    if resolved is None:
+    refined = resolve_energy(driven, found[0], found[1], kinks, again)
+    if refined is None:
         return None
-    pieces, (energy, far, linear), kinks = resolved
-    if not linear.inertia.min() > MIN_INERTIA_RATIO * linear.inertia.max():
-        return None
+    pieces, (energy, far, linear), kinks = refined
     way = int(driven.direction)
     half, middle = pieces.half[::way], 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[::way]
     friction = linear.state.torque - driven.without_friction(pieces.angle, linear.speed).torque
