@@ -173,15 +173,17 @@ DOORS = {
     ),
     "Scene": (
         ks.Scene,
-        {"crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2"), "sense": (1.0, "1")},
+        {"crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2"), "sense": (1.0, "1")}
+        | {"resolution": (1e-3, "rad")},
         {"mechanism": PUMP},
     ),
     "solve": (
         ks.solve,
         {"crank_angle": (TURN, "rad"), "crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2")}
-        | {"sense": (1.0, "1")},
+        | {"sense": (1.0, "1"), "resolution": (1e-3, "rad")},
         {"mechanism": PUMP},
     ),
+    "Scene.check_resolution": (SCENE.check_resolution, {"step": (1e-4, "rad")}, {}),
     "Scene.solve": (SCENE.solve, {"angles": (TURN, "rad")}, {}),
     "Solution.at": (SOLVED.at, {"crank_angle": (TURN, "rad")}, {}),
     "coast": (
@@ -471,7 +473,7 @@ RESULTS |= {
     "Variant",
 }
 RESULTS |= {"Comparison", "DrivenComparison", "EnergyFlow", "Extremes", "Losses", "Needs", "PrincipalPoints", "Program"}
-RESULTS |= {"Tolerances", "Uncertainty"}
+RESULTS |= {"ResolutionCheck", "Tolerances", "Uncertainty"}
 """Classes that the library makes itself."""
 
 

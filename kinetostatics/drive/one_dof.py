@@ -333,11 +333,16 @@ class DrivenMachine:
 
     @cached_property
     def _friction_pairs(self):
-        """Force, couple and half length of joints whose friction has a kink where these vanish or are equal."""
-        pairs, acting = self.scene.mechanism.pairs, self.scene.friction.acting
-        rolling = [(pairs[name].force, None, None) for name in acting if isinstance(pairs[name], Rolling)]
-        sliding = [name for name in acting if isinstance(pairs[name], Sliding)]
-        return rolling + [(pairs[name].force, pairs[name].couple, acting[name].half_length) for name in sliding]
+        """Force, couple and half length of joints whose friction has a kink where these vanish or are equal.
+
+        A couple that is no quantity, as of a cam's block, is left out: pieces are halved at its kinks.
+        """
+        mechanism, acting = self.scene.mechanism, self.scene.friction.acting
+        pairs = {name: mechanism.pairs[name] for name in acting}
+        rolling = [(pair.force, None, None) for pair in pairs.values() if isinstance(pair, Rolling)]
+        sliding = [(name, pair) for name, pair in pairs.items() if isinstance(pair, Sliding)]
+        halves = [acting[name].half_length if pair.couple in mechanism.outputs else None for name, pair in sliding]
+        return rolling + [(pair.force, pair.couple, half) for (_, pair), half in zip(sliding, halves, strict=True)]
 
     def _friction_outputs(self, angle, speed, acceleration, senses):
         """Outputs of the friction program at crank angles, speeds and accelerations of one shape."""

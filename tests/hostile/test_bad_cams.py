@@ -341,6 +341,7 @@ def machines(drive):
     }
 
 
+@pytest.mark.filterwarnings("ignore:.*changes between its samples:kinetostatics.HintWarning")
 @pytest.mark.parametrize("name", ["gaps", "batch", "speeds", "noise", "taken"])
 def test_machines_that_no_cam_balances_are_refused(drive, name):
     scene, text = machines(drive)[name]
