@@ -70,6 +70,6 @@ def test_all_parts_agree(seed):
 
 
 @pytest.mark.slow
-@every("seed", range(200))
+@every("seed", range(0, 200, 5))  # all 200 take six minutes
 def test_all_parts_agree_on_many_scenes(seed):
     assert disagreements(seed, flywheel=seed % 10 == 0) == {}
