@@ -23,6 +23,8 @@ ROUGHNESS = 1e-5
 """Fourth difference, relative to the largest value, of a function that is not smooth: by default of a 64th harmonic."""
 BLOCK_VALUES = 2**20
 """Values of such functions that are computed at a time."""
+SPLIT_SAMPLES = 4
+"""Samples at which a long stretch of a function that is not smooth is split."""
 SECTION_ANGLES, SECTIONS = 33, 9
 """Crank angles that section an interval with a jump, and how often they do, to its last digits."""
 JUMP_TOLERANCE = 1e-6
@@ -203,7 +205,7 @@ class FunctionSamples(NamedTuple):
         Jumps and kinks lie between them. A long stretch, as of measured values with noise, is split every fourth step.
         """
         rough = np.any([_beside(self.change > self.negligible, step) for step in range(-2, 3)], axis=0)
-        inside = _beside(rough, -1) & _beside(rough, 1) & (np.arange(self.angle.size) % 4 > 0)
+        inside = _beside(rough, -1) & _beside(rough, 1) & (np.arange(self.angle.size) % SPLIT_SAMPLES > 0)
         design, place = np.nonzero(rough & ~inside)
         return pad_rows(design, len(self.value), self.angle[place])[0]
 
@@ -228,10 +230,16 @@ class FunctionSamples(NamedTuple):
         return MissedFeatures(title_of(self.item), getattr(self.item, "UNIT", "N"), angle[tops], excess[tops])
 
 
-def undeclared_jumps(function, places):
-    """Crank angles at which a function of the crank angle jumps between neighbouring `rough_places`, (K,), rising."""
-    narrow = np.diff(places) < 1.5 * MAX_FUNCTION_STEP
-    low, high = places[:-1][narrow], places[1:][narrow]
+def undeclared_jumps(function, places, step):
+    """Crank angles at which a function of the crank angle jumps between neighbouring `rough_places`, (K,), rising.
+
+    These are one to four samples, of a `step`, apart.
+    """
+    gaps = np.diff(places)
+    narrow = gaps < (SPLIT_SAMPLES + 0.5) * step
+    parts = gaps[narrow, None] / SPLIT_SAMPLES
+    low = (places[:-1][narrow, None] + parts * np.arange(SPLIT_SAMPLES)).ravel()
+    high = low + np.repeat(parts, SPLIT_SAMPLES)
     if not low.size:
         return low
     row = np.arange(low.size)

@@ -23,10 +23,12 @@ SIDES = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0)
 """By reduction that is a largest value: which sides of a quantity, or its integral, its extreme is on."""
 _AROUND = np.arange(-REACH, REACH + 1)
 _ORDERS = np.arange(2 * REACH + 1)
-JUMP = 1e-6
+JUMP_TOLERANCE = 1e-6
 """Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
-LEVEL = 1e-4
+KINK_TOLERANCE = 1e-4
 """Change of the slope from one piece to the next, by the largest value over the period, that is no kink."""
+ZERO_SQUARE = 1e-13
+"""Square of a magnitude, relative to the largest, that is 0 but for rounding."""
 
 
 def reduced(reduction, curve):
@@ -173,7 +175,8 @@ class PiecewiseCurve(NamedTuple):
             changes[:, part] += side * self._moved(values, slopes, piece[part], place[part])
         if square:
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
-            return side * height, changes / (2.0 * height)
+            rises = np.where(height**2 > ZERO_SQUARE * values.max(), changes / (2.0 * height), 0.0)
+            return side * height, rises  # a magnitude of 0 stays one, to first order
         return found, changes
 
     def _summits(self, values, sectors):
@@ -206,7 +209,10 @@ class PiecewiseCurve(NamedTuple):
         weights, size = pieces.weights_at(ends), np.abs(values).max()
         heights = np.sum(weights * values[pair], axis=1)
         steepness = np.sum(rule(pieces.count).check[[-1, -2]] * values[pair], axis=1) / pieces.half[pair, 0]
-        if abs(np.diff(heights)[0]) > JUMP * size or abs(np.diff(steepness)[0]) < LEVEL * size / pieces.period:
+        if (
+            abs(np.diff(heights)[0]) > JUMP_TOLERANCE * size
+            or abs(np.diff(steepness)[0]) < KINK_TOLERANCE * size / pieces.period
+        ):
             return np.zeros(len(slopes))
         one, other = np.einsum("npk,pk->pn", slopes[:, pair], weights)
         return steepness[int(end < 0.0)] * (one - other) / np.diff(steepness)

@@ -327,6 +327,10 @@ class SampledOutput:
         problem = None
         if SPEED in self.problem.names:
             problem = f"trim sets {SPEED}, so it cannot vary too"
+        elif has_kinks(unchecked_turn(scene_of(self.problem.source), 1), self.output.quantity):
+            problem = (
+                f"trim takes outputs without kinks, but loads, friction or a cam's law put some into {self.output}"
+            )
         else:
             numbers, _ = self._numbers({}, slice(0, 1))
             changes = np.zeros((len(self.paths), 1, len(self.problem.names)))

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import kinks_and_jumps
-from ..cycle.load_functions import undeclared_functions, undeclared_jumps
+from ..cycle.kinks import declared_kinks, kinks_and_jumps
+from ..cycle.load_functions import repeating_problem, undeclared_functions, undeclared_jumps
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
@@ -92,6 +92,7 @@ class DrivenMachine:
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
         checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
         self.period = self.scene.period
+        checks.require(owner, repeating_problem(self.scene.unsolved(np.zeros(1))))
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         self._engine, self._compiled = engine, engine == "compiled"
@@ -157,9 +158,24 @@ class DrivenMachine:
         return self._kinks_at(self.direction)
 
     def locate_kinks(self, speed):
-        """Let `kinks` be those of load functions at a crank speed."""
-        if undeclared_functions(self.scene.loads):
+        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on."""
+        if self.loads_by_speed or undeclared_functions(self.scene.loads):
             self.kinks = self._kinks_at(speed)
+
+    def require_fixed_kinks(self):
+        """Refuse loads that declare kinks which move with the crank speed: a motion cannot tell where they are."""
+        if not self.loads_by_speed:
+            return
+        slow, fast = (
+            declared_kinks(replace_unchecked(self.scene, crank_speed=speed * self.direction).unsolved(np.zeros(1)))[0]
+            for speed in (1.0, 10.0)
+        )
+        if slow.size != fast.size or np.any(np.abs(slow - fast) > ANGLE_TOLERANCE):
+            raise DriveError(
+                f"{self.scene.mechanism.name}: a load declares `kinks` that move with the crank speed, so a motion "
+                "cannot tell where they are; leave `kinks` out, and the function is sampled, or let them depend on the "
+                "crank angle alone"
+            )
 
     def _kinks_at(self, speed):
         scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
@@ -170,7 +186,8 @@ class DrivenMachine:
             def torque(angle):
                 return self.without_friction(angle, np.full(angle.shape, speed)).torque
 
-            angles.append(undeclared_jumps(torque, angles[0]))
+            places = np.append(angles[0], angles[0][:1] + self.period)
+            angles.append(undeclared_jumps(torque, places, self.scene.resolution))
         return _distinct_angles(np.concatenate(angles), self.period)
 
     def _speeds(self, angle):

@@ -249,6 +249,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
         checks.require("steady", wrong)
         direction = math.copysign(1.0, speed)
     driven = DrivenMachine("steady", scene, motor, flywheel, engine, direction)
+    driven.require_fixed_kinks()
     is_count = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
     checks.require("steady", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE) if is_count else None)
     scene = replace_unchecked(scene, sense=None)  # the sense is the sign of the speed, which never vanishes in running

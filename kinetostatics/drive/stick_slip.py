@@ -17,14 +17,19 @@ from ..cycle.piecewise import TAIL, Pieces, rule
 from ..errors import DriveError, KinetostaticsError
 from ..numbers.brackets import find_roots
 from .energy_equation import StandstillError, resolve_energy, solve_energy
+from .one_dof import ANGLE_AHEAD
 from .resolution import MIN_INERTIA_RATIO, plain_pieces, resolved
 
 MAX_PARTS = 10_000
 """Parts of the period, most of them whole, after which a motion is refused."""
 ANGLE_TOLERANCE = 1e-12
 """Crank angles nearer than this to an edge, rad, count as there."""
+REST_ANGLE = 1e-10
+"""Crank angle, rad, within which a motion that cannot be followed further stops."""
 MAX_STEPS_AT_REST = 40
 """Fixed-point steps of the energy beside a standstill."""
+ROUNDING = 1e-15
+"""Relative rounding of crank angles and torques: noise of the net torque on steep ramps and near an equilibrium."""
 MAX_REACH_GROWTH = 8.0
 """Ratio of the crank angles that are tried one after the other."""
 MAX_ADDED_EDGES = 6
@@ -106,8 +111,16 @@ class Motion(NamedTuple):
 
 
 def sense_from_rest(driven, angle):
-    """Sense in which a machine starts from rest, +1 or -1; 0 if it stays at rest."""
-    forward, backward = (driven.along(sense).torque_at_rest(angle)[0] for sense in (1.0, -1.0))
+    """Sense in which a machine starts from rest, +1 or -1; 0 if it stays at rest.
+
+    At a kink, where loads may jump, each sense has the torque ahead of it. A torque whose sign depends on the rounding
+    of the crank angle moves nothing.
+    """
+    at_kink = np.any(np.abs(driven.kinks - angle % driven.period) < ANGLE_TOLERANCE)
+    places = angle + ROUNDING * max(abs(angle), 1.0) * np.array([-1.0, 0.0, 1.0])
+    ahead = places + ANGLE_AHEAD * at_kink, places - ANGLE_AHEAD * at_kink
+    forward = min(driven.along(1.0).torque_at_rest(place)[0] for place in ahead[0])
+    backward = max(driven.along(-1.0).torque_at_rest(place)[0] for place in ahead[1])
     if forward > 0.0 > backward:
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
@@ -179,6 +192,9 @@ class March:
             if found is None:
                 reach = 0.5 * length
                 if reach < ANGLE_TOLERANCE:
+                    if self._stops_here():
+                        self.energy = self.speed = 0.0
+                        return "still", None
                     if isinstance(self.problem, KinetostaticsError):
                         raise self.problem
                     return "lost", None
@@ -201,6 +217,15 @@ class March:
                 return "turned", None
             if self.energy == 0.0:
                 return "still", None
+
+    def _stops_here(self):
+        """Whether the torques around take the energy that is left within `REST_ANGLE`."""
+        around = (
+            self.driven.along(sense).torque_at_rest(self.inside + way * ANGLE_AHEAD)[0]
+            for sense in (1.0, -1.0)
+            for way in (1.0, -1.0)
+        )
+        return self.energy <= REST_ANGLE * max(map(abs, around))
 
     def turn(self, direction):
         """Follow the motion over a period: whether it comes round. `energy_at` knows its energy."""
@@ -393,7 +418,7 @@ def _beside_rest(driven, angle, length, energy, count):
     """
     share, means, whole = _means(count)
     direction, root = driven.direction, 1.0 if energy is None else -1.0
-    mean, before = None, math.inf
+    mean, before, noise = None, math.inf, 0.0
     for _ in range(MAX_STEPS_AT_REST):
         place = share * share if energy is None else (1.0 - share) * (1.0 + share)
         places = angle + direction * length * place
@@ -403,23 +428,25 @@ def _beside_rest(driven, angle, length, energy, count):
             mean = np.full(count, mean)
         pace = np.sqrt(2.0 * length * mean / inertia)
         state = driven.at(places, direction * share * pace)
-        torque = root * direction * (driven.motor_torque(direction * share * pace) - state.torque)
+        motor = driven.motor_torque(direction * share * pace)
+        torque = root * direction * (motor - state.torque)
         last, mean, total = mean, means @ torque, float(whole @ torque)
         if not (mean.min() > 0.0 and total > 0.0):
             return None
         size = float(np.abs(mean - last).max() / mean.max())
+        noise = ROUNDING * (abs(angle) / length + np.abs([motor, state.torque]).max() / mean.max())
         if energy is not None:
             resting = float(rule(count).many[0] @ rule(count).series @ torque)
             step = (energy / length - total) / (resting if resting > 0.0 else total)
             length, size = length * (1.0 + max(step, -0.5)), max(size, abs(step))
-        if size < 1e-15 or (size < 1e-12 and size >= 0.5 * before):
+        if size < 1e-15 or (size < 1e-12 + noise and size >= 0.5 * before):
             break
         before = size
     else:
         return None
     slowness = np.sqrt(2.0 * length * inertia / mean)
     tails = [Pieces(np.array([-1.0, 1.0]), count).tail(row[None]).max() for row in (torque, pace, slowness)]
-    if max(tails) > 10.0 * TAIL or not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
+    if max(tails) > 10.0 * TAIL + noise or not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
         return None
     friction = state.torque - driven.without_friction(places, direction * share * pace).torque
     way, reach = int(root), direction * length

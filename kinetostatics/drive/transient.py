@@ -150,6 +150,7 @@ def _initial_state(owner, scene, motor, flywheel, from_angle, from_speed, engine
     for hint in plausibility.single_angle_hints(angle):
         warnings.warn(HintWarning(owner, hint), stacklevel=3)
     driven = DrivenMachine(owner, scene, motor, inertia, engine)
+    driven.require_fixed_kinks()
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():
         raise DriveError(
