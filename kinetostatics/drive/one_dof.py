@@ -92,9 +92,9 @@ class DrivenMachine:
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
         checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
         self.period = self.scene.period
-        checks.require(owner, repeating_problem(self.scene.unsolved(np.zeros(1))))
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
+        checks.require(owner, repeating_problem(self.scene.unsolved(np.zeros(1))))  # of pure functions
         self._engine, self._compiled = engine, engine == "compiled"
         self.constant_torque = 0.0
         self._cached_state: tuple[Any, State] | None = None

@@ -278,3 +278,13 @@ def test_swing_is_the_largest_of_its_parts():
         move = step * np.eye(POINT.size)[place]
         high, low = (measures.bounded("swing", curve(POINT + side * move))[0] for side in (1, -1))
         assert_allclose(slopes[place], (high - low) / (2 * step), rtol=0, atol=2e-7)
+
+
+def test_a_range_with_a_smallest_value_of_0_is_minimised():
+    corner = np.radians(40.0)
+    force = ks.Table([0.0, corner, corner + 0.02, corner + 0.3, corner + 0.32, 2.0 * np.pi], [0, 0, -800, -300, 0, 0])
+    loads = [ks.ProcessForce(force), ks.Spring(2000.0, 1.0)]
+    scene = ks.Scene(ks.crank_slider(0.3, 1.1, slider=ks.Link(10.0)), 30.0, loads=loads)
+    found = ks.design.optimise(scene, {"slider.mass": (5.0, 20.0)}, minimise="range O")
+    assert found.values["slider.mass"] == pytest.approx(5.0, rel=1e-9)
+    assert ks.extremes(found.scene.solve(1), "O").range == pytest.approx((0.0, 918.181818), rel=1e-8)  # least is 0

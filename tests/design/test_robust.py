@@ -155,3 +155,11 @@ def test_quantile_weights_sum_to_one():
     weights = harrell_davis_weights(0.05, 4096)
     assert weights.sum() == pytest.approx(1.0, abs=1e-12)
     assert weights @ np.linspace(0, 1, 4096) == pytest.approx(0.05, abs=1e-3)
+
+
+def test_trim_refuses_outputs_with_kinks():
+    pulse = ks.Table(np.radians([0.0, 99.9, 100.0, 100.5, 100.6, 360.0]), [0.0, 0.0, -1e5, -1e5, 0.0, 0.0])
+    scene = ks.Scene(ks.crank_slider(0.3, 1.1, slider=ks.Link(10.0)), 30.0, loads=ks.ProcessForce(pulse))
+    spread = ks.design.Spread(0.5, {"slider.mass": "normal 0 % +- 1 %"}, trim=0.02)
+    with pytest.raises(ks.ParameterError, match="trim takes outputs without kinks, but loads, friction or a cam"):
+        ks.design.over_spread(scene, "largest_absolute balancing_torque", spread, samples=16)

@@ -167,7 +167,7 @@ RUNNING = {
     "huge motor": (PUMP, (), kloss(power=1e12), 1.0, "so rigid .*give it its true slip"),
     "load without bound": (
         PUMP,
-        (torque(lambda motion: 1e-6 / (motion.crank_angle - 2.0) ** 2),),
+        (torque(lambda motion: 1e-6 / (np.mod(motion.crank_angle, 2.0 * np.pi) - 2.0) ** 2),),
         kloss(),
         1.0,
         r"cannot be resolved near crank angle 114\.59",
