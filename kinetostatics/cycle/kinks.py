@@ -84,7 +84,7 @@ def kinks_and_jumps(solution, samples):
 
 
 def declared_kinks(motion):
-    """The same of loads and laws of cams alone, of a solution or a motion."""
+    """Kinks and jumps of loads and laws of cams, without friction and load functions, of a solution or a motion."""
     sources = [(law_kinks(motion), law_kinks(motion, jumps=True))]
     for part in kink_sources(motion.loads):
         starts = _period_starts(part, motion)[:, None]

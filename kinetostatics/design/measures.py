@@ -202,7 +202,7 @@ class PiecewiseCurve(NamedTuple):
         return found
 
     def _moved(self, values, slopes, piece, end):
-        """What the move of a kink at an end of a piece adds to the derivatives of the value there (n,)."""
+        """Derivatives of the value at a kink, at an end of a piece, from the shift of the kink, (n,)."""
         pieces = self.pieces
         later = piece if end < 0.0 else (piece + 1) % len(values)
         pair, ends = [later - 1, later], np.array([1.0, -1.0])

@@ -21,7 +21,7 @@ SPEED_ROUNDING = 1e-14
 """Rounding of the speed, relative; the motor's slope turns it into rounding of the torque."""
 MAX_NEWTON_STEPS = 40
 MAX_STEPS_FROM_START = 12
-"""The same from a start, where a failure only halves the angle."""
+"""Newton steps of a motion from a start; a failure only halves the angle that is tried."""
 EPSILON = float(np.finfo(float).eps)
 STEPS_BELOW_ZERO = 2
 """Steps from a start after which an energy below 0 counts as a standstill."""

@@ -228,7 +228,7 @@ class March:
         return self.energy <= REST_ANGLE * max(map(abs, around))
 
     def turn(self, direction):
-        """Follow the motion over a period: whether it comes round. `energy_at` knows its energy."""
+        """Follow the motion over a period: whether it completes it. `energy_at` returns its energy afterwards."""
         self.left, self.turned = self.driven.period, []
         return self.run(direction)[0] == "turned"
 

@@ -241,7 +241,8 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
         driven.scene.solve(np.array([angle + speed * 1e-6]))
         raise DriveError(
             f"{scene.mechanism.name}: the motion cannot be followed beyond {time[-1]:.6g} s, at crank angle "
-            f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position there",
+            f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position "
+            "there, or have no inertia",
             crank_angle=float(angle),
         )
     if found.end == "end" and not isinstance(until, float):

@@ -298,10 +298,8 @@ def _dataclass_flattener(kind):
     Its source names the fields one after another: Python 3.11 finds named attributes at a known place, while a loop
     with `getattr` looks each up again, which made a scene's flattening 1.6 times as long.
     """
-    over_angles, source = (
-        getattr(kind, "OVER_ANGLES", ()),
-        "def flattened(item, leaves):\n    append = leaves.numbers.append",
-    )
+    over_angles = getattr(kind, "OVER_ANGLES", ())
+    source = "def flattened(item, leaves):\n    append = leaves.numbers.append"
     for name, structural in field_kinds(kind):
         of_array = "of_table" if name in over_angles else "of_constants"
         source += (_STRUCTURAL_SOURCE if structural else _NUMERIC_SOURCE).format(name=name, of_array=of_array)

@@ -59,11 +59,11 @@ class PiecewiseTurns(NamedTuple):
     engine: str = "numpy"
 
     @classmethod
-    def of(cls, scene, outputs, angles, straight=KINK_TOLERANCE, engine="numpy"):
-        """Pieces for some outputs with at least `angles` crank angles; kinks of loads below `straight` are ignored."""
+    def of(cls, scene, outputs, angles, kink_tolerance=KINK_TOLERANCE, engine="numpy"):
+        """Pieces for some outputs with at least `angles` crank angles; smaller kinks of loads are ignored."""
         solution = unchecked_turn(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
-        found, rest = design_kinks(solution, straight)
+        found, rest = design_kinks(solution, kink_tolerance)
         found, period = np.broadcast_to(found, (count, found.shape[1])), solution.period
         width = min(period * POINTS / angles, TURN / (2 * order or 1))
         return cls(scene, Pieces.between(found, period, width, POINTS), max(MAX_OUTPUT_ERROR, rest), engine)
