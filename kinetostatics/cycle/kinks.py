@@ -27,6 +27,8 @@ SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
 """Size of a kink, relative to its load's largest value, that counts, unless a load has more such kinks than that."""
 SAMPLES = 720
 """Crank angles of a turn between which a rate or force of friction is expected to change its sign once."""
+FINE_SAMPLES = 1440
+"""The same over the period of one design."""
 SAMPLE_OFFSET = 1e-3
 """Crank angle of the first sample, rad: no sample stands at a dead centre."""
 MAX_VERTEX = 0.1
@@ -65,11 +67,10 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
     return angles, largest_left_out
 
 
-def kinks_and_jumps(solution, samples):
+def kinks_and_jumps(solution):
     """Crank angles of all kinks, and of those that may be jumps, of one design over the period, rad, rising.
 
-    The signs of friction are sampled at `samples` crank angles. A `HintWarning` tells where load functions without
-    kinks change between their samples.
+    A `HintWarning` names crank angles where load functions without kinks change between their samples.
     """
     kinks, jumps = declared_kinks(solution)
     functions = samples_of_functions(solution)
@@ -79,7 +80,7 @@ def kinks_and_jumps(solution, samples):
         warnings.warn(HintWarning(solution.mechanism.name, text), stacklevel=3)
     if not solution.friction.acting:
         return kinks, jumps
-    friction = _friction_sign_changes(solution, samples)[1].ravel()
+    friction = _friction_sign_changes(solution, FINE_SAMPLES)[1].ravel()
     return np.union1d(kinks, friction), np.union1d(jumps, friction)
 
 

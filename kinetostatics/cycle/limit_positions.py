@@ -14,12 +14,10 @@ from ..machine.loads import TURN, refusals
 from ..mechanics import assembly, energy_contact
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .kinks import ANGLE_TOLERANCE, kinks_and_jumps
+from .kinks import ANGLE_TOLERANCE, FINE_SAMPLES, kinks_and_jumps
 from .load_functions import repeating_problem
 from .piecewise import JUMP_OFFSET, Pieces
 
-SAMPLES = 1440
-"""Even samples of a turn at which friction is looked at."""
 MAX_WIDTH = TURN / 8
 """Width of a piece, rad."""
 NEAR = 0.01
@@ -82,7 +80,7 @@ class Turn:
             The solution depends on a table over its own crank angles, or a load does not repeat after its period.
         """
         period = solution.period
-        kinks, jumps = kinks_and_jumps(solution, SAMPLES)
+        kinks, jumps = kinks_and_jumps(solution)
         gaps, limits, passed = _limit_positions(solution, forces)
         graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
         pieces = Pieces.between(np.mod(np.concatenate([kinks, graded]), period)[None], period, MAX_WIDTH)
@@ -105,7 +103,7 @@ class Turn:
     @cached_property
     def even(self):
         """The solution at even crank angles, at which friction is looked at."""
-        return self.at.at(np.linspace(0.0, self.period, round(SAMPLES * self.period / TURN), endpoint=False))
+        return self.at.at(np.linspace(0.0, self.period, round(FINE_SAMPLES * self.period / TURN), endpoint=False))
 
     @property
     def beside_kinks(self):
@@ -248,6 +246,6 @@ def require_single(solution, owner, name):
     *designs, _ = solution.at(np.zeros(1)).shape
     if designs:
         raise ParameterError(
-            f"{owner} works on one design at a time, but {name!r} has shape {(*designs, SAMPLES)}; solve a single "
+            f"{owner} works on one design at a time, but {name!r} has shape {(*designs, FINE_SAMPLES)}; solve a single "
             "design of the batch"
         )

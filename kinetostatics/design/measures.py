@@ -1,7 +1,7 @@
 """Reductions of curves with exact derivatives by the numbers of the design: formulas of `cycle.reductions`.
 
 `Curve` has values evenly over the period, `PiecewiseCurve` on its pieces between kinks. Where a peak lies at a kink,
-which moves with the design, both sides of it tell how: f and its derivatives hold on both, so f' dphi + df is the same.
+which moves with the design, f and its derivatives hold on both sides, so f' dphi + df is the same and gives the shift.
 Where a curve jumps, the place of the jump is taken as it is.
 """
 
@@ -146,7 +146,7 @@ def _mean_absolute(values):
 class PiecewiseCurve(NamedTuple):
     """Values (P, points) of a quantity on the pieces of one design's period, and their derivatives (n, P, points).
 
-    `vector` tells a magnitude, whose square is smooth.
+    Values of a `vector` are magnitudes, whose squares are smooth.
     """
 
     values: np.ndarray

@@ -180,7 +180,7 @@ class DrivenMachine:
     def _kinks_at(self, speed):
         scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
         free = replace_unchecked(scene.unsolved(np.zeros(1)), silent=True)
-        angles = [kinks_and_jumps(free, 0)[0], self.jumps]
+        angles = [kinks_and_jumps(free)[0], self.jumps]
         if undeclared_functions(self.scene.loads):
 
             def torque(angle):

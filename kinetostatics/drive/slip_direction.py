@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import sign_changes
-from ..cycle.limit_positions import SAMPLES
+from ..cycle.kinks import FINE_SAMPLES, sign_changes
 from ..machine.links import Rolling
 from ..mechanics.friction import pair_rate
 
@@ -52,7 +51,7 @@ class SlipDirections:
             found = (pair_rate(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 
-        row, angle = (part[0] for part in sign_changes(rates, period, SAMPLES))
+        row, angle = (part[0] for part in sign_changes(rates, period, FINE_SAMPLES))
         angle = np.where((angle < ANGLE_TOLERANCE) | (angle > period - ANGLE_TOLERANCE), 0.0, angle)
         edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
         signs = {}

@@ -162,7 +162,7 @@ class Trajectory:
         """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
         free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
         free = replace_unchecked(free, silent=True)
-        kinks, angle = kinks_and_jumps(free, 0)[0], self._dense(self._ends)[0]
+        kinks, angle = kinks_and_jumps(free)[0], self._dense(self._ends)[0]
         low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
         turns = np.arange(np.floor(low.min() / free.period), np.floor(high.max() / free.period) + 1.0)
         kinks = (kinks + free.period * turns[:, None]).ravel()

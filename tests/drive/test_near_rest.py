@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import kinetostatics as ks
 
@@ -38,12 +39,12 @@ class Step:
 
 @pytest.mark.parametrize("swing", [1e-2, 1e-4, 1e-6, 1e-9])
 def test_small_oscillations_are_harmonic(swing):
-    """By hand: the weight's potential is m g s^2 / 2 (1/r + 1/l) r^2 about the lowest place, with s the angle there."""
+    """By hand: at an angle s from the lowest place the potential of the weight is m g r (1 + r / l) s^2 / 2."""
     hanging = ks.crank_slider(RADIUS, ROD, guide_angle=-math.pi / 2, slider=ks.Link(4.0))
     motion = ks.drive.coast(ks.Scene(hanging, 1.0, loads=ks.Gravity()), INERTIA, -math.pi / 2 + swing, until=1.0)
     frequency = math.sqrt(4.0 * 9.81 * RADIUS * (1.0 + RADIUS / ROD) / INERTIA)
     found = (motion.crank_angle[-1] + math.pi / 2) / swing
-    assert found == pytest.approx(math.cos(frequency), abs=max(100.0 * swing**2, 1e-6))
+    assert found == pytest.approx(math.cos(frequency), abs=max(2.0 * swing**2, 1e-6))
 
 
 @pytest.mark.parametrize("angle", [0.0, math.pi, 2.0 * math.pi, -math.pi, 3.0 * math.pi])
@@ -57,13 +58,13 @@ def test_an_equilibrium_to_rounding_is_one(angle):
 def test_a_machine_turns_back_within_a_steep_ramp(width):
     start, share = 2.0, 0.6
     force = -200.0 * np.sign(rate(start))
-    work = 0.5 * share**2 * width * abs(force * rate(start + 0.5 * width))  # against the ramp up to its share
+    work = width * quad(lambda place: abs(force) * place * abs(rate(start + width * place)), 0.0, share)[0]
     speed = math.sqrt(2.0 * work / INERTIA)
     table = ks.Table([0.0, start, start + width, 3.0, 3.0 + width, 2.0 * math.pi], [0.0, 0.0, force, force, 0.0, 0.0])
     scene = ks.Scene(FLYWHEEL, 1.0, loads=ks.ProcessForce(table))
     motion = ks.drive.coast(scene, INERTIA, start - 0.01, speed, until=0.04 / speed)
     (turned,) = (event.crank_angle for event in motion.events if event.name == "reversal")
-    assert turned == pytest.approx(start + share * width, abs=2.0 * width**2 + 1e-8 * width)
+    assert turned == pytest.approx(start + share * width, abs=1e-8 * width)
     assert motion.speed[-1] == pytest.approx(-speed, rel=1e-8)
 
 

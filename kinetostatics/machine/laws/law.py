@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from ...errors import ParameterError
 from ...numbers import checks
@@ -15,7 +16,7 @@ from ...numbers.panels import Panels
 from .curves import Motion
 
 TURN = 2 * np.pi
-PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(24) + 0.5) / 24)
+PLACES = 0.5 + 0.5 * chebyshev.chebpts1(24)
 """Places between two knots, relative to their distance, at which a law is sampled: Chebyshev points."""
 TEST_STEPS = 720
 """Parts of the turn over which each derivative of a law is integrated and compared with the one before."""
