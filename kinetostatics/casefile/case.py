@@ -42,7 +42,7 @@ class Case:
     title, source : str
     path : Path
     reference : str
-        Variant with which the others are compared.
+        Variant with which the others are compared, unless they name one of their own: `reference_of`.
     variants : mapping of name to Variant
     tolerances : mapping of parameter to text
         Distributions of parameters, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
@@ -53,7 +53,7 @@ class Case:
     --------
     >>> import kinetostatics as ks
     >>> case = ks.load_case("sawframe_2r63")
-    >>> list(case.variants), case.reference
+    >>> list(case.variants)[:3], case.reference
     (['plain', 'cam-circle', 'cam-cosine'], 'plain')
     >>> round(float(case.compare("plain", "cam-cosine").mean_torque_ratio), 3)
     6.778
@@ -77,6 +77,43 @@ class Case:
         """A variant by name."""
         return self.variants[name]
 
+    def reference_of(self, name):
+        """Name of the variant that this one is compared with: its own `reference`, or that of the case.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> case = ks.load_case("sawframe_2r63")
+        >>> case.reference_of("cam-circle"), case.reference_of("upright-circle")
+        ('plain', 'upright-plain')
+        """
+        return self.variant(name).table.reference or self.reference
+
+    @property
+    def comparisons(self):
+        """Names of the variants compared with each reference, a dict of lists, the reference of the case first.
+
+        A variant that is its own reference has a list, too.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> ks.load_case("sawframe_2r63").comparisons["upright-plain"]
+        ['upright-circle', 'upright-cosine', 'upright-optimal']
+        """
+        found: dict[str, list[str]] = {self.reference: []}
+        for name in self.variants:
+            compared = found.setdefault(self.reference_of(name), [])
+            if name != self.reference_of(name):
+                compared.append(name)
+        return found
+
+    def names_of(self, variant=None, reference=None):
+        """Names of the variant that varies, the first besides the reference unless told, and of its reference."""
+        against = reference or self.reference
+        variant = variant or next((name for name in self.variants if name != against), against)
+        return variant, reference or self.reference_of(variant)
+
     def solve(self, name, angles=720) -> Solution:
         """Solution of a variant at this number of crank angles, even over the period of its loads, end excluded.
 
@@ -95,6 +132,8 @@ class Case:
     def comparison_table(self, balanced, reference=None):
         """Table of dynamic coefficients with a column of published figures, a pandas DataFrame.
 
+        The variant is compared with its own reference unless told.
+
         Examples
         --------
         >>> import kinetostatics as ks
@@ -102,10 +141,13 @@ class Case:
         >>> table.loc["mean |balancing torque|", "published"]
         '6.77 (ratio)'
         """
-        return self.with_published(self.compare(self.reference if reference is None else reference, balanced).frame())
+        table = self.compare(self.reference_of(balanced) if reference is None else reference, balanced).frame()
+        return self.with_published(table) if self.reference_of(balanced) == self.reference else table
 
     def with_published(self, table):
         """A table of `Comparison.frame` with a last column of published figures, if there are any.
+
+        They are of variants compared with the case's reference.
 
         Examples
         --------
@@ -194,6 +236,10 @@ def load_case(path) -> Case:
     reference = raw.get("reference")
     if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
+    for name, item in variants.items():
+        if item is not None and item.table.reference is not None:
+            place = key_path(_place(("reference",), name, tables[name], common))
+            problems.append(checks.choice(place, item.table.reference, tuple(variants)))
     if head is not None:
         problems += tolerance_problems(head.tolerances, variants)
         designs = read_designs(head.design, head.reference, variants, problems)
@@ -210,13 +256,18 @@ def load_case(path) -> Case:
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
 
 
+def _place(keys, name, own, common):
+    """Keys from the top of the file to those of a variant: its own, or [common]."""
+    inherited = reading.has_keys(common, keys) and not reading.has_keys(own, keys)
+    return ("common", *keys) if inherited else ("variants", name, *keys)
+
+
 def _read_variant(name, own, common, folder, problems):
     """The variant, or None; appends its faults to `problems`."""
     merged = reading.inherit(common, own)
 
     def place(keys):
-        inherited = reading.has_keys(common, keys) and not reading.has_keys(own, keys)
-        return ("common", *keys) if inherited else ("variants", name, *keys)
+        return _place(keys, name, own, common)
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
     if not isinstance(kind, str) or kind not in VARIANTS:

@@ -90,14 +90,19 @@ def write_found(path, case, found):
     designs = [case.designs[name] for name in found]
     names = dict.fromkeys([case.reference, *(name for item in designs for name in (item.reference, item.source))])
     scenes = {name: case.variant(name).scene for name in names}
+    references = {name: reference for name in names if (reference := case.reference_of(name)) in names}
     for name, result in found.items():
         if isinstance(result, Front):
-            scenes |= {f"{name}-{number}": item.scene for number, item in enumerate(result.designs, 1)}
+            made = {f"{name}-{number}": item.scene for number, item in enumerate(result.designs, 1)}
         else:
-            scenes[name] = result.scene
+            made = {name: result.scene}
+        scenes |= made
+        references |= dict.fromkeys(made, case.designs[name].reference)
     raw = {item.name: item.raw | {"variant": item.source, "reference": item.reference} for item in designs}
     comment = f"Found by: kinetostatics design {case.path.name}"
-    return case_text.write_case(path, case.title, scenes, case.source, comment=comment, designs=raw)
+    return case_text.write_case(
+        path, case.title, scenes, case.source, comment=comment, designs=raw, references=references
+    )
 
 
 def read_designs(tables, reference, variants, problems):
@@ -110,7 +115,9 @@ def read_designs(tables, reference, variants, problems):
             continue
         table = read.design
         first = next((other for other in variants if other not in (reference, name)), reference)
-        chosen = table.variant or first, table.reference or reference
+        source = table.variant or first
+        own = variants[source].table.reference if variants.get(source) else None
+        chosen = source, table.reference or own or reference
         given = {f"design.{name}.{key}": getattr(table, key) for key in ("variant", "reference")}
         wrong = [checks.choice(key, word, tuple(variants)) for key, word in given.items() if word is not None]
         wrong += [f"{key} is what it is to find: give another" for key, word in given.items() if word == name]

@@ -94,8 +94,8 @@ class Variant:
 
     @property
     def content(self):
-        """Bytes of its table and files, the same in every session; without the drive, on which no solution depends."""
-        return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
+        """Bytes of its table and files, the same in every session; without those on which no solution depends."""
+        return self.table.model_dump_json(exclude={"drive", "reference"}).encode() + b"".join(
             _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
         )
 

@@ -292,27 +292,29 @@ def compare(options):
     from ..views.report.tables import special_tables
 
     case = output.read_case(options)
-    others = [name for name in case.variants if name != case.reference]
-    names = others if options.variant is None else [options.variant]
-    if not names:
+    one = options.variant
+    groups = case.comparisons if one is None else {case.reference_of(one): [one]}
+    groups = {reference: names for reference, names in groups.items() if names}
+    if not groups:
         raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
-    for name in names:
-        case.variant(name)
-    reference = case.solve(case.reference)
+    references = {name: reference for reference, names in groups.items() for name in names}
+    solved = {reference: case.solve(reference) for reference in groups}
     found = {
-        name: Comparison(reference, case.solve(name), (case.reference, name))
-        for name in output.progress(options, names, "comparing")
+        name: Comparison(solved[references[name]], case.solve(name), (references[name], name))
+        for name in output.progress(options, references, "comparing")
     }
     special = special_tables(case)
 
     def results():
         tables = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
         rows = {name: output.rows_by_name(_with_roles(case, item)) for name, item in found.items()}
-        return {"ratios": "reference / variant; above 1 the variant has less", "variants": rows, **tables}
+        told = {"ratios": "reference / variant; above 1 the variant has less", "references": references}
+        return {**told, "variants": rows, **tables}
 
     def table():
         rows = {name: _with_roles(case, item).reset_index() for name, item in found.items()}
-        whole = output.stacked(rows, "variant_name").assign(reference_name=case.reference)
+        whole = output.stacked(rows, "variant_name")
+        whole = whole.assign(reference_name=whole["variant_name"].map(references))
         first = ["quantity", "unit", "reference_name"]
         return whole[[*first, *whole.columns.drop(first)]]
 
@@ -321,44 +323,58 @@ def compare(options):
 
 def _with_roles(case, comparison):
     """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
-    table = case.with_published(comparison.frame())
+    table = comparison.frame()
+    table = case.with_published(table) if comparison.names[0] == case.reference else table
     return table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
 
 
 def _print_comparison(case, found, special):
-    from ..views.report.tables import merged_rows, with_published
+    from ..views.report.tables import with_published
 
-    rows, omitted = merged_rows(found.values())
-    published = case.published_of([row.label for row in rows])
-    residual = max(next(row.numbers for row in rows if row.label == RESIDUAL))
-    rows = [row for row in rows if row.label != RESIDUAL]
     print_folded(case.title)
     if case.published.note:
         print_folded("\n" + " ".join(case.published.note.split()))
     for heading, table, figures in special.values():
         print_folded(f"\n{heading[0].lower()}{heading[1:]}{'; published figures in brackets' if figures else ''}\n")
         print_table(with_published(table.map(output.cell_text), figures, case.path))
+    groups: dict[str, dict] = {}
+    for name, comparison in found.items():
+        groups.setdefault(comparison.names[0], {})[name] = comparison
+    residual = max(_print_group(case, reference, group) for reference, group in groups.items())
+    print_folded(
+        f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power"
+    )
+
+
+def _print_group(case, reference, found):
+    """Print comparisons with one reference; returns the largest power residual."""
+    from ..views.report.tables import merged_rows
+
+    rows, omitted = merged_rows(found.values())
+    of_study = reference == case.reference
+    published = case.published_of([row.label for row in rows]) if of_study else {}
+    of_values, of_ratios = (case.published.value, case.published.ratio) if of_study else ({}, {})
+    residual = max(next(row.numbers for row in rows if row.label == RESIDUAL))
+    rows = [row for row in rows if row.label != RESIDUAL]
     columns = [("quantity", [row.label for row in rows]), ("unit", [row.unit for row in rows])]
-    columns += _columns([case.reference, *found], [row.numbers for row in rows], [row.bounds for row in rows])
+    columns += _columns([reference, *found], [row.numbers for row in rows], [row.bounds for row in rows])
     ratios = [row for row in rows if len(found) == 1 or not all(map(isnan, row.ratios))]
     columns_of_ratios = _columns(
         found if len(found) > 1 else ["ratio"], [row.ratios for row in ratios], [row.bounds_of_ratios for row in ratios]
     )
     if len(found) == 1:
         (name,) = found
-        print_folded(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
+        print_folded(f"\n{reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
         print_columns(*columns, *columns_of_ratios, *_published(rows, published))
     else:
-        print_folded(f"\nvalues of {case.reference} and of what it is compared with\n")
-        print_columns(*columns, *_published(rows, case.published.value))
-        print_folded(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
+        print_folded(f"\nvalues of {reference} and of what it is compared with\n")
+        print_columns(*columns, *_published(rows, of_values))
+        print_folded(f"\nratios, {reference} / each: above 1 is in favour of the variant, below 1 against it\n")
         labels = [row.label for row in ratios]
-        print_columns(("quantity", labels), *columns_of_ratios, *_published(ratios, case.published.ratio))
+        print_columns(("quantity", labels), *columns_of_ratios, *_published(ratios, of_ratios))
     if omitted:
         print_folded(f"\n{omitted} torque extrema between the smallest and the largest are left out; --csv has them")
-    print_folded(
-        f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power"
-    )
+    return residual
 
 
 def _columns(headings, values, bounds):

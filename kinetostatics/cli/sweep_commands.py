@@ -35,7 +35,7 @@ def sweep(options):
         raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
     spreads = dict(pairs)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
-    names = sweeps.names_of(case, options.variant, options.reference)
+    names = case.names_of(options.variant, options.reference)
     varied = case.variant(names[0])
     usual = (*OUTPUTS, FRICTION_OUTPUT) if varied.friction else OUTPUTS
     wanted = [parsed(text).of(varied) for text in options.output or usual]

@@ -27,8 +27,8 @@ from ..numbers.files import write_atomically
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
 
 
-def write_case(path, title, scenes, source="", *, comment="", designs=None) -> Path:
-    """Write a case file of scenes by the names of their variants, the first as reference.
+def write_case(path, title, scenes, source="", *, comment="", designs=None, references=None) -> Path:
+    """Write a case file of scenes by the names of their variants, the first as reference unless `references` differ.
 
     A comment precedes them; tables of designs from another case file follow. Raises `ParameterError` for a part without
     a text in case files, `FileError` where a file cannot be written or that of a table exists already.
@@ -37,8 +37,10 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None) -> P
     parts = [f"# {line}" for line in comment.splitlines()]
     parts += [f"title = {_quoted(title)}"]
     parts += [f"source = {_quoted(source)}"] if source else []
-    parts += [f"reference = {_quoted(next(iter(scenes)))}"]
-    parts += [variant(name, scene, path.stem) for name, scene in scenes.items()]
+    first = next(iter(scenes))
+    parts += [f"reference = {_quoted(first)}"]
+    own = {name: reference for name, reference in (references or {}).items() if reference != first}
+    parts += [variant(name, scene, path.stem, own.get(name)) for name, scene in scenes.items()]
     parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
     for file, text in tables(path, scenes).items():
         with write_atomically(file) as place:
@@ -64,10 +66,12 @@ def table(head, raw) -> str:
     return "\n".join(["", f"[{head}]", *own, *(table(f"{head}.{_key(key)}", value) for key, value in inner.items())])
 
 
-def variant(name, scene, stem="case") -> str:
-    """Text of a variant, a scene under a name; names of its table files begin with `stem`."""
+def variant(name, scene, stem="case", reference=None) -> str:
+    """Text of a variant, a scene under a name, with its own reference; names of its table files begin with `stem`."""
     head = f"variants.{_key(name)}"
     keys, tables = _mechanism_keys(scene.mechanism, _table_file(stem, name, "cam"))
+    if reference is not None:
+        keys["reference"] = _quoted(reference)
     keys["crank_speed"] = _number(scene.crank_speed, "rad/s", "crank_speed")
     if np.any(scene.crank_acceleration):
         keys["crank_acceleration"] = _number(scene.crank_acceleration, "rad/s^2", "crank_acceleration")

@@ -248,9 +248,8 @@ def without_ratio(output):
 def choose_design(source, variant, reference):
     """The variant or scene to vary, and the reference of ratios."""
     if hasattr(source, "variants"):
-        name = reference or source.reference
-        first = next((other for other in source.variants if other != name), name)
-        return source.variant(variant or first), source.variant(name)
+        name, compared = source.names_of(variant, reference)
+        return source.variant(name), source.variant(compared)
     checks.require(
         "design",
         _design_problem("source", source, "a Case, as of ks.load_case, or a Scene"),

@@ -112,15 +112,9 @@ def can_vary(source):
     return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
 
-def names_of(case, variant=None, reference=None):
-    """Names of the variant that designs vary, and of the reference of ratios."""
-    reference = reference or case.reference
-    return variant or next((name for name in case.variants if name != reference), reference), reference
-
-
 def variant_and_reference(case, variant=None, reference=None):
-    """The variants of these names."""
-    return tuple(map(case.variant, names_of(case, variant, reference)))
+    """The variant that designs vary, and the reference of ratios."""
+    return tuple(map(case.variant, case.names_of(variant, reference)))
 
 
 def _is_scene(item):

@@ -46,7 +46,7 @@ FONT: Any = {"font.size": 9}
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
-    """Draw the figures of a case into a folder.
+    """Draw the figures of a case into a folder, each of the variants compared with one reference.
 
     Parameters
     ----------
@@ -77,19 +77,23 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
         raise ParameterError(problem)
     counted = FROM_Y_CLOCKWISE if _is_chain_unit(case) else FROM_X
 
-    @cache
-    def solutions():
-        return {name: case.solve(name) for name in dict.fromkeys([case.reference, *case.variants])}
+    solve = cache(case.solve)
 
-    def page(name):
-        figure = figures[name](solutions(), counted)
-        if number := case.published.figures.get(name):
+    def page(name, reference):
+        shown = [reference, *case.comparisons[reference]]
+        figure = figures[name]({variant: solve(variant) for variant in shown}, counted)
+        if reference == case.reference and (number := case.published.figures.get(name)):
             text = f"figure{'s' * (',' in number)} {number} of the study"
             figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
             figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
         return figure
 
-    pages = {name: partial(page, name) for name in ([only] if only else figures)}
+    pages = {
+        name if reference == case.reference else f"{reference}_{name}": partial(page, name, reference)
+        for reference, compared in case.comparisons.items()
+        for name in figures_of(case, [reference, *compared])
+        if only in (None, name)
+    }
     return _draw_pages(case, pages, folder, file_format, progress)
 
 
@@ -119,9 +123,9 @@ def _is_chain_unit(case):
     return all(item.table.mechanism == "chain-unit" for item in case.variants.values())
 
 
-def figures_of(case):
-    """Functions that draw the figures of a case, by name; those of `FIGURES` that apply to it."""
-    variants = case.variants.values()
+def figures_of(case, names=None):
+    """Functions that draw the figures of a case, by name; those of `FIGURES` that apply to it, or to some variants."""
+    variants = list(map(case.variant, case.variants if names is None else names))
     found = {name for item in variants for name in of_mechanism(item.mechanism)}
     cams = {getattr(getattr(item.table, "cam", None), "kind", None) for item in variants}
     if "cosine-law" in cams and all(item.mechanism.slider is not None for item in variants):

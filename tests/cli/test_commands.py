@@ -52,10 +52,10 @@ def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
     path = tmp_path / "new" / "saw.csv"
     assert main(["run", "sawframe_2r63", "--angles", "36", "--csv", str(path)]) == 0
     table = pd.read_csv(path)
-    assert len(table) == 3 * 36
+    assert len(table) == 7 * 36
     assert {"variant", "crank_angle [deg]", "balancing_torque [N m]", "cam_force [N]", "B_x [m]"} <= set(table.columns)
-    assert table["cam_force [N]"].isna().sum() == 36
-    assert f"wrote {path}: 108 rows" in capsys.readouterr().out
+    assert table["cam_force [N]"].isna().sum() == 2 * 36
+    assert f"wrote {path}: 252 rows" in capsys.readouterr().out
 
 
 @pytest.mark.slow
@@ -63,8 +63,9 @@ def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
     assert main(["plot", "sawframe_2r63", "--out", str(tmp_path)]) == 0
     written = sorted(path.name for path in tmp_path.iterdir())
     names = ["acceleration_error", "cam_force", "hodograph", "mechanism", "overview", "pressure_angle", "torque"]
-    assert written == [f"sawframe_2r63_{name}.png" for name in names]
-    assert len(capsys.readouterr().out.splitlines()) == len(names)
+    compared = [f"sawframe_2r63_{group}{name}.png" for group in ("", "upright-plain_") for name in names]
+    assert written == sorted(compared)
+    assert len(capsys.readouterr().out.splitlines()) == len(compared)
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 

@@ -303,8 +303,8 @@ def comparisons():
     for name in ("sawframe_2r63", "sawframe_2r63_friction", "mower_drive", "pumpjack"):
         case = ks.load_case(name)
         for variant in case.variants:
-            if variant != case.reference:
-                solved = (case.solve(one) for one in (case.reference, variant))
+            if variant != (reference := case.reference_of(variant)):
+                solved = (case.solve(one) for one in (reference, variant))
                 table = _quietly(lambda solved=solved: ks.compare(*solved).frame())
                 found |= _of_table(f"{name} {variant}", "comparison", table)
     return found

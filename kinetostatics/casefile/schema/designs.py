@@ -56,7 +56,7 @@ class DesignTable(Table):
     variant: str | None = None
     """Which variant varies: the only one, or the first besides the reference, unless told."""
     reference: str | None = None
-    """Which one ratios refer to: the case's reference unless told."""
+    """Which one ratios refer to: the reference of the variant unless told."""
     limits: tuple[str, ...] = ()
     """What must hold, at true extremes."""
     starts: Count = 1

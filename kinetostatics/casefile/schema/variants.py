@@ -87,6 +87,8 @@ class FrictionTable(Table):
 class MechanismVariant(Table):
     """Keys common to every mechanism."""
 
+    reference: Name | None = None
+    """Variant that this one is compared with, the case's unless told; one that names itself is compared with none."""
     crank_speed: Speed
     """Counter-clockwise; negative turns clockwise."""
     crank_acceleration: AngularAcceleration = 0.0
@@ -262,7 +264,7 @@ class CaseTable(Table):
     source: str = ""
     """Where the numbers come from."""
     reference: str
-    """Name of the variant that others are compared with."""
+    """Name of the variant that others are compared with, unless they name one of their own."""
     common: dict = Field(default_factory=dict)
     """What all variants have in common; a variant may give any of it anew."""
     variants: dict[str, dict] = Field(min_length=1)

@@ -77,7 +77,7 @@ class Subject:
     ----------
     title, source : str
     machines : mapping of name to Machine
-        The reference first.
+        The reference first; variants of a case may have another one of their own.
     command : str
         What made the report.
     case : Case or None
@@ -94,10 +94,19 @@ class Subject:
         """The first machine, with which the others are compared."""
         return next(iter(self.machines.values()))
 
+    def reference_of(self, name):
+        """The machine with which the one of this name is compared."""
+        named = None if self.case is None else self.case.reference_of(name)
+        return self.machines.get(named, self.reference)
+
     @property
-    def others(self):
-        """Machines compared with the reference."""
-        return list(self.machines.values())[1:]
+    def comparisons(self):
+        """Machines compared with each reference, lists by its name."""
+        found: dict[str, list[Machine]] = {}
+        for name, machine in self.machines.items():
+            if machine is not (reference := self.reference_of(name)):
+                found.setdefault(reference.name, []).append(machine)
+        return found
 
     @property
     def solutions(self):
@@ -124,7 +133,9 @@ def subject_of(what, variant=None, title=None, command="") -> Subject:
     case = what if isinstance(what, Case) else load_case(what)
     if variant is not None:
         case.variant(variant)
-    names = dict.fromkeys([case.reference, *(case.variants if variant is None else [variant])])
+    names = dict.fromkeys(
+        [case.reference, *case.variants] if variant is None else [case.reference_of(variant), variant]
+    )
     scenes = {name: case.variants[name].scene for name in names}
     step = _step(scenes.values())
     machines = {}

@@ -199,22 +199,23 @@ ZERO_NOTE = (
 def glance(subject):
     """Overview table: torque, ratio to the reference, support reaction and power balance of each machine."""
     rows: list[list[str]] = []
-    base = None
-    for machine in subject.machines.values():
-        solution = machine.solution
-        mean = float(mean_absolute_torque(solution))
-        base = mean if base is None else base
+    means = {name: float(mean_absolute_torque(solution)) for name, solution in subject.solutions.items()}
+    for name, machine in subject.machines.items():
+        solution, mean = machine.solution, means[name]
+        reference = subject.reference_of(name)
+        base = means[reference.name]
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
         peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
-        gain = "" if not rows else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
+        gain = "" if machine is reference else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
         cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, peak]
         lost = number(solution.losses.total, 5) if lose(solution) else ""
         rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
     heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
     heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
+    references = " or ".join(subject.comparisons) or subject.reference.name
     note = (
         "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
-        f"{subject.reference.name} over that of the machine; above 1 the machine takes less. Power balance: difference "
+        f"{references} over that of the machine; above 1 the machine takes less. Power balance: difference "
         "of the torques by equilibrium and by powers, over the largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
@@ -236,8 +237,8 @@ def _without_empty(table):
 
 
 def comparisons(subject):
-    """Tables of dynamic coefficients against the reference, and of a case's counterweights and linkage."""
-    tables = [_coefficients(subject)] if subject.others else []
+    """Tables of dynamic coefficients against each reference, and of a case's counterweights and linkage."""
+    tables = [_coefficients(subject, subject.machines[name], others) for name, others in subject.comparisons.items()]
     case = subject.case
     if case is not None and set(case.variants) == set(subject.machines):
         for caption, frame, published in special_tables(case).values():
@@ -248,11 +249,12 @@ def comparisons(subject):
     return tables
 
 
-def _coefficients(subject):
-    """Table of all machines: values, with the ratio of the reference to each below."""
-    name, others = subject.reference.name, [machine.name for machine in subject.others]
-    merged, omitted = merged_rows(Comparison(subject.reference.solution, item.solution) for item in subject.others)
-    published = {} if subject.case is None else subject.case.published_of([row.label for row in merged])
+def _coefficients(subject, reference, others):
+    """Table of machines with one reference: values, with the ratio of the reference to each below."""
+    name, case = reference.name, subject.case
+    merged, omitted = merged_rows(Comparison(reference.solution, item.solution) for item in others)
+    of_study = case is not None and name == case.reference
+    published = case.published_of([row.label for row in merged]) if of_study else {}
     rows = []
     for label, unit, (first, *values), (bound, *bounds), *ratios in merged:
         cells = map(_value_and_ratio, values, bounds, *ratios)
@@ -261,7 +263,7 @@ def _coefficients(subject):
     note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
     if omitted:
         note += f" {omitted} torque extrema between the smallest and the largest are left out."
-    return _without_empty(Table("", ["", "unit", name, *others, "published"], rows, 2, note))
+    return _without_empty(Table("", ["", "unit", name, *(item.name for item in others), "published"], rows, 2, note))
 
 
 def _value_and_ratio(value, bound, ratio, bound_of_ratio):

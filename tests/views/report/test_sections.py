@@ -45,8 +45,9 @@ def test_extremes_state_the_resolution_of_load_functions():
     assert "every 0.05 deg" in function.note
 
 
-def test_comparison_of_all_machines_is_one_table():
-    (found,) = tables.comparisons(subject("sawframe_2r63"))
+def test_comparison_with_each_reference_is_one_table():
+    found, upright = tables.comparisons(subject("sawframe_2r63"))
+    assert upright.columns == ["", "unit", "upright-plain", "upright-circle", "upright-cosine", "upright-optimal"]
     assert found.columns == ["", "unit", "plain", "cam-circle", "cam-cosine", "published"]
     row = table_of(found, "mean |balancing torque|")
     assert row[2:] == ["23223.7", ("3819.22", "6.081 ×"), ("3426.19", "6.778 ×"), "6.77 (ratio)"]
@@ -163,8 +164,9 @@ def test_weak_motor_replaces_its_table(tmp_path):
 def test_inputs_are_split_into_common_and_own():
     common, apart = tables.inputs(subject("sawframe_2r63"))
     assert table_of(common, "slider.mass") == ["slider.mass", "kg", "600"]
-    assert table_of(common, "gravity.direction") == ["gravity.direction", "°", "-90"]
-    assert table_of(apart, "coupler_length") == ["coupler_length", "m", "2", "2.0219", "2.02191"]
+    assert table_of(common, "gravity.acceleration") == ["gravity.acceleration", "m/s²", "9.81"]
+    assert table_of(apart, "gravity.direction")[2:] == [*["-90"] * 3, *["180"] * 4]
+    assert table_of(apart, "coupler_length")[:5] == ["coupler_length", "m", "2", "2.0219", "2.02191"]
     assert "crank.mass" not in [row[0] for row in common.rows]
 
 
