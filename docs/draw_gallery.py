@@ -16,7 +16,7 @@ import kinetostatics as ks
 PAGE = Path(__file__).parent / "gallery.md"
 FOLDER = PAGE.with_suffix("")
 SIZES = {
-    "mechanism": (8.0, 2.6),
+    "mechanism": (3.2, 6.0),
     "film": (8.0, 2.6),
     "mass_centres": (8.0, 3.0),
     "hodograph": (6.4, 4.6),
