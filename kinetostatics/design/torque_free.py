@@ -5,8 +5,9 @@ The search varies harmonics of the cam, the coupler's length, and rate and free 
 of the stroke: first the least squares of the torque (Gauss-Newton, from the cosine law's cam), then the goal under
 limits.
 
-The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all other
-torque of a symmetric machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or
+Where weight acts along the guide, in an upright machine, symmetric cams become torque-free. Where it acts across the
+guide, the torque of half the coupler's weight is even in the crank angle from the guide, all other torque of a
+symmetric machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or
 a counterweight on the crank with an offset guide do; `weight_options` compares them.
 """
 

@@ -15,6 +15,7 @@ pytestmark = pytest.mark.slow
 RATIO = "ratio mean_absolute balancing_torque"
 CASES = "sawframe_2r63_optimal", "mower_drive_optimal"
 SEARCHED = [
+    ("sawframe_2r63", "upright-optimal"),
     ("sawframe_2r63_optimal", "cam-optimal"),
     ("mower_drive_optimal", "cam-optimal"),
     ("mower_drive_optimal", "cam-in-line"),
@@ -72,7 +73,7 @@ def test_mowers_gain_what_their_file_says():
     assert quantile(case, "cam-robust") == pytest.approx(34, abs=1.0)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [*CASES, "sawframe_2r63"])
 def test_shipped_designs_keep_limits_and_stroke(name):
     case = shipped(name)
     for design in case.designs.values():
