@@ -38,7 +38,7 @@ Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
 
 class SpringTable(Table):
     stiffness: Stiffness
-    """Of all springs together; "balance the slider": slider mass times crank speed squared at their moving end."""
+    """Of all springs; "balance the slider": its mass times crank speed squared at their end."""
     free_position: Coordinate
     """Coordinate of the slider's pin along its guide at which they are free."""
     cubic: CubicStiffness = 0.0

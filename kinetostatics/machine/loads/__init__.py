@@ -25,7 +25,7 @@ from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows,
 from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (
-    *(Gravity, Spring, GasSpring, ProcessForce, Force, PointForce, PointSpring, PointDamper),
+    *(Gravity, Spring, ProcessForce, GasSpring, Force, PointForce, PointSpring, PointDamper),
     *(Torque, TorsionSpring, TorsionDamper),
 )
 """Every load of the library."""
