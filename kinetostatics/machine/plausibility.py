@@ -11,7 +11,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 from .group import FRAME
 from .links import present
-from .loads import GasSpring, Spring, surge
+from .loads import GasSpring, Spring, spring_masses, surge
 from .loads.gas_spring import PRESSURES
 from .loads.points import point_on_link
 
@@ -74,7 +74,7 @@ def scene_hints(mechanism, crank_speed, numbers):
 
 def needs_look(loads):
     """Whether loads may get hints that the compiled plausibility test does not look for."""
-    return any(isinstance(load, GasSpring) or present(getattr(load, "mass", None)) is not None for load in loads)
+    return any(isinstance(load, GasSpring) for load in loads) or bool(spring_masses(loads))
 
 
 def spring_hints(mechanism, loads, crank_speed):

@@ -5,11 +5,10 @@ links is J omega^2 / 2 with the reduced (equivalent) inertia
 
     J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
 
-and a third of the mass of springs at their slider.
-
 (Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*; Eksergian's equation of motion
-T = J alpha + J' omega^2 / 2 + load torque). Contact pressures follow from the resolved forces; `refusals` names
-rollers that undercut the side of the cam that carries them.
+T = J alpha + J' omega^2 / 2 + load torque). A third of the mass of springs moves with their slider
+(`machine.loads.slider`). Contact pressures follow from the resolved forces; `refusals` names rollers that undercut the
+side of the cam that carries them.
 """
 
 from functools import reduce

@@ -110,7 +110,8 @@ class Spring(SliderLoad):
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
         A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included: that is
-        z tan z = m / M, which has one root below pi / 2 for every m and M.
+        z tan z = m / M, which has one root below pi / 2 for every m and M. A scene leaves the waves out, so that its
+        end is stiffer there by c z^4 / 45 and more.
 
         Parameters
         ----------
@@ -143,11 +144,11 @@ class Spring(SliderLoad):
         >>> round(ks.Spring.balancing(600.0, 33.5, free_position=2.0, spring_mass=300.0).stiffness)
         788903
         """
-        rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
-        found = checks.check_values("balancing spring", rules, {"mass": mass, "crank_speed": crank_speed})
-        own = checks.check_values("balancing spring", {"spring_mass": rules["mass"]}, {"spring_mass": spring_mass})[
-            "spring_mass"
-        ]
+        weighs = checks.Number("kg", low=0.0)
+        rules = {"mass": weighs, "crank_speed": checks.Number("rad/s"), "spring_mass": weighs}
+        given = {"mass": mass, "crank_speed": crank_speed, "spring_mass": spring_mass}
+        found = checks.check_values("balancing spring", rules, given)
+        own = found.pop("spring_mass")
         mass, crank_speed = found.values()
         zero = (name for name, value in found.items() if checks.has_known_values(value) and np.any(value == 0.0))
         if problem := " and ".join(f"the {name.replace('_', ' ')} is 0" for name in zero):

@@ -144,6 +144,7 @@ def test_scaled_lengths_scale_forces(law):
 # Engines, derivatives, certainty
 
 
+@pytest.mark.slow
 def test_the_compiled_engine_agrees():
     pytest.importorskip("numba")
     s = pump(gas())
@@ -348,6 +349,17 @@ def test_designs_vary_the_gas(tmp_path):
     assert swept["largest balancing_torque [N m]"].to_numpy() == pytest.approx(
         [one.largest for one in single], rel=1e-5
     )
+
+
+@pytest.mark.slow
+def test_searches_stay_where_the_gas_has_room():
+    """The best volume of those that a search may try, some of them used up in the turn."""
+    scene = ks.Scene(ks.crank_slider(0.1, 0.35, slider=ks.Link(4.0)), 30.0, loads=gas(at=0.35, side=-1))
+    vary = {"gas_spring.volume": (1e-4, 2e-3), "gas_spring.pressure": (2e5, 2e6)}
+    found = ks.design.optimise(scene, vary, minimise="mean_absolute balancing_torque")
+    before, after = (np.mean(np.abs(item.solve(720).balancing_torque)) for item in (scene, found.scene))
+    assert found.values["gas_spring.volume"] > 2e-4
+    assert after < 0.4 * before
 
 
 @every("side", [1, -1])
