@@ -57,6 +57,7 @@ from .machine.guide import Guide as Guide
 from .machine.laws import laws as laws
 from .machine.links import Link as Link
 from .machine.loads import Force as Force
+from .machine.loads import GasSpring as GasSpring
 from .machine.loads import Gravity as Gravity
 from .machine.loads import PointDamper as PointDamper
 from .machine.loads import PointForce as PointForce

@@ -87,10 +87,26 @@ DOORS = {
     ),
     "scotch_yoke": (ks.scotch_yoke, {"crank_length": (0.5, "m"), "slot_angle": (1.0, "rad"), **SHAPE}, {}),
     "Gravity": (ks.Gravity, {"acceleration": (8.0, "m/s**2"), "direction": (-1.5, "rad")}, {}),
-    "Spring": (ks.Spring, {"stiffness": (8.0, "N/m"), "free_position": (0.5, "m"), "cubic": (4.0, "N/m**3")}, {}),
+    "Spring": (
+        ks.Spring,
+        {"stiffness": (8.0, "N/m"), "free_position": (0.5, "m"), "cubic": (4.0, "N/m**3"), "mass": (2.0, "kg")},
+        {},
+    ),
     "Spring.balancing": (
         ks.Spring.balancing,
-        {"mass": (8.0, "kg"), "crank_speed": (4.0, "rad/s"), "free_position": (0.5, "m")},
+        {"mass": (8.0, "kg"), "crank_speed": (4.0, "rad/s"), "free_position": (0.5, "m"), "spring_mass": (2.0, "kg")},
+        {},
+    ),
+    "GasSpring": (
+        ks.GasSpring,
+        {
+            "area": (0.5, "m**2"),
+            "volume": (0.25, "m**3"),
+            "pressure": (2.0**18, "Pa"),
+            "at": (0.5, "m"),
+            "exponent": (1.25, ""),
+            "ambient": (2.0**16, "Pa"),
+        },
         {},
     ),
     "ProcessForce": (ks.ProcessForce, {"force": (8.0, "N"), "period": (4 * math.pi, "rad")}, {}),

@@ -18,7 +18,7 @@ from ..machine.crank import Crank
 from ..machine.friction import friction_kind
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, spring_masses, value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import paths as tree
 from ..numbers.checks import choice
@@ -237,7 +237,8 @@ def _load(table, number, tabulated, mechanism, crank_speed):
         slider = mechanism.links.get(table.on)
         if slider is None:
             return kind(**values | {"stiffness": 0.0})
-        values["stiffness"] = Spring.balancing(slider.mass, crank_speed, table.free_position).stiffness
+        balanced = Spring.balancing(slider.mass, crank_speed, table.free_position, spring_mass=table.mass)
+        values["stiffness"] = balanced.stiffness
     return kind(**values)
 
 
@@ -292,6 +293,11 @@ def build_scene(table, tabulated):
         (("friction", joint), partial(_friction_pair, part, joint, mechanism)) for joint, part in table.friction.items()
     )
     loads = own + tuple(listed.values())
+    if balanced is not None and spring_masses(loads):
+        raise KinetostaticsError(
+            "balancing finds counterweights of the links alone, but a spring has mass; leave its mass out, or find the "
+            "counterweights as a design that minimises the shaking force"
+        )
     friction = {joint: pair for (_, joint), pair in rubbing.items()}
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction, sense=table.sense), balanced
 
@@ -368,10 +374,12 @@ def _own_loads(table, tabulated):
         stiffness = spring.stiffness
         if isinstance(stiffness, str):
             try:
-                stiffness = Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position).stiffness
+                stiffness = Spring.balancing(
+                    table.slider.mass, table.crank_speed, spring.free_position, spring_mass=spring.mass
+                ).stiffness
             except ParameterError as error:
                 raise ParameterError(f"spring.stiffness: {error}") from None
-        yield Spring(stiffness, spring.free_position, cubic=spring.cubic)
+        yield Spring(stiffness, spring.free_position, cubic=spring.cubic, mass=spring.mass)
     if force is not None:
         read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))
         yield ProcessForce(force.force if read is None else read)

@@ -11,7 +11,7 @@ from ..machine.builders import cam_crank_slider, crank_slider, crank_slider_part
 from ..machine.cams.cam import Harmonic
 from ..machine.cams.cams import CosineLaw
 from ..machine.guide import Guide
-from ..machine.loads import Gravity, Spring, TorsionSpring
+from ..machine.loads import Gravity, Spring, TorsionSpring, spring_masses
 from ..numbers import checks
 from ..numbers.arithmetic import SQUARE_TOLERANCE
 from ..numbers.planar import cross
@@ -143,9 +143,14 @@ def starting_machine(given, options) -> Start:
     guide = Guide(group.guide.guide_angle, offset)
     share = group.coupler.centre[0] / group.coupler_length
     links["coupler"] = _coupler_of_length(group.coupler, law.coupler_length, share)
-    rate = group.slider.mass * given.crank_speed * given.crank_speed
+    rate, springs = group.slider.mass * given.crank_speed * given.crank_speed, spring_masses(given.loads)
+    spring = Spring(rate, mean)
+    if springs:
+        mass = springs["slider"]
+        spring = Spring.balancing(group.slider.mass, given.crank_speed, mean, spring_mass=mass)
+        rate = spring.stiffness
     replaced = Spring if options.gravity else (Spring, Gravity)
-    loads = (*(item for item in given.loads if not isinstance(item, replaced)), Spring(rate, mean))
+    loads = (*(item for item in given.loads if not isinstance(item, replaced)), spring)
     carried = group.coupler.mass * (1.0 - share)
     pulls = [item.vector for item in loads if isinstance(item, Gravity)]
     across = sum(float(cross(guide.direction, pull)) for pull in pulls)

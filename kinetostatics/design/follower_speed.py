@@ -11,7 +11,7 @@ from ..cycle.limit_positions import require_single
 from ..cycle.piecewise import Pieces, edges_between, rule
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
-from ..machine.loads import TURN, Spring
+from ..machine.loads import TURN, Spring, surge
 from ..numbers import checks
 from ..solution.scene import Scene
 
@@ -219,19 +219,19 @@ def starting_torque(solution):
     return peak_of(_solution_at(solution, 0.0, 0.0), lambda at: np.abs(at.balancing_torque))
 
 
-def spring_surge(solution, spring_mass):
+def spring_surge(solution, spring_mass=None):
     """Natural frequency of the springs on a slider, and the harmonics with which the machine moves their ends.
 
-    With both ends held, omega = pi sqrt(k / m); where it is a low multiple of the crank speed whose harmonic is not
-    small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13). The rate k of a progressive spring is its mean
-    over the period.
+    With both ends held, omega = pi sqrt(k / m) (`machine.loads.surge` derives it); where it is a low multiple of the
+    crank speed whose harmonic is not small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13). The rate k of a
+    progressive spring is its mean over the period.
 
     Parameters
     ----------
     solution : Solution
         Of one design, with a `Spring` among its loads.
-    spring_mass : float
-        Of all springs together that the stiffness is of, kg.
+    spring_mass : float, optional
+        Of all springs together that the stiffness is of, kg; by default the `mass` of the `Spring`.
 
     Returns
     -------
@@ -240,7 +240,7 @@ def spring_surge(solution, spring_mass):
     Raises
     ------
     ParameterError
-        The solution has not one spring among its loads.
+        The solution has not one spring among its loads, or the mass is not known.
 
     Examples
     --------
@@ -253,21 +253,24 @@ def spring_surge(solution, spring_mass):
     """
     checks.require("spring_surge", checks.solution("solution", solution))
     require_single(solution, "spring_surge", "slider_position")
-    mass = checks.single_numbers("spring_surge", spring_mass=(spring_mass, "kg", POSITIVE))["spring_mass"]
     springs = [load for load in solution.loads if isinstance(load, Spring)]
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
+    if spring_mass is None and not np.any(spring.mass):
+        raise ParameterError("spring_surge: the Spring has no mass; give spring_mass, kg, or Spring(..., mass=)")
+    given = spring.mass if spring_mass is None else spring_mass
+    mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
     end = solution.at(angle).placement.travels[spring.on].position
-    rate = float(weights @ (spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
+    rate = float(spring.mean_rate(end, weights))
     if not rate > 0.0:
         raise ParameterError(f"spring_surge: the Spring must have a stiffness, but its mean rate is {rate:.6g} N/m")
     waves = np.exp(1j * np.outer(np.arange(HARMONICS), angle))
     series = np.abs(waves @ (weights * end))
     series[1:] *= 2.0
-    natural = float(np.pi * np.sqrt(rate / mass))
+    natural = float(surge.surge_frequency(rate, mass))
     speed = abs(float(np.mean(solution.crank_speed)))
     return Surge(natural, natural / speed if speed else np.inf, series)
 

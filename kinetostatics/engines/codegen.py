@@ -21,6 +21,8 @@ from ..numbers.arithmetic import (
 from .graph import BY_ANGLE, Node, is_of_angle, needed
 from .simplify import drop_unused, fused_sums
 
+MAX_EXPONENT = math.log(np.finfo(float).max)
+"""Largest exponent whose exponential is a double."""
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Numba types of arrays with {} axes: read by a loop (possibly read-only), and written by it."""
 ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 1)})"
@@ -41,7 +43,7 @@ def shared(angle, sine, cosine):
 """Module that computes sines and cosines of crank angles."""
 LOOP_HEADER = '''"""Written by kinetostatics; may be deleted at any time."""
 
-from math import atan, copysign, cos, inf, nan, sin, sqrt
+from math import atan, copysign, cos, exp, inf, log, nan, sin, sqrt
 
 from numba import njit
 from numba.core.compiler import Compiler
@@ -235,7 +237,7 @@ def _array_function(operation, count):
 
 
 _WORDS = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide"}
-_IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")
+_IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "exp", "log", "divisor")
 
 
 def _is_computed_by_angle(node):
@@ -299,6 +301,12 @@ def _plain_root(square, unit):
     return 0.0 if square > -SQUARE_TOLERANCE * unit else math.nan
 
 
+def _plain_log(value):
+    if value > 0.0:
+        return float(np.log(value))
+    return -math.inf if value == 0.0 else math.nan
+
+
 def _root_of(square, unit, out):
     np.maximum(square, 0.0, out=out)
     np.sqrt(out, out)
@@ -329,6 +337,8 @@ PLAIN = {
     "cos": lambda angle: float(np.cos(angle)),
     "atan": lambda slope: float(np.arctan(slope)),
     "sqrt": lambda square: math.sqrt(square) if square >= 0.0 else math.nan,
+    "exp": lambda exponent: math.inf if exponent > MAX_EXPONENT else float(np.exp(exponent)),
+    "log": _plain_log,
     "abs": abs,
     "copysign": math.copysign,
     "root": _plain_root,
@@ -346,7 +356,7 @@ PLAIN = {
 def array_functions(xp) -> dict[str, Callable]:
     """Functions of arrays of a library, NumPy or JAX, by operation."""
     return {
-        **{name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "copysign")},
+        **{name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "exp", "log", "copysign")},
         "atan": xp.arctan,
         "root": lambda square, unit: xp.where(
             square > -SQUARE_TOLERANCE * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
@@ -368,6 +378,8 @@ INTO_ARRAYS: dict[tuple[str, int], Callable] = {
     ("cos", 1): np.cos,
     ("sqrt", 1): np.sqrt,
     ("atan", 1): np.arctan,
+    ("exp", 1): np.exp,
+    ("log", 1): np.log,
     ("abs", 1): np.absolute,
     ("sign", 1): lambda value, out: np.copysign(1.0, value, out),
     ("held", 1): np.positive,

@@ -94,6 +94,8 @@ _PARTIAL_DERIVATIVES: dict[str, Callable[..., tuple]] = {
     "cos": lambda graph, node, angle: (-graph.node("sin", angle),),
     "sqrt": lambda graph, node, square: (0.5 / node,),
     "atan": lambda graph, node, slope: (1.0 / (1.0 + slope * slope),),
+    "exp": lambda graph, node, exponent: (node,),
+    "log": lambda graph, node, value: (1.0 / value,),
     "abs": lambda graph, node, value: (graph.node("sign", value),),
     "root": lambda graph, node, square, unit: (0.5 / node, 0.0),
     "divisor": lambda graph, node, root, unit: (1.0, 0.0),

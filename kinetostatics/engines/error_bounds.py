@@ -60,7 +60,7 @@ class Arithmetic(NamedTuple):
     dust : float or None
         Underflow of one operation, in `unit`; None if nothing underflows.
     ulp : float
-        Largest relative error of sin, cos and atan, in `unit`; tests check all engines.
+        Largest relative error of sin, cos, atan, exp and log, in `unit`; tests check all engines.
     limit : float
         Half of the largest power of two.
     as_recorded : bool
@@ -180,7 +180,7 @@ class ErrorBounds:
         if depth * (self._errors[node].relative + SECOND_ORDER) * unit > (safe - 1.0) / 4.0:
             raise NotGivenError("no bound can be given in this precision: too many operations follow one another")
         peaks = [self._peaks[part][1] for part in parts]
-        if not parts or node.operation in ("+", "-", "*", "/", "divisor"):
+        if not parts or node.operation in ("+", "-", "*", "/", "divisor", "exp"):
             peaks.append(self.largest(node))
         if node.operation == "total":
             peaks.append(reduce(plus, map(self.largest, node.arguments)))
@@ -290,7 +290,7 @@ class ErrorBounds:
         if part not in self._positive:
             kind, parts = part.operation, part.arguments
             self._positive[part] = (
-                kind in ("abs", "sqrt", "root")
+                kind in ("abs", "sqrt", "root", "exp")
                 or (kind in ("*", "/", "+") and all(map(self.is_positive, parts)))
                 or (kind == "*" and parts[0] is parts[1])
                 or (kind == "divisor" and any(map(self.is_positive, parts)))
@@ -406,6 +406,20 @@ def _of_function(bounds, node, argument):
     return Error(bounds.arithmetic.ulp, rest)
 
 
+def _of_exponential(bounds, node, exponent):
+    """With e the error of the exponent, e^|e| - 1 <= |e| / (1 - |e|); infinite where |e| may be 1."""
+    total = bounds.total(exponent)
+    if total is None:
+        return Error(bounds.arithmetic.ulp, bounds.arithmetic.dust)
+    return Error(bounds.arithmetic.ulp, bounds.fused(total, node, bounds.arithmetic.dust) / bounds.above(1.0, total))
+
+
+def _of_logarithm(bounds, node, value):
+    """With e the relative error of the value, |log(1 - e)| <= |e| / (1 - |e|)."""
+    total, dust = bounds.total(value), None if bounds.arithmetic.as_recorded else bounds.arithmetic.dust
+    return Error(bounds.arithmetic.ulp, dust if total is None else plus(total / bounds.clear(value), dust))
+
+
 def _of_magnitude(bounds, node, value):
     """Linear only where the sign is known, which the terms of second order take for granted."""
     relative, rest = bounds.error(value)
@@ -427,6 +441,8 @@ RULES: dict[str, Callable[..., Error]] = {
     "/": _of_quotient,
     **dict.fromkeys(("sqrt", "root"), _of_root),
     **dict.fromkeys(("sin", "cos", "atan"), _of_function),
+    "exp": _of_exponential,
+    "log": _of_logarithm,
     "abs": _of_magnitude,
     "held": lambda bounds, node, value: bounds.error(value),
     "divisor": _of_guarded,

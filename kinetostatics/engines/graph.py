@@ -73,7 +73,7 @@ class Node:
     __truediv__, __rtruediv__ = _operators("/")
     __neg__, __abs__ = _method("-"), _method("abs")
     # called by NumPy for arrays of objects
-    sin, cos, sqrt, arctan = map(_method, ("sin", "cos", "sqrt", "atan"))
+    sin, cos, sqrt, arctan, exp, log = map(_method, ("sin", "cos", "sqrt", "atan", "exp", "log"))
     # called by `arithmetic`: `sign`, `stop_gradient`, `clamped_sqrt`, `guarded_divisor`
     sign, held, forgiving_root, kept_off_zero = map(_method, ("sign", "held", "root", "divisor"))
 

@@ -11,7 +11,7 @@ from typing import Any
 from ..engines.graph import Node
 from ..numbers.arithmetic import RELATIVE_OFFSET
 
-CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
+CALLS = {name: name for name in ("sqrt", "sin", "cos", "atan", "exp", "log", "abs", "sign")} | {"root": "sqrt"}
 """Functions by recorded operation; the second argument of a root, its scale of rounding, is left out."""
 MAX_OFFSET = 1e-120
 """Largest constant that only keeps a square or distance away from zero."""

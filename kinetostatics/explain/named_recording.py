@@ -331,6 +331,11 @@ class NamedDynamics(Dynamics):
         with self.names.under(what.capitalize()):
             return self._wrench(super()._mass_load(link, gravity), ("P", "K"), link, what)
 
+    def _spring_load(self, slider, mass):
+        what = f"{'inertia' if self.gravity is None else 'inertia and weight'} of the springs on the {slider}"
+        with self.names.under(what.capitalize()):
+            return self._wrench(super()._spring_load(slider, mass), ("P", "K"), f"spring_{slider}", what)
+
     def _wrench(self, wrench, letters, owner, words):
         force, moment = letters
         return Wrench(
@@ -376,7 +381,8 @@ class NamedDynamics(Dynamics):
     @cached_property
     def powers(self):
         """Power of each load divided by the crank speed."""
-        owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in self.wrenches))]
+        wrenches = [*self.spring_loads, *self.wrenches]
+        owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in wrenches))]
         owners += [(name, "s") for name in self.pushes]
         with self.names.under("Powers"):
             words = (f"power of what acts on the {owner} over the crank speed" for owner, _ in owners)

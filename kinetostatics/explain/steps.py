@@ -206,6 +206,10 @@ def _size(node, values, sizes):
         made = (x + abs(value) * y) / abs(b) if b else 0.0
     elif kind in ("sqrt", "root"):
         made = x / (2.0 * value) if value else 0.0
+    elif kind == "exp":
+        made = value * x
+    elif kind == "log":
+        made = x / abs(a) if a else 0.0
     else:
         made = 0.0 if kind == "sign" else x
     return abs(value) + made
@@ -216,7 +220,7 @@ def _powers(names, node, known):
     named, kind = names.of.get(node), node.operation
     if named is not None and named.unit:
         return dimension(named.unit)
-    if kind in INPUTS or kind in ("sin", "cos", "atan", "sign"):
+    if kind in INPUTS or kind in ("sin", "cos", "atan", "exp", "log", "sign"):
         return DIMENSIONLESS
     parts = [known[part] if isinstance(part, Node) else None for part in node.arguments]
     if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:

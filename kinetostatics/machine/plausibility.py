@@ -11,6 +11,8 @@ from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 from .group import FRAME
 from .links import present
+from .loads import GasSpring, Spring, spring_masses, surge
+from .loads.gas_spring import PRESSURES
 from .loads.points import point_on_link
 
 SMALL_INERTIA_FACTOR = 1000.0
@@ -25,6 +27,8 @@ MAX_LENGTH_RATIO = 2000.0
 """Largest plausible length of the longest link over the shortest: millimetres beside metres give more."""
 MAX_PIN_SPEED = 60.0
 """Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
+MIN_MASS = 1e-75
+"""Mass, kg, in place of none in a batch of springs with and without."""
 TWO_TURNS = 4.0 * np.pi
 """Least size of crank angles that may be degrees, rad."""
 TURN_CONVERTED_TWICE = 2.0 * np.pi * np.pi / 180.0
@@ -66,6 +70,42 @@ def scene_hints(mechanism, crank_speed, numbers):
             f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
     return hints
+
+
+def needs_look(loads):
+    """Whether loads may get hints that the compiled plausibility test does not look for."""
+    return any(isinstance(load, GasSpring) for load in loads) or bool(spring_masses(loads))
+
+
+def spring_hints(mechanism, loads, crank_speed):
+    """Yield hints on gas springs below the ambient pressure, and on springs with mass that swing too slowly."""
+    for load in loads:
+        if isinstance(load, GasSpring) and all(map(checks.has_known_values, (load.pressure, load.ambient))):
+            if np.any((load.pressure < load.ambient) & (load.pressure >= PRESSURES.least)):  # less looks like bar
+                yield (
+                    f"{load.title}: its pressure of {np.min(load.pressure):.6g} Pa is absolute and below the ambient "
+                    f"{np.max(load.ambient):.6g} Pa, so the gas pulls there; is it a gauge pressure?"
+                )
+        elif isinstance(load, Spring) and np.any(present(load.mass)):
+            yield from _surge_hints(mechanism, load, crank_speed)
+
+
+def _surge_hints(mechanism, spring, crank_speed):
+    if not all(map(checks.has_known_values, (spring.stiffness, spring.mass, spring.cubic, crank_speed))):
+        return
+    found = surge.drive_of(mechanism, spring.on)
+    if found is None or not np.any(crank_speed):
+        return
+    order, position = found
+    natural = surge.surge_frequency(np.maximum(spring.mean_rate(position), 0.0), np.maximum(spring.mass, MIN_MASS))
+    slowest, driven = float(np.min(natural)), order * _most(abs(crank_speed))
+    if slowest < surge.MIN_RATIO * driven:
+        yield (
+            f"{spring.title}: its surge ratio is {slowest / driven:.3g}, below {surge.MIN_RATIO:g}: with "
+            f"{_most(spring.mass):.6g} kg it swings between its ends at {slowest:.4g} rad/s, and harmonic {order:g} of "
+            f"the slider, the highest that matters, drives it at {driven:.4g} rad/s; waves in the spring, which its "
+            f"`mass` leaves out, change the stiffness of its end by {surge.wave_percentage(slowest / driven)}"
+        )
 
 
 def load_hints(mechanism, loads):

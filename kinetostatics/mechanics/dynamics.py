@@ -29,11 +29,21 @@ from typing import Any
 import numpy as np
 
 from ..machine.group import FRAME
-from ..machine.links import Wrench, load, virtual_work
-from ..machine.loads import Gravity
+from ..machine.links import Wrench, acceleration_of, load, virtual_work
+from ..machine.loads import Gravity, spring_masses
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
-from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product, scale_vector
+from ..numbers.planar import (
+    add_vectors,
+    minus,
+    moment,
+    number_or_zero,
+    plus,
+    product,
+    quotient,
+    scale_vector,
+    subtract_vectors,
+)
 from . import energy_contact
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
@@ -101,7 +111,7 @@ class Dynamics(Motion):
         for slider in {item.on: None for item in self.loads if _is_spring(item)}:
             found = self._total_push(slider)
             if found is not None:
-                weight = scale_vector(self.mechanism.links[slider].body.mass, self.gravity)
+                weight = scale_vector(self._weighing_mass(slider), self.gravity)
                 applied = (wrench.force for name, wrench in self.wrenches if name == slider)
                 wrench = Wrench(reduce(add_vectors, applied, weight), self.link_loads[slider].moment)
                 loads, pushes = loads | {slider: wrench}, pushes | {slider: found}
@@ -109,7 +119,8 @@ class Dynamics(Motion):
 
     def _total_push(self, slider):
         """Force along the guide of a slider with its inertia, N; None if a departure or the mass is not known."""
-        mass, travel = self.mechanism.links[slider].body.mass, self.placement.travels[slider]
+        springs_mass, travel = spring_masses(self.loads).get(slider), self.placement.travels[slider]
+        mass = plus(self.mechanism.links[slider].body.mass, quotient(springs_mass, 3.0))
         if mass is None:
             return None
         square, alpha = self.accelerating
@@ -134,6 +145,10 @@ class Dynamics(Motion):
             force = minus(force, product(rest, elongation))
         others = (slider_push(item, self) for item in items if not _is_spring(item))
         return reduce(plus, others, force)
+
+    def _weighing_mass(self, slider):
+        """Mass whose weight acts on a slider: its own and half of that of its springs, kg."""
+        return plus(self.mechanism.links[slider].body.mass, product(0.5, spring_masses(self.loads).get(slider)))
 
     def departure(self, item):
         """Departure s'' + e of a slider from simple harmonic motion, e the elongation of a spring on it, m; or None."""
@@ -241,15 +256,19 @@ class Dynamics(Motion):
     @property
     def shaking_force(self):
         """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
-        return principal_points(self.mechanism).shaking_force(self)
+        return principal_points(self.mechanism, self.loads).shaking_force(self)
 
     @property
     def shaking_moment(self):
         """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
-        moments = (
+        moments = [
             plus(moment(self.placement.links[name].joint.position, wrench.force), wrench.moment)
             for name, wrench in self.inertia.items()
-        )
+        ]
+        for name, mass in spring_masses(self.loads).items():
+            joint = self.placement.links[name].joint
+            force = scale_vector(-0.5 * mass, acceleration_of(joint.first, joint.second, *self.accelerating))
+            moments.append(moment(joint.position, force))
         return self._scalar(reduce(plus, moments))
 
     reduced_inertia = _reading(energy_contact.reduced_inertia)
@@ -270,7 +289,7 @@ class Dynamics(Motion):
     @cached_property
     def largest_force_term(self):
         """Largest load on one link, weight, inertia or applied, N; a reaction is a sum of such terms."""
-        wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in self.wrenches)]
+        wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in (*self.spring_loads, *self.wrenches))]
         forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
 
@@ -290,12 +309,24 @@ class Dynamics(Motion):
         return {name: self._mass_load(name, self.gravity) for name in self.mechanism.links}
 
     @cached_property
+    def spring_loads(self):
+        """Pairs of a slider and the wrench on it of inertia and weight of its springs: `machine.loads.slider`."""
+        return [(name, self._spring_load(name, mass)) for name, mass in spring_masses(self.loads).items()]
+
+    def _spring_load(self, slider, mass):
+        joint, square, alpha = self.placement.links[slider].joint, *self.accelerating
+        moving = mass / 3.0
+        inertia = acceleration_of(joint.first, joint.second, moving * square, product(moving, alpha))
+        return Wrench(subtract_vectors(scale_vector(0.5 * mass, self.gravity), inertia), None)
+
+    @cached_property
     def link_loads(self):
         """Wrench of inertia, weight and loads by link."""
-        if not self.wrenches:
+        applied = [*self.spring_loads, *self.wrenches]
+        if not applied:
             return self.mass_loads
         found = dict(self.mass_loads)
-        for name, wrench in self.wrenches:
+        for name, wrench in applied:
             found[name] = found[name].plus(wrench)
         return found
 
@@ -327,7 +358,7 @@ class Dynamics(Motion):
     @cached_property
     def powers(self):
         """Power of each load and inertia over the crank speed, N m."""
-        return self._works([*self.mass_loads.items(), *self.wrenches])
+        return self._works([*self.mass_loads.items(), *self.spring_loads, *self.wrenches])
 
     @property
     def load_work(self):

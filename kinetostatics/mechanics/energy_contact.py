@@ -6,8 +6,9 @@ links is J omega^2 / 2 with the reduced (equivalent) inertia
     J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
 
 (Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*; Eksergian's equation of motion
-T = J alpha + J' omega^2 / 2 + load torque). Contact pressures follow from the resolved forces; `refusals` names
-rollers that undercut the side of the cam that carries them.
+T = J alpha + J' omega^2 / 2 + load torque). A third of the mass of springs moves with their slider
+(`machine.loads.slider`). Contact pressures follow from the resolved forces; `refusals` names rollers that undercut the
+side of the cam that carries them.
 """
 
 from functools import reduce
@@ -18,6 +19,7 @@ from ..errors import QuantityError
 from ..machine.cams import roller
 from ..machine.group import FRAME
 from ..machine.links import arm, first_at, second_at, virtual_work
+from ..machine.loads import spring_masses
 from ..numbers import checks
 from ..numbers.arithmetic import sign
 from ..numbers.planar import minus, number_or_zero, plus, product, work
@@ -25,24 +27,32 @@ from .load_values import evaluate_load, slider_push
 
 
 def reduced_inertia(motion):
-    """Equivalent inertia of all links at the crank, (..., N), kg m2: twice the energy over the speed squared."""
-    return _sum(
+    """Equivalent inertia of links and springs at the crank, (..., N), kg m2: twice the energy over speed squared."""
+    links = [
         _reduced_inertia_of_link(motion.placement.links[name], link.body)
         for name, link in motion.mechanism.links.items()
-    )
+    ]
+    return _sum([*links, *(product(mass, travel.first * travel.first) for mass, travel in _moving_springs(motion))])
 
 
 def reduced_inertia_slope(motion):
     """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-    slopes = (
+    slopes = [
         _reduced_inertia_slope_of_link(motion.placement.links[name], link.body)
         for name, link in motion.mechanism.links.items()
-    )
+    ]
+    slopes += [product(mass, travel.first * travel.second) for mass, travel in _moving_springs(motion)]
     return product(2.0, _sum(slopes))
 
 
+def _moving_springs(motion):
+    """Pairs of the mass of springs that moves with their slider, a third, and the slider's coordinate."""
+    travels = motion.placement.travels
+    return [(mass / 3.0, travels[name]) for name, mass in spring_masses(motion.loads).items()]
+
+
 def kinetic_energy(motion):
-    """Kinetic energy of all links, (..., N), J."""
+    """Kinetic energy of links and springs, (..., N), J."""
     square, _ = motion.accelerating
     return product(0.5 * square, reduced_inertia(motion))
 
@@ -63,10 +73,12 @@ def load_torque(motion):
     With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
     """
     links = motion.placement.links
-    weights = (
+    weights = [
         product(link.body.mass, work(motion.gravity, first_at(links[name], _centre_arm(links[name], link.body))))
         for name, link in motion.mechanism.links.items()
-    )
+    ]
+    for name, mass in spring_masses(motion.loads).items():
+        weights.append(product(0.5 * mass, work(motion.gravity, links[name].joint.first)))
     return minus(None, plus(_sum(weights), motion.load_work))
 
 

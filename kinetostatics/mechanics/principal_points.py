@@ -17,6 +17,7 @@ from typing import Any
 from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..machine.links import acceleration_of, arm, first_at, present, second_at
+from ..machine.loads import spring_masses
 from ..numbers import checks
 from ..numbers.planar import add_vectors, plus, product, scale_vector
 
@@ -28,7 +29,7 @@ class PrincipalPoints:
     Attributes
     ----------
     mass : float or array
-        Mass of all moving links, kg.
+        Mass of all moving links, and half of that of springs, kg.
     static_moments : dict of link to (along, across)
         m h of each link in its own axes, kg m, which a counterweight on the link cancels.
     carried : dict of joint to mass
@@ -123,12 +124,14 @@ class PrincipalPoints:
         return self.mass
 
 
-def principal_points(mechanism):
+def principal_points(mechanism, loads=()):
     """Principal points of any mechanism, from its link masses and joints.
 
     Parameters
     ----------
     mechanism : Mechanism
+    loads : sequence of loads
+        Of the springs among them half of the mass moves with their slider: it has their momentum.
 
     Returns
     -------
@@ -153,10 +156,12 @@ def principal_points(mechanism):
     """
     checks.require("principal_points", checks.mechanism("mechanism", mechanism))
     links = mechanism.links.items()
+    springs = {name: 0.5 * mass for name, mass in spring_masses(loads).items()}
+    masses = [(name, link.mass) for name, link in links] + [*springs.items()]
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}
     bars = {bar.end: bar for bar in reversed(mechanism.bars)}
-    for name, link in links:
+    for name, mass in masses:
         joint = mechanism.references[name]
         while True:
             point = mechanism.joints.get(joint)
@@ -168,10 +173,9 @@ def principal_points(mechanism):
             else:
                 break
             static_moments[on] = tuple(
-                plus(moment, product(link.mass, present(part)))
+                plus(moment, product(mass, present(part)))
                 for moment, part in zip(static_moments[on], place, strict=True)
             )
-        if joint != "O" and present(link.mass) is not None:
-            carried[joint] = carried.get(joint, 0.0) + link.mass
-    mass = sum(link.mass for _, link in links)
-    return PrincipalPoints(mass, static_moments, carried)
+        if joint != "O" and present(mass) is not None:
+            carried[joint] = carried.get(joint, 0.0) + mass
+    return PrincipalPoints(sum(mass for _, mass in masses), static_moments, carried)

@@ -280,7 +280,7 @@ UNIT_NAMES = {
     dimension(name): name
     for name in (
         *("1", "m", "m2", "m3", "m4", "1/m", "1/m2", "kg", "kg m", "kg m2", "rad/s", "rad2/s2", "m/s", "m/s2"),
-        *("N", "N/m", "N m", "N m2", "W", "N s", "N s/m"),
+        *("N", "N/m", "N m", "N m2", "W", "N s", "N s/m", "Pa"),
     )
 }
 

@@ -95,9 +95,12 @@ def mass_centres(solutions, angle=60, ax=None):
     angle = checks.single_numbers("mass_centres", angle=(angle, "deg", {}))["angle"]
     named = solutions_by_label(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
-    paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
+    paths = {
+        name: principal_points(solution.mechanism, solution.loads).mass_centre(solution)
+        for name, solution in named.items()
+    }
     for name, solution, style in with_line_styles(named):
-        points = principal_points(solution.mechanism)
+        points = principal_points(solution.mechanism, solution.loads)
         reach = np.abs(solution.position(first_moving_joint(solution.mechanism))).max()
         rests = np.ptp(paths[name], axis=1).max() < ZERO_TOLERANCE * reach
         shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}

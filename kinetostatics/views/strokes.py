@@ -228,11 +228,13 @@ class Shape:
     def _sign(self, sign):
         unit = self.unit
         if sign.slider:
-            ahead = np.asarray(self.mechanism.guides[sign.slider].direction, dtype=float)
-            end = (self.ways[sign.slider][:, 1] + 6.0 * unit * ahead)[:, None] + 0.0 * sign.start
-            start = sign.start + unit * ahead[:, None]
-            yield Stroke("spring", span_sign(SPRING, start, end, 0.5 * unit))
-            yield Stroke("spring", span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
+            away = sign.sense * np.asarray(self.mechanism.guides[sign.slider].direction, dtype=float)
+            far = self.ways[sign.slider][:, np.argmax(away @ self.ways[sign.slider])]
+            end = (far + 6.0 * unit * away)[:, None] + 0.0 * sign.start
+            start = sign.start + unit * away[:, None]
+            shape = SPRING if sign.kind == "spring" else DAMPER
+            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
+            yield Stroke(sign.kind, span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
         elif sign.kind == "force":
             tip = sign.start + 5.0 * unit * sign.sense * sign.direction
             yield Stroke("force", span_sign(ARROW, sign.start, tip, unit))

@@ -109,6 +109,7 @@ FUNCTIONS = {
     "sine": lambda x, f: f.sin(x) * f.cos(3.0 * x),
     "root": lambda x, f: f.sqrt(1.0 + x * x),
     "angle": lambda x, f: f.atan(x / 2.0),
+    "power": lambda x, f: f.exp(-1.3 * f.log(x)),
 }
 
 

@@ -19,8 +19,15 @@ from support.sliders import TURN, crank_slider, solve
 CONSTRUCTORS = {
     "Link": (ks.Link, {"mass": 2.0, "centre": 0.1, "inertia": 0.05}),
     "Gravity": (ks.Gravity, {"acceleration": 9.81, "direction": -1.5}),
-    "Spring": (ks.Spring, {"stiffness": 1e3, "free_position": 0.8, "cubic": 30.0}),
-    "Spring.balancing": (ks.Spring.balancing, {"mass": 2.0, "crank_speed": 3.0, "free_position": 1.0}),
+    "Spring": (ks.Spring, {"stiffness": 1e3, "free_position": 0.8, "cubic": 30.0, "mass": 2.0}),
+    "Spring.balancing": (
+        ks.Spring.balancing,
+        {"mass": 2.0, "crank_speed": 3.0, "free_position": 1.0, "spring_mass": 0.5},
+    ),
+    "GasSpring": (
+        ks.GasSpring,
+        {"area": 2e-3, "volume": 4e-4, "pressure": 4e5, "at": 0.3, "exponent": 1.3, "ambient": 1e5},
+    ),
     "ProcessForce": (ks.ProcessForce, {"force": 30.0}),
     "Force": (partial(ks.Force, at="B"), {"value": 30.0, "direction": 0.4}),
     "Force at a place": (lambda along: ks.Force(1.0, at=("coupler", along)), {"along": 0.1}),

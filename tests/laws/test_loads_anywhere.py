@@ -138,6 +138,7 @@ def loaded():
     """The six-bar under one load of each kind, all numbers."""
     return (
         ks.Spring(300.0, 0.4, "slider2", 500.0),
+        ks.GasSpring(1e-3, 2e-4, 3e5, at=0.57, side=-1, on="slider2"),
         ks.Force(40.0, at=("coupler", 0.1, 0.05), direction=0.4, along="rocker"),
         ks.PointForce(30.0, between=("C", (0.1, 0.9))),
         ks.PointSpring(200.0, 0.15, between=(("coupler2", 0.2, 0.1), (0.3, 0.8))),
@@ -154,6 +155,12 @@ def test_load_derivatives_equal_differences():
     paths = [path for path in program.parameters if not path.startswith(("crank_", "gravity"))]
     assert {
         "spring.cubic",
+        "gas_spring.area",
+        "gas_spring.volume",
+        "gas_spring.pressure",
+        "gas_spring.at",
+        "gas_spring.exponent",
+        "gas_spring.ambient",
         "force.value",
         "force.direction",
         "force.at.along",

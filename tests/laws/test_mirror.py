@@ -249,7 +249,8 @@ def test_starting(motor, loads, options, close):
 def pump(speed=10.0, acceleration=0.0, friction=None, loads=()):
     links = {"crank": ks.Link(2.0, (0.03, 0.01), 0.02), "coupler": ks.Link(1.0, (0.1, 0.01), 0.01)}
     machine = ks.crank_slider(0.1, 0.35, guide_offset=0.03, guide_angle=0.2, slider=ks.Link(4.0), **links)
-    own = (ks.Gravity(direction=-2.0), ks.Spring(500.0, 0.35), *loads)
+    springs = ks.Spring(500.0, 0.35, mass=0.05), ks.GasSpring(1e-3, 4e-4, 2e5, at=0.35, side=-1)
+    own = (ks.Gravity(direction=-2.0), *springs, *loads)
     return ks.Scene(machine, speed, acceleration, own, friction or {})
 
 

@@ -17,7 +17,22 @@ DIGITS = 5000
 """Bits of exact values: sums of the largest and smallest numbers cancel."""
 OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
-    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "scaled", "beside one", "sum"),
+    *(
+        "abs",
+        "sign",
+        "sin",
+        "cos",
+        "atan",
+        "held",
+        "total",
+        "rest",
+        "minus",
+        "scaled",
+        "beside one",
+        "sum",
+        "exp",
+        "log",
+    ),
 )
 CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-30, 1e30, 5e-324
 """Plain numbers that others are multiplied by."""
@@ -135,6 +150,8 @@ _EXACTLY = {
     "sin": lambda one: one.sin(),
     "cos": lambda one: one.cos(),
     "atan": lambda one: one.atan(),
+    "exp": lambda one: one.exp(),
+    "log": lambda one: one.log() if one > 0 else None,
 }
 
 

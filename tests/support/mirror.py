@@ -235,6 +235,7 @@ IMAGES: dict[type, Callable] = {
     ks.cams.LawCam: _of_law_cam,
     ks.Gravity: lambda load: replace(load, direction=negated(load.direction)),
     ks.Spring: lambda load: load,
+    ks.GasSpring: lambda load: load,
     ks.TorsionDamper: lambda load: load,
     ks.ProcessForce: lambda load: replace(load, force=reflected_value(load.force)),
     ks.Force: _of_force,

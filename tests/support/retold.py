@@ -69,6 +69,8 @@ FUNCTIONS = {
     "sin": lambda angle: Sized(math.sin(_sized(angle).value), _sized(angle).size),
     "cos": lambda angle: Sized(math.cos(_sized(angle).value), _sized(angle).size),
     "atan": lambda slope: Sized(math.atan(_sized(slope).value), _sized(slope).size),
+    "exp": lambda power: Sized(math.exp(_sized(power).value), math.exp(_sized(power).value) * _sized(power).size),
+    "log": lambda number: Sized(math.log(_sized(number).value), _sized(number).size / abs(_sized(number).value)),
     "abs": abs,
     "sign": lambda number: Sized(math.copysign(1.0, _sized(number).value)),
     "max": lambda one, other: max(_sized(one), _sized(other), key=lambda number: number.value),

@@ -17,6 +17,7 @@ from .sections import anchor, flattened, titles
 DIMENSIONS = {
     "m": "length",
     "m^2": "area",
+    "m^3": "volume",
     "rad": "angle",
     "kg": "mass",
     "kg m^2": "moment of inertia",

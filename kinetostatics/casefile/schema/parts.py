@@ -38,6 +38,8 @@ def field_of(rule) -> Any:
         return field_of(rule.rule)
     if isinstance(rule, checks.OrFunction):
         return value_in(_case_unit(rule.rule.unit))
+    if isinstance(rule, checks.Number) and rule.unit == "1":
+        return Annotated[float, BeforeValidator(_ratio_reader(rule)), "1"]
     if isinstance(rule, checks.Number):
         unit = _case_unit(rule.unit)
         return Annotated[float, BeforeValidator(reader(unit, low=rule.low, strict=rule.strict)), unit]
@@ -52,6 +54,18 @@ def field_of(rule) -> Any:
 def _case_unit(unit):
     """A unit in the spelling of case files."""
     return unit.replace("**", "^").replace("*", " ")
+
+
+def _ratio_reader(rule):
+    """Function that reads a plain number by the rule of a ratio."""
+    take = value_reader(rule)
+
+    def read(value):
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"must be a plain number, such as 1.3, found {quoted(value)}")
+        return take(float(value))
+
+    return read
 
 
 def value_reader(rule):

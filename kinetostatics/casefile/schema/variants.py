@@ -21,6 +21,7 @@ from .texts import (
     CubicStiffness,
     GuidePoints,
     Length,
+    Mass,
     Period,
     Point,
     Sampling,
@@ -37,11 +38,13 @@ Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
 
 class SpringTable(Table):
     stiffness: Stiffness
-    """Of all springs together; "balance the slider": slider mass times crank speed squared."""
+    """Of all springs; "balance the slider": its mass times crank speed squared at their end."""
     free_position: Coordinate
     """Coordinate of the slider's pin along its guide at which they are free."""
     cubic: CubicStiffness = 0.0
     """The force grows by so much times the cube of the elongation."""
+    mass: Mass = 0.0
+    """Of all springs together: a third moves with the slider, half of it shakes the frame."""
 
 
 class ProcessForceTable(Table):

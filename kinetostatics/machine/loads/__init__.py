@@ -5,6 +5,7 @@ May import errors, numbers and the modules of `machine` that describe links and 
 
 # ruff: noqa: F401 - other rooms import from here
 
+from .gas_spring import GasSpring
 from .gravity import Gravity
 from .load import (
     Load,
@@ -18,13 +19,13 @@ from .load import (
     value_of,
 )
 from .points import Force, PointDamper, PointForce, PointSpring
-from .slider import ProcessForce, Spring
+from .slider import ProcessForce, Spring, spring_masses
 from .table import Table
 from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (
-    *(Gravity, Spring, ProcessForce, Force, PointForce, PointSpring, PointDamper),
+    *(Gravity, Spring, ProcessForce, GasSpring, Force, PointForce, PointSpring, PointDamper),
     *(Torque, TorsionSpring, TorsionDamper),
 )
 """Every load of the library."""

@@ -11,11 +11,12 @@ from ...numbers.planar import add_vectors, dot, plus, product
 from ..crank import ray
 from ..links import arm
 from .load import Load
+from .slider import spring_masses
 
 
 @dataclass(frozen=True, eq=False)
 class Gravity(Load):
-    """Weight of every link.
+    """Weight of every link, and of springs with mass, half of which acts on their slider.
 
     Parameters
     ----------
@@ -55,9 +56,11 @@ class Gravity(Load):
         return self.acceleration * x, self.acceleration * y
 
     def potential(self, motion):
-        """Potential energy of all links, J; zero at O."""
+        """Potential energy of all links and of half the mass of springs, J; zero at O."""
         links = motion.placement.links
-        parts = (self._link_potential(links[name], link.body) for name, link in motion.mechanism.links.items())
+        parts = [self._link_potential(links[name], link.body) for name, link in motion.mechanism.links.items()]
+        for name, mass in spring_masses(motion.loads).items():
+            parts.append(product(0.5 * mass, -dot(self.vector, links[name].joint.position)))
         return reduce(plus, parts)
 
     def _link_potential(self, motion, body):

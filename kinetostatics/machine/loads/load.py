@@ -45,16 +45,18 @@ class Symbol(NamedTuple):
     Attributes
     ----------
     kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
-        Springs, dampers and lines run from `start` to `end`; all others stand at `start`.
+        Springs, dampers and lines run from `start` to `end`; all others stand at `start`. A damper on a slider stands
+        for a cylinder with gas.
     start : array (2, N)
     end : array (2, N), optional
-        None for a spring on a slider, which is drawn beside the guide.
+        None for a spring or gas spring on a slider, which is drawn along the guide.
     direction : array (2, N), optional
         Unit vector of a positive force.
     slider : str
         Slider of a spring along a guide.
     sense : array (N,) or float
-        -1 where a force or couple acts against its positive sense, else 1.
+        -1 where a force or couple acts against its positive sense, else 1. A spring along a guide stands ahead of its
+        slider, with -1 behind it.
     """
 
     kind: str

@@ -1,5 +1,22 @@
-"""Loads on a slider along its guide: spring and process force; positive in the direction of the guide."""
+"""Loads on a slider along its guide: spring and process force; positive in the direction of the guide.
 
+Between its foot on the frame and its end on the slider a uniform spring of mass m stretches evenly, so that its
+point at a share h of its length moves at h times the slider's speed v. Hence, as integrals over h from 0 to 1,
+
+    kinetic energy  m v^2 / 6        momentum  m v / 2        potential energy of its weight  -m g . B / 2
+
+A third of m is in the slider's equation of motion, half of m in the shaking force and in the weight on the slider; the
+foot carries the other half of the weight. With c e the elastic force, a the slider's acceleration and g_u the component
+of gravity along the guide, the spring pushes along the guide
+
+    the slider by  -c e - m a / 3 + m g_u / 2        the frame by  c e - m a / 6 + m g_u / 2
+
+Together that is minus the change of its momentum, m a / 2, and its weight. At harmonic n of a crank speed w the end of
+a spring with waves has the stiffness c z cot z, z = n w sqrt(m / c) (`surge`), of which c - m (n w)^2 / 3 is the
+beginning.
+"""
+
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,7 +24,9 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
+from ...numbers.planar import plus
 from ..links import present
+from . import surge
 from .load import Load, Symbol, value_rule
 from .table import Table
 from .table_pieces import TURN, WholeTurns
@@ -40,11 +59,22 @@ class Spring(SliderLoad):
         Slider that it acts on.
     cubic : float or array
         N/m3, factor of the cube of the elongation in the force; negative for a softening spring.
+    mass : float or array
+        kg, of all springs together. Each is uniform, has its foot on the frame, and stretches evenly, also with a
+        cubic term; that neglects waves, as a hint tells where they count (`ks.design.spring_surge`). A third of the
+        mass moves with the slider in energies, reduced inertia, reactions and torque, half of it in the shaking
+        force. Half of its weight acts on the slider, the other half on the foot.
 
     Raises
     ------
     ParameterError
-        The stiffness is negative, or a value is not a finite number; when a scene is made: there is no such slider.
+        The stiffness or mass is negative, or a value is not a finite number; when a scene is made: there is no such
+        slider.
+
+    Notes
+    -----
+    Kinetic energy m v^2 / 6 and momentum m v / 2 at the slider's speed v: Rayleigh, *The Theory of Sound*, 1894,
+    section 156. The force at the foot less that at the slider's end is m a / 2.
 
     Examples
     --------
@@ -53,12 +83,16 @@ class Spring(SliderLoad):
     >>> pushed = ks.solve(pump, 1.5, crank_speed=0.0, loads=ks.Spring(1e3, 0.25))  # B is nearer to O: outwards
     >>> bool(pushed.balancing_torque > 0)
     True
+    >>> heavy = ks.solve(pump, 0.0, crank_speed=10.0, loads=ks.Spring(1e3, 0.25, mass=0.6))
+    >>> print(f"{heavy.shaking_force[0]:.3f} N")  # of half the mass at -6.25 m/s2
+    1.875 N
     """
 
     stiffness: Any
     free_position: Any
     on: str = "slider"
     cubic: Any = 0.0
+    mass: Any = 0.0
 
     PATH, LENGTHS = "spring", ("free_position",)
     RULES = checks.Rules(
@@ -67,13 +101,17 @@ class Spring(SliderLoad):
         free_position=checks.Number("m"),
         on=checks.Name(),
         cubic=checks.Number("N/m**3"),
+        mass=checks.Number("kg", low=0.0),
     )
 
     @classmethod
-    def balancing(cls, mass, crank_speed, free_position, on="slider"):
+    def balancing(cls, mass, crank_speed, free_position, on="slider", *, spring_mass=0.0):
         """Spring that balances the inertia force of a slider with a cosine law.
 
-        Its stiffness is mass times crank speed squared, so spring and inertia force are opposite at every angle.
+        Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
+        A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included: that is
+        z tan z = m / M, which has one root below pi / 2 for every m and M. A scene leaves the waves out, so that its
+        end is stiffer there by c z^4 / 45 and more.
 
         Parameters
         ----------
@@ -85,6 +123,8 @@ class Spring(SliderLoad):
             Slider position at which the spring is free, mid-stroke of the law, m.
         on : str
             The slider.
+        spring_mass : float
+            Of all springs together, kg.
 
         Returns
         -------
@@ -101,9 +141,14 @@ class Spring(SliderLoad):
         >>> spring = ks.Spring.balancing(600.0, 33.5, free_position=2.0)
         >>> spring.stiffness  # N/m
         673350.0
+        >>> round(ks.Spring.balancing(600.0, 33.5, free_position=2.0, spring_mass=300.0).stiffness)
+        788903
         """
-        rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
-        found = checks.check_values("balancing spring", rules, {"mass": mass, "crank_speed": crank_speed})
+        weighs = checks.Number("kg", low=0.0)
+        rules = {"mass": weighs, "crank_speed": checks.Number("rad/s"), "spring_mass": weighs}
+        given = {"mass": mass, "crank_speed": crank_speed, "spring_mass": spring_mass}
+        found = checks.check_values("balancing spring", rules, given)
+        own = found.pop("spring_mass")
         mass, crank_speed = found.values()
         zero = (name for name, value in found.items() if checks.has_known_values(value) and np.any(value == 0.0))
         if problem := " and ".join(f"the {name.replace('_', ' ')} is 0" for name in zero):
@@ -111,7 +156,10 @@ class Spring(SliderLoad):
                 f"balancing spring: {problem}, so there is no inertia force to balance and the stiffness would be 0; "
                 "give the values that it is to balance, or the stiffness itself"
             )
-        return cls(mass * crank_speed * crank_speed, free_position, on)
+        stiffness = mass * crank_speed * crank_speed
+        if present(own) is not None:
+            stiffness = surge.balancing_stiffness(stiffness, own * crank_speed * crank_speed)
+        return cls(stiffness, free_position, on, mass=own)
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
@@ -123,6 +171,11 @@ class Spring(SliderLoad):
             return self.stiffness
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
+
+    def mean_rate(self, position, weights=None):
+        """Mean stiffness of small oscillations over the slider's coordinates in a period, N/m; of each design."""
+        rate = self.stiffness + 3.0 * self.cubic * (position - self.free_position) ** 2
+        return np.mean(rate, axis=-1, keepdims=np.ndim(rate) > 1) if weights is None else rate @ weights
 
     def parted_rate(self, motion):
         """The same as a part that is constant over the crank angle, where the group knows one, and a rest or None."""
@@ -142,9 +195,29 @@ class Spring(SliderLoad):
             return 0.5 * self.stiffness * square
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
+    def foot_force(self, motion):
+        """Force on the frame at the feet of the springs, along the guide, (..., N), N."""
+        force = -self.push(motion)
+        if present(self.mass) is None:
+            return force
+        x, y = motion.mechanism.guides[self.on].direction
+        pull = (item.vector for item in motion.loads if getattr(item, "PATH", "") == "gravity")
+        weight = sum(0.5 * (gravity[0] * x + gravity[1] * y) for gravity in pull)
+        return force + self.mass * (weight - motion.travel_acceleration(self.on) / 6.0)
+
     def signs(self, motion):
         """Symbol of a spring along the guide."""
         yield Symbol("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+
+
+def spring_masses(loads: Iterable[Any]) -> dict[str, Any]:
+    """Mass of all springs by slider, kg; without sliders whose springs have none."""
+    found: dict[str, Any] = {}
+    for item in loads:
+        mass = present(item.mass) if isinstance(item, Spring) else None
+        if mass is not None:
+            found[item.on] = plus(found.get(item.on), mass)
+    return found
 
 
 @dataclass(frozen=True, eq=False)

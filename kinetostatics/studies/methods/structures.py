@@ -15,6 +15,7 @@ from ...machine.group import FRAME
 from ...machine.links import CamDriven, Rolling, Sliding, Turning
 from ...machine.loads import (
     Force,
+    GasSpring,
     Gravity,
     PointDamper,
     PointForce,
@@ -151,6 +152,12 @@ def cross(a, b):
     return (a.conjugate() * b).imag
 
 
+def require_massless(spring):
+    """Refuse a spring with mass, whose inertia these methods do not know."""
+    if np.any(spring.mass):
+        raise NotGivenError(f"there is no independent formula for a spring with mass, got {spring.mass} kg")
+
+
 class LoadForces:
     """Loads of a `solution` as forces at points and couples on links, in one posture; derived classes give the posture.
 
@@ -224,8 +231,14 @@ class LoadForces:
 
     def push(self, item, coordinate):
         """Force of a load along the guide of its slider, which is at a coordinate, N."""
+        if isinstance(item, GasSpring):
+            volume = self.number(item.volume) + item.side * self.number(item.area) * (coordinate - self.number(item.at))
+            compressed = (self.number(item.volume) / volume) ** self.number(item.exponent)
+            gauge = self.number(item.pressure) * compressed - self.number(item.ambient)
+            return item.side * self.number(item.area) * gauge
         if not isinstance(item, Spring):
             return self.value(item)
+        require_massless(item)
         elongation = coordinate - self.number(item.free_position)
         return -self.number(item.stiffness) * elongation - self.number(item.cubic) * elongation**3
 

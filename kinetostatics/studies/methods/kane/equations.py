@@ -17,9 +17,9 @@ from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBod
 
 from ....errors import NotGivenError
 from ....machine.group import FRAME
-from ....machine.loads import Gravity, ProcessForce, Spring
+from ....machine.loads import GasSpring, Gravity, ProcessForce, Spring
 from ..method import Method, require_frictionless, require_one_design, with_numeric_side
-from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, cross, structure
+from ..structures import LINK_NUMBERS, LoadForces, cam_numbers, cross, require_massless, structure
 from .motion import PHI, SPEED, TORQUE, Motion, N, left, linear, planar, rate
 
 MAX_EQUATIONS_TOGETHER = 3
@@ -182,6 +182,7 @@ class AppliedLoads(LoadForces):
         self.pushes, self.others, sprung = [], [], set()
         for item in solution.loads:
             if isinstance(item, Spring) and item.on not in sprung:
+                require_massless(item)
                 sprung.add(item.on)
                 parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
                 self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
@@ -191,7 +192,7 @@ class AppliedLoads(LoadForces):
                 self.pushes.append(item)
             elif not isinstance(item, Gravity):
                 self.others.append(item)
-        further = {item.on for item in self.pushes if isinstance(item, Spring)}
+        further = {item.on for item in self.pushes if isinstance(item, Spring | GasSpring)}
         self.travels = {slider: result(f"{slider}_position") for slider in further}
         self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}
         self.fixed = self.numbers
@@ -205,7 +206,7 @@ class AppliedLoads(LoadForces):
             found[name] = found.get(name, self.fixed[name]) + amount
 
         for item in self.pushes:
-            coordinate = self.travels[item.on]()[0] if isinstance(item, Spring) else None
+            coordinate = self.travels[item.on]()[0] if isinstance(item, Spring | GasSpring) else None
             add(f"{item.on}_push", self.push(item, coordinate))
         self.places = {link: run() for link, run in self.motions.items()}
         for item in self.others:

@@ -1,0 +1,88 @@
+"""Waves in a spring of mass between its foot and a slider.
+
+The displacement u(h, t) of a uniform spring of stiffness c and mass m, at the share h of its length, obeys the wave
+equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). With its foot at rest and its end moving as
+sin(s t) it is u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
+
+    dynamic stiffness  c z cot z  =  c - m s^2 / 3 - ...
+
+Between fixed ends the spring swings at z = pi, pi sqrt(c / m) in rad/s, where the stiffness has no bound. The surge
+ratio is that frequency over s, pi / z.
+"""
+
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+MIN_RATIO = 5.0
+"""Surge ratio below which a spring that stretches evenly is too far from one with waves.
+
+There the stiffness of the end, c - m s^2 / 3 without waves, is off by c z^4 / 45 and more, 0.37 % of c."""
+HARMONIC_SHARE = 0.05
+"""Share of the largest acceleration of a harmonic from which on a harmonic of the slider's travel counts."""
+SAMPLES = 256
+"""Crank angles a turn for these harmonics."""
+NEWTON_STEPS = 8
+"""Steps for the root z of z tan z = m / M, which converge for every ratio."""
+
+
+def surge_frequency(stiffness, mass):
+    """First natural frequency of a spring between fixed ends, pi sqrt(c / m), rad/s."""
+    return np.pi * np.sqrt(stiffness / mass)
+
+
+def end_stiffness(stiffness, mass, frequency):
+    """Stiffness of the moving end at a frequency, rad/s: c z cot z, N/m; negative where inertia prevails."""
+    z = frequency * np.sqrt(mass / stiffness)
+    return stiffness * z / np.tan(z)
+
+
+def wave_percentage(ratio):
+    """Change of the end's stiffness by waves at a surge ratio, as text: a share of the stiffness c."""
+    if ratio <= 1.0:
+        return "more than itself"
+    z = np.pi / ratio
+    return f"{100.0 * abs(end_stiffness(1.0, 1.0, z) - (1.0 - z * z / 3.0)):.2g} %"
+
+
+_DRIVES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+"""By mechanism: results of `drive_of`, by slider."""
+
+
+def drive_of(mechanism, slider):
+    """Highest harmonic that matters in the acceleration of a slider, in turns, and its coordinate over the period, m.
+
+    None if the mechanism does not close all around, or its numbers are not known.
+    """
+    known = _DRIVES.setdefault(mechanism, {})
+    if slider not in known:
+        count = SAMPLES * mechanism.turns
+        with np.errstate(invalid="ignore", divide="ignore"):
+            travel = mechanism.place(np.linspace(0.0, 2.0 * np.pi * mechanism.turns, count, endpoint=False)).travels[
+                slider
+            ]
+        known[slider] = _drive_of(travel, mechanism.turns)
+    return known[slider]
+
+
+def _drive_of(travel, turns):
+    if not all(isinstance(part, np.ndarray) and part.dtype.kind == "f" and np.isfinite(part).all() for part in travel):
+        return None
+    sizes = np.abs(np.fft.rfft(travel.second))[..., 1:]
+    largest = np.max(sizes, axis=-1, keepdims=True)
+    matters = (sizes >= HARMONIC_SHARE * largest) & (largest > 0.0)
+    if not matters.any():
+        return None
+    return (1 + np.max(np.nonzero(matters)[-1])) / turns, travel.position
+
+
+def balancing_stiffness(slider, spring):
+    """Stiffness whose moving end has the stiffness M w^2, N/m, from M w^2 of the slider and m w^2 of the spring."""
+    ratio = np.where(spring == 0.0, 0.0, spring / slider)
+    z = np.sqrt(ratio / (1.0 + ratio * (4.0 / np.pi**2)))
+    for _ in range(NEWTON_STEPS):
+        sine, cosine = np.sin(z), np.cos(z)
+        z = z - (z * sine - ratio * cosine) / np.where(ratio == 0.0, 1.0, (1.0 + ratio) * sine + z * cosine)
+    found = np.where(ratio == 0.0, slider, spring / np.where(ratio == 0.0, 1.0, z * z))
+    return found if np.ndim(found) else float(found)
