@@ -88,6 +88,7 @@ RESERVED = (
     "kinetic_energy",
     "potential_energy",
     "load_torque",
+    "ground",
 )
 """Quantities of every mechanism besides those that its parts declare."""
 

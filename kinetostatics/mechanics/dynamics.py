@@ -34,7 +34,7 @@ from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
 from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product, scale_vector
-from . import energy_contact
+from . import energy_contact, ground
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
 from .motion import Motion, coordinates
@@ -251,6 +251,10 @@ class Dynamics(Motion):
             for name, wrench in self.inertia.items()
         )
         return self._scalar(reduce(plus, moments))
+
+    def ground_force(self, place=None):
+        """Force of the machine on the frame at a place by name, (2, ..., N), N; None: the sum of all."""
+        return self.as_vector(ground.resultant(self) if place is None else ground.support(self, place).force)
 
     reduced_inertia = _reading(energy_contact.reduced_inertia)
     reduced_inertia_slope = _reading(energy_contact.reduced_inertia_slope)

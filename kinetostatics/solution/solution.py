@@ -22,13 +22,14 @@ from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
 from ..mechanics.motion import Motion, SceneParts
-from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
+from ..mechanics.quantities import GROUND, largest_term, of_scene, resolved_names, values, without_bars
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
+from .ground import Ground
 from .parameters import (
     crank_angles,
     drive_and_loads_text,
@@ -84,14 +85,14 @@ class Solution(Certainty, Motion):
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
     guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
-    shaking_force, shaking_moment
+    shaking_force, shaking_moment, ground
     reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
     friction_loss, friction_torque, friction_margin, friction_residual, converged, losses, efficiency
     condition, largest_force_term, largest_torque_term
 
     Methods
     -------
-    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link)
+    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link), ground_force(place)
     friction_at(joint), friction_loss_at(joint)
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
@@ -350,6 +351,16 @@ class Solution(Certainty, Motion):
         from ..cycle.means import energy_per_turn
 
         return energy_per_turn(self)
+
+    @property
+    def ground(self):
+        """Forces and couples of the machine on the frame, by place, a `Ground`."""
+        return Ground(self)
+
+    def ground_force(self, place=None):
+        """Force of the machine on the frame at a place of `ground` by name, (2, ..., N), N; None: the sum of all."""
+        name = GROUND if place is None else f"{GROUND} {place}"
+        return self._found(name) if name in of_scene(self) else self.dynamics.ground_force(place)
 
     # Friction
 

@@ -7,16 +7,38 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
+from ...numbers.planar import minus, number_or_zero, rotate
 from ..links import present
+from ..supports import Support
 from .load import Load, Symbol, value_rule
 from .table import Table
 from .table_pieces import TURN, WholeTurns
 
+REACTIONS = ("outside", "frame")
+"""What may take the force opposite to a process force."""
+
 
 class SliderLoad(Load):
-    """A load on the slider `on` along its guide."""
+    """A load on the slider `on` along its guide, which the frame takes on the same line."""
 
     on: str
+
+    def push(self, motion) -> Any:
+        """Force on the slider along the guide, N."""
+        raise NotImplementedError
+
+    def foot(self, motion) -> Any:
+        """Coordinate along the guide at which the frame takes the force, m: by default that of the pin."""
+        return motion.placement.travels[self.on].position
+
+    def rests_on_frame(self, mechanism):
+        return True
+
+    def support(self, motion):
+        """The opposite force on the frame, on the line along the guide through the pin."""
+        line = motion.mechanism.guides[self.on].line
+        point = rotate((self.foot(motion), number_or_zero(line.offset)), line.direction)
+        return Support(rotate((minus(None, self.push(motion)), 0.0), line.direction), point)
 
     def misplaced(self, mechanism):
         """Sentence if the mechanism has no such slider."""
@@ -134,6 +156,10 @@ class Spring(SliderLoad):
         length, more = found
         return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
 
+    def foot(self, motion):
+        """Coordinate at which it is free, m."""
+        return self.free_position
+
     def potential(self, motion):
         """Strain energy, J."""
         elongation = motion.elongation(self.free_position, self.on)
@@ -162,12 +188,16 @@ class ProcessForce(SliderLoad):
         Slider that it acts on.
     period : float, optional
         Period of the force, rad: 4 pi for a four-stroke engine. By default the period of its `Table`, else 2 pi.
+    reaction : "outside" or "frame"
+        What takes the opposite force: something outside, as the ground that a mower's crop stands in, or the machine's
+        own frame, as that of a saw, on whose rollers the log rests, or of an engine, whose gas presses on its cylinder
+        too. It matters to the forces on the frame (`Solution.ground`) alone.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or the period not a whole number of turns; when a scene is made: there is no
-        such slider.
+        A value is not a finite number, or the period not a whole number of turns, or the reaction another; when a
+        scene is made: there is no such slider.
 
     Examples
     --------
@@ -182,6 +212,7 @@ class ProcessForce(SliderLoad):
     force: Any
     on: str = "slider"
     period: Any = field(default=None, kw_only=True, metadata={"structural": True})
+    reaction: str = field(default="outside", kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "process_force", "force", ("force",)
 
@@ -197,7 +228,12 @@ class ProcessForce(SliderLoad):
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
-        "process force", _period_problems, force=value_rule("N"), on=checks.Name(), period=WholeTurns()
+        "process force",
+        _period_problems,
+        force=value_rule("N"),
+        on=checks.Name(),
+        period=WholeTurns(),
+        reaction=checks.Word(REACTIONS),
     )
 
     @property
@@ -208,6 +244,9 @@ class ProcessForce(SliderLoad):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def rests_on_frame(self, mechanism):
+        return self.reaction == "frame"
 
     def signs(self, motion):
         """Symbol of a force along the guide."""
