@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
-from ..machine.group import TRAVELS
+from ..machine.group import GROUND, TRAVELS
 from ..machine.links import Turning
 from ..machine.supports import places
 from ..numbers import checks
@@ -57,8 +57,6 @@ class Quantity(NamedTuple):
 
 FRICTION_CHECKS = ("friction_margin", "friction_residual")
 """Quantities that measure how well friction converged."""
-GROUND = "ground"
-"""Sum of the forces on the frame, and first word of each."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 _known_scenes: WeakKeyDictionary[Any, dict[Any, dict[str, Quantity]]] = WeakKeyDictionary()
 """Quantities of scenes by mechanism, then by joints with friction and places on the frame."""

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..machine.group import GROUND
 from ..machine.supports import Support, places
 from ..mechanics.ground import support
-from ..mechanics.quantities import GROUND
 from ..numbers import checks
 from ..numbers.planar import cross
 

@@ -16,13 +16,14 @@ from ..cycle.limit_positions import Turn
 from ..cycle.load_functions import FUNCTION_STEP
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
+from ..machine.group import GROUND
 from ..machine.links import Turning
 from ..machine.loads import period_of, refusals
 from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
 from ..mechanics.motion import Motion, SceneParts
-from ..mechanics.quantities import GROUND, largest_term, of_scene, resolved_names, values, without_bars
+from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
