@@ -23,7 +23,7 @@ from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
 from ..mechanics.motion import Motion, SceneParts
-from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
+from ..mechanics.quantities import largest_term, of_mechanism, of_scene, resolved_names, values, without_bars
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
@@ -543,7 +543,8 @@ class Solution(Certainty, Motion):
         Quantities of friction are in the table of scenes with friction alone.
         """
         if name not in self._values:
-            if name != "closure" and name not in of_scene(self):
+            own = of_mechanism(self.mechanism)  # sooner known than those of the scene
+            if name != "closure" and name not in own and name not in of_scene(self):
                 return getattr(self.dynamics, name)
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
