@@ -25,7 +25,17 @@ from ..machine.links import Rolling, Sliding
 from ..machine.supports import Support, joint_of, places
 from ..numbers import checks
 from ..numbers.arithmetic import sign
-from ..numbers.planar import add_vectors, left, length, minus, product, scale_vector, subtract_vectors
+from ..numbers.planar import (
+    add_vectors,
+    left,
+    length,
+    minus,
+    moment,
+    plus,
+    product,
+    scale_vector,
+    subtract_vectors,
+)
 from .load_values import evaluate_load
 
 
@@ -69,6 +79,24 @@ def _contact(state, name, pair):
     radius = state.mechanism.rollers.get(pair.joint) if friction is None else friction.roller_radius
     to_contact = scale_vector(product(radius, sign(pressed)), outward)
     return Support(force, add_vectors(joint.position, to_contact))
+
+
+def undeclared(dynamics):
+    """Largest force, N, and moment about O, N m, on the links that neither pairs with the frame nor the motor take.
+
+    Rounding, unless a group of the user's own pushes the frame by more than the pairs that it declares.
+    """
+    links, guides = dynamics.placement.links, dynamics.mechanism.guides
+    acting = [(links[name].joint.position, *wrench) for name, wrench in dynamics.link_loads.items()]
+    for name, push in dynamics.pushes.items():
+        acting.append((links[name].joint.position, scale_vector(push, guides[name].direction), None))
+    for name, place in places(dynamics).items():
+        if place.load is None:
+            force, point, couple = support(dynamics, name)
+            acting.append((point, subtract_vectors(None, force), minus(None, couple)))
+    force = dynamics.as_vector(reduce(add_vectors, (force for _, force, _ in acting), None))
+    turning = reduce(plus, (plus(moment(point, force), couple) for point, force, couple in acting), None)
+    return dynamics.largest(length(force)), dynamics.largest(turning)
 
 
 def resultant(state):

@@ -1,5 +1,6 @@
 """Forces on the frame as users hold them: `Solution.ground`."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -8,11 +9,13 @@ import numpy as np
 
 from ..machine.group import GROUND
 from ..machine.supports import Support, places
-from ..mechanics.ground import support
+from ..mechanics.ground import support, undeclared
 from ..numbers import checks
 from ..numbers.planar import cross
 
 POINT = checks.Pair("m")
+MAX_UNDECLARED = 1e-9
+"""Largest part of the forces on the frame that no declared pair takes, relative to the largest load: rounding."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,6 +50,24 @@ class Ground(Mapping):
     """
 
     solution: Any
+
+    def __post_init__(self):
+        if not self.solution.mechanism.trusted:
+            self._warn_of_undeclared()
+
+    def _warn_of_undeclared(self):
+        """Warn if a group of the user's own pushes the frame where it declares no pair."""
+        dynamics = self.solution.dynamics
+        force, moment = undeclared(dynamics)
+        if np.any(force > MAX_UNDECLARED * dynamics.largest_force_term) or np.any(
+            moment > MAX_UNDECLARED * dynamics.largest_force_term * self.solution.mechanism.extent
+        ):
+            warnings.warn(
+                f"{self.solution.mechanism.name}: the forces on the frame lack up to {np.nanmax(force):.3g} N and "
+                f"{np.nanmax(moment):.3g} N m about O, as a group of your own pushes the frame by more than the pairs "
+                "with it that it declares (kinetostatics.machine.group)",
+                stacklevel=2,
+            )
 
     def __repr__(self):
         return f"<Ground: {self.solution.mechanism.name}, {', '.join(self)}>"

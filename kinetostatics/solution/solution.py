@@ -353,13 +353,15 @@ class Solution(Certainty, Motion):
 
         return energy_per_turn(self)
 
-    @property
+    @cached_property
     def ground(self):
         """Forces and couples of the machine on the frame, by place, a `Ground`."""
         return Ground(self)
 
     def ground_force(self, place=None):
         """Force of the machine on the frame at a place of `ground` by name, (2, ..., N), N; None: the sum of all."""
+        if not self.mechanism.trusted:
+            self.ground  # noqa: B018  warns if a group of the user's own pushes the frame elsewhere
         name = GROUND if place is None else f"{GROUND} {place}"
         return self._found(name) if name in of_scene(self) else self.dynamics.ground_force(place)
 

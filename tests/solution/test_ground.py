@@ -10,6 +10,7 @@ from kinetostatics.machine.links import Wrench
 from kinetostatics.machine.loads import Load
 from support.case_files import shipped
 from support.every import every
+from support.scenes import Pan, with_group
 
 ANGLES = np.linspace(0.1, 6.2, 9)
 ROLLER = ks.Roller(0.05, 0.04, 210e9, 0.3)
@@ -124,6 +125,21 @@ def test_a_load_of_the_users_own_pushes_the_frame_by_its_wrench_about_o():
     assert list(s.ground) == ["O", "O2", "Wire", "motor"]
     assert_allclose(s.ground.resultant, s.shaking_force, atol=1e-12 * s.largest_force_term)
     assert_allclose(s.ground.moment(), s.shaking_moment, atol=1e-12 * s.largest_force_term)
+
+
+class OwnSlider(ks.SliderGroup):
+    """A group of the user's own, with pairs as of another."""
+
+
+def test_a_group_of_the_users_own_that_pushes_the_frame_by_no_pair_is_warned_of():
+    own = ks.Mechanism("own", ks.Crank(0.1), (OwnSlider(0.4, slider=ks.Link(3.0)),))
+    s = ks.solve(own, ANGLES, crank_speed=9.0, loads=ks.Gravity())
+    assert list(s.ground) == ["O", "guide", "motor"]
+    lacking = with_group(Pan(ks.Link(3.0, 0.05))).solve(ANGLES)
+    with pytest.warns(UserWarning, match=r"on the frame lack up to 0 N and 52 N m about O, as a group of your own"):
+        assert list(lacking.ground) == ["O", "motor"]
+    with pytest.warns(UserWarning, match="the forces on the frame lack"):
+        ks.extremes(lacking, "ground O")
 
 
 def test_designs_and_gaps():
