@@ -39,6 +39,15 @@ class Ground(Mapping):
     `ProcessForce` with ``reaction="outside"``. A `Force` at a fixed point acts on the frame from outside and is left
     out. A load without the base class `Load` counts as one from outside.
 
+    Attributes
+    ----------
+    solution : Solution
+
+    Warns
+    -----
+    UserWarning
+        A group of the user's own pushes the frame by more than the pairs with it that it declares.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -145,9 +154,9 @@ class Ground(Mapping):
         >>> table = ks.load_case("sawframe_2r63").solve("cam-circle", 90).ground.table()
         >>> table["force [N]"].round(0)
         place
-        all       252159.0
-        O          22282.0
-        cam        49929.0
+        all       252161.0
+        O          22285.0
+        cam        49930.0
         guide      17876.0
         spring    202129.0
         motor          NaN
@@ -174,9 +183,10 @@ def _couple(solution, name):
 def _largest(solution, quantity):
     """Value of largest magnitude over the period, and its crank angle, degrees."""
     from ..cycle.extremes import extrema
+    from ..cycle.rounding import PLACED, zeroed
 
     found = extrema(solution, quantity)
     if not len(found):
-        return float(found.constant), np.nan
+        return found.constant + 0.0, np.nan  # without the sign of zero
     place = int(np.argmax(np.abs(found.value)))
-    return float(found.value[place]), float(np.degrees(found.angle[place]))
+    return float(found.value[place]), float(np.degrees(zeroed(found.angle, PLACED)[place]))
