@@ -73,6 +73,7 @@ from .mechanics.principal_points import PrincipalPoints as PrincipalPoints
 from .mechanics.principal_points import principal_points as principal_points
 from .solution.certainty import Uncertainty as Uncertainty
 from .solution.check_group import check as check
+from .solution.ground import Ground as Ground
 from .solution.program import Program as Program
 from .solution.program import compile as compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene as Scene

@@ -382,4 +382,4 @@ def _own_loads(table, tabulated):
         yield Spring(stiffness, spring.free_position, cubic=spring.cubic, mass=spring.mass)
     if force is not None:
         read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))
-        yield ProcessForce(force.force if read is None else read)
+        yield ProcessForce(force.force if read is None else read, reaction=force.reaction)

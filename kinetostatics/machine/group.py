@@ -79,6 +79,8 @@ RATES = ("_rate", "_angular_acceleration")
 """Endings of the quantities of a link."""
 TRAVELS = ("_position", "_velocity", "_acceleration")
 """Endings of the quantities of a slider."""
+GROUND = "ground"
+"""Sum of the forces on the frame, and first word of the name of each."""
 RESERVED = (
     "balancing_torque_by_power",
     "shaking_force",
@@ -88,6 +90,7 @@ RESERVED = (
     "kinetic_energy",
     "potential_energy",
     "load_torque",
+    GROUND,
 )
 """Quantities of every mechanism besides those that its parts declare."""
 

@@ -19,7 +19,7 @@ from ..numbers.planar import minus, subtract_vectors
 from . import plausibility
 from .crank import Crank
 from .friction import friction_kind
-from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
+from .group import FRAME, GROUND, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
 from .kinematic_state import margin, place
 from .links import Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
@@ -215,8 +215,14 @@ class Mechanism(Batched):
         return tuple(group for group in self.groups if any(led.body == FRAME for led in group.led))
 
     def grows(self, name):
-        """Whether a force grows without bound at change points: one of a group that passes them, or at O."""
+        """Whether a force grows without bound at change points: one of a group that passes them, or at O.
+
+        So does the opposite force on the frame, and a term of the sum of these.
+        """
         parts = [group for group in self.groups if group.passes]
+        if parts and name == GROUND:
+            return True
+        name = name.removeprefix(f"{GROUND} ")
         return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
 
     @cached_property

@@ -30,7 +30,7 @@ import numpy as np
 
 from ..machine.group import FRAME
 from ..machine.links import Wrench, acceleration_of, load, virtual_work
-from ..machine.loads import Gravity, spring_masses
+from ..machine.loads import spring_masses
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
 from ..numbers.planar import (
@@ -44,7 +44,7 @@ from ..numbers.planar import (
     scale_vector,
     subtract_vectors,
 )
-from . import energy_contact
+from . import energy_contact, ground
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
 from .motion import Motion, coordinates
@@ -271,6 +271,10 @@ class Dynamics(Motion):
             moments.append(moment(joint.position, force))
         return self._scalar(reduce(plus, moments))
 
+    def ground_force(self, place=None):
+        """Force of the machine on the frame at a place by name, (2, ..., N), N; None: the sum of all."""
+        return self.as_vector(ground.resultant(self) if place is None else ground.support(self, place).force)
+
     reduced_inertia = _reading(energy_contact.reduced_inertia)
     reduced_inertia_slope = _reading(energy_contact.reduced_inertia_slope)
     kinetic_energy = _reading(energy_contact.kinetic_energy)
@@ -292,11 +296,6 @@ class Dynamics(Motion):
         wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in (*self.spring_loads, *self.wrenches))]
         forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
-
-    @cached_property
-    def gravity(self):
-        """Acceleration (x, y) of gravity, m/s2; None without weight."""
-        return reduce(add_vectors, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
 
     @cached_property
     def inertia(self):

@@ -19,14 +19,14 @@ from ..machine.friction import NO_FRICTION, Frictions
 from ..machine.group import FRAME, RATES, TRAVELS
 from ..machine.kinematic_state import sense_of
 from ..machine.links import Joint, PointMotion, acceleration_of, angular_acceleration, arm, present
-from ..machine.loads import has_no_user_code
+from ..machine.loads import Gravity, has_no_user_code
 from ..machine.loads.points import PLACE_RULE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, parameter_tree
 from ..numbers.arithmetic import namespace, read_only, stack, stop_gradient
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Leaves, broadcast_shape, flatten
-from ..numbers.planar import number_or_zero, plus, product, scale_vector, vector_or_zero
+from ..numbers.planar import add_vectors, number_or_zero, plus, product, scale_vector, vector_or_zero
 from .quantities import of_mechanism
 
 
@@ -132,6 +132,11 @@ class Motion:
         """`Kind` of the scene: properties that all scenes of its structure share."""
         structure, leaves = self.apart
         return parameter_tree.structure_cache(structure) if leaves.lasting else parameter_tree.StructureCache(structure)
+
+    @cached_property
+    def gravity(self):
+        """Acceleration (x, y) of gravity, m/s2; None without weight."""
+        return reduce(add_vectors, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
 
     @cached_property
     def loads_are_given(self):

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
-from ..machine.group import TRAVELS
+from ..machine.group import GROUND, TRAVELS
 from ..machine.links import Turning
+from ..machine.supports import places
 from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 
@@ -33,8 +34,8 @@ class Quantity(NamedTuple):
     vector : bool
     kind : str
         "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (a pressure), "whole" (of
-        the whole mechanism), "energy" (of the whole mechanism, in tables on request only), "rate", "friction", or
-        "check" (of the solution).
+        the whole mechanism), "energy" (of the whole mechanism, in tables on request only), "rate", "friction",
+        "ground" (a force on the frame, not in tables), or "check" (of the solution).
     owner : str
         Link of a rate.
     """
@@ -57,6 +58,8 @@ class Quantity(NamedTuple):
 FRICTION_CHECKS = ("friction_margin", "friction_residual")
 """Quantities that measure how well friction converged."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
+_known_scenes: WeakKeyDictionary[Any, dict[Any, dict[str, Quantity]]] = WeakKeyDictionary()
+"""Quantities of scenes by mechanism, then by joints with friction and places on the frame."""
 
 
 def of_mechanism(mechanism) -> dict[str, Quantity]:
@@ -95,28 +98,49 @@ def of_mechanism(mechanism) -> dict[str, Quantity]:
 
 
 def of_scene(scene) -> dict[str, Quantity]:
-    """Every quantity of a scene, by name: of its mechanism and its friction."""
-    known, friction = of_mechanism(scene.mechanism), getattr(scene, "friction", None)
-    if not friction:
-        return known
-    found = dict(known)
+    """Every quantity of a scene, by name: of its mechanism, its friction, and its forces on the frame."""
+    friction = tuple(getattr(scene, "friction", None) or ())
+    pushed = tuple(name for name, place in places(scene).items() if place.pushes)
+    known = _known_scenes.setdefault(scene.mechanism, {})
+    if (friction, pushed) not in known:
+        ground = {name: _ground(name, name.removeprefix(GROUND).strip()) for name in ground_names(scene)}
+        own = of_mechanism(scene.mechanism)
+        known[friction, pushed] = own | _of_friction(scene.mechanism, friction) | ground
+    return known[friction, pushed]
+
+
+def _of_friction(mechanism, friction):
+    """Quantities of the joints with friction; none without any."""
+    found = {}
     for joint in friction:
-        pin = isinstance(scene.mechanism.pairs[joint], Turning)
+        pin = isinstance(mechanism.pairs[joint], Turning)
         read = methodcaller("friction_at", joint)
         found[f"{joint}_friction"] = Quantity("N m" if pin else "N", f"friction {joint}", read, kind="friction")
         read = methodcaller("friction_loss_at", joint)
         found[f"{joint}_friction_loss"] = Quantity("W", f"friction loss {joint}", read, kind="friction")
-    found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
-    found["friction_torque"] = Quantity("N m", "friction torque", attrgetter("friction_torque"), kind="energy")
-    for name in FRICTION_CHECKS:
-        found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
+    if friction:
+        found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
+        found["friction_torque"] = Quantity("N m", "friction torque", attrgetter("friction_torque"), kind="energy")
+        for name in FRICTION_CHECKS:
+            found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
     return found
+
+
+def ground_names(scene):
+    """Names of the forces on the frame: their sum "ground", then "ground O", "ground guide" ..."""
+    return (GROUND, *(f"{GROUND} {name}" for name, place in places(scene).items() if place.pushes))
+
+
+def _ground(name, place):
+    """Force on the frame at a place, "" for the sum of all."""
+    label = f"force on the frame, {place}" if place else "force on the frame"
+    return Quantity("N", label, methodcaller("ground_force", *filter(None, [place])), True, "ground")
 
 
 def resolved_names(scene):
     """Names of the quantities that one evaluation gives: closure, forces of groups, and friction."""
-    own = of_mechanism(scene.mechanism)
-    return ("closure", *scene.mechanism.outputs, *(name for name in of_scene(scene) if name not in own))
+    of_friction = _of_friction(scene.mechanism, tuple(getattr(scene, "friction", None) or ()))
+    return ("closure", *scene.mechanism.outputs, *of_friction)
 
 
 def quantity(solution, name) -> Quantity:

@@ -16,19 +16,21 @@ from ..cycle.limit_positions import Turn
 from ..cycle.load_functions import FUNCTION_STEP
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
+from ..machine.group import GROUND
 from ..machine.links import Turning
 from ..machine.loads import period_of, refusals
 from ..mechanics import assembly, energy_contact, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.load_values import require_pure
 from ..mechanics.motion import Motion, SceneParts
-from ..mechanics.quantities import largest_term, of_scene, resolved_names, values, without_bars
+from ..mechanics.quantities import largest_term, of_mechanism, of_scene, resolved_names, values, without_bars
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
+from .ground import Ground
 from .parameters import (
     crank_angles,
     drive_and_loads_text,
@@ -84,14 +86,14 @@ class Solution(Certainty, Motion):
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
     guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
-    shaking_force, shaking_moment
+    shaking_force, shaking_moment, ground
     reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
     friction_loss, friction_torque, friction_margin, friction_residual, converged, losses, efficiency
     condition, largest_force_term, largest_torque_term
 
     Methods
     -------
-    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link)
+    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link), ground_force(place)
     friction_at(joint), friction_loss_at(joint)
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
@@ -351,6 +353,18 @@ class Solution(Certainty, Motion):
 
         return energy_per_turn(self)
 
+    @cached_property
+    def ground(self):
+        """Forces and couples of the machine on the frame, by place, a `Ground`."""
+        return Ground(self)
+
+    def ground_force(self, place=None):
+        """Force of the machine on the frame at a place of `ground` by name, (2, ..., N), N; None: the sum of all."""
+        if not self.mechanism.trusted:
+            self.ground  # noqa: B018  warns if a group of the user's own pushes the frame elsewhere
+        name = GROUND if place is None else f"{GROUND} {place}"
+        return self._found(name) if name in of_scene(self) else self.dynamics.ground_force(place)
+
     # Friction
 
     def friction_at(self, joint):
@@ -531,7 +545,8 @@ class Solution(Certainty, Motion):
         Quantities of friction are in the table of scenes with friction alone.
         """
         if name not in self._values:
-            if name != "closure" and name not in of_scene(self):
+            own = of_mechanism(self.mechanism)  # sooner known than those of the scene
+            if name != "closure" and name not in own and name not in of_scene(self):
                 return getattr(self.dynamics, name)
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power

@@ -1,36 +1,28 @@
-"""Curves of solutions over the crank angle, hodographs of reactions and shaking force, motion of the chain unit."""
-
-from collections.abc import Mapping
+"""Curves of solutions over the crank angle, polar hodographs of the shaking force, motion of the chain unit."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 from ..cycle.extremes import extremes
 from ..design.linkage import four_bar_of
-from ..errors import QuantityError
 from ..mechanics import quantities
-from ..mechanics.quantities import magnitude, of_mechanism, values
-from ..numbers.checks import choice, require, single_numbers
-from . import canvas
+from ..mechanics.quantities import magnitude, values
+from ..numbers.checks import choice, require
 from .canvas import (
     FROM_X,
     FROM_Y_CLOCKWISE,
-    INK,
     ZERO_TOLERANCE,
     axes,
     close_curve,
     display_unit,
     draw_curves,
     draw_over_turn,
-    drawn_limit,
     finish_axes,
-    ordinary_size,
     period_curve,
     solutions_by_label,
     with_line_styles,
     with_peaks,
 )
-from .labels import label
 
 
 def chain_unit_motion(solutions, link, order=1, ax=None):
@@ -124,10 +116,6 @@ def require_turning(named):
     require(
         "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
     )
-
-
-MIN_MARK_STEP = 0.01
-"""Smallest step of the crank-angle marks, degrees."""
 
 
 def over_turn(solutions, quantity, ax=None, counted=FROM_X):
@@ -243,102 +231,3 @@ def acceleration_error(solutions, ax=None, slider=None):
         curves[name] = period_curve(solution, 100 * error, FROM_X)
     label = "deviation of slider acceleration\nfrom cosine law [% of amplitude]"
     return draw_over_turn(ax, named, curves, label, "%", FROM_X)
-
-
-def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
-    """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
-
-    The curve includes extremes of the magnitude between the crank angles solved, kinks and jumps. It ends with a cross
-    where it has no value, and with an arrow head where it grows far beyond the rest.
-
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-    joint : str
-        Joint, or the vector attribute "shaking_force".
-    ax : Axes, optional
-    marks : float
-        Step of the crank-angle marks, degrees; a mark appears if the solution has that angle, to half a degree.
-    counted : AngleConvention, optional
-        Convention for the marks; by default from +x, counter-clockwise.
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> saw = ks.load_case("sawframe_2r63")
-    >>> ax = ks.plots.hodograph(saw.solve("plain", 90), "O", marks=60)
-    >>> ax.get_aspect()
-    1.0
-    """
-    marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
-    ax = axes(ax)
-    named = with_peaks(solutions_by_label(solutions, joint), joint)
-    whole = {}
-    for name, solution in named.items():
-        vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
-        if joint not in vectors:
-            raise QuantityError(choice(f"{solution.mechanism.name}: reaction", joint, tuple(vectors)))
-        whole[name] = vectors[joint].read(solution)
-    declared = quantities.quantity(next(iter(named.values())), joint)
-    factor, shown = display_unit(declared.unit, whole.values())
-    sizes = [np.hypot(*curve) for curve in whole.values()]
-    sight = drawn_limit(sizes)
-    curves = {name: canvas.hidden_beyond(sight, curve) for name, curve in whole.items()}
-    most = 2.0 * ordinary_size(sizes)
-    finite = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
-    extents = {
-        name: factor * min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()
-    }
-    whys: set[str] = set()
-    for name, solution, style in with_line_styles(named):
-        curve = factor * curves[name]
-        (line,) = ax.plot(*close_curve(curve), linestyle=style, label=name)
-        rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curve[0, row])]
-        ax.plot(*curve[:, rows], "o", ms=3, color=line.get_color())
-        ends = list(canvas.curve_ends(solution, whole[name], curves[name]))
-        for end in ends:
-            mark = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
-            ax.plot(*curve[:, end.row], ls="", color=line.get_color(), zorder=4, **mark)
-        whys |= {end.why for end in ends if end.why}
-        rows += [end.row for end in ends if end.row not in rows]
-        near = max(0.03 * extents[name], 0.02 * max(extents.values()))
-        period = np.degrees(solution.period)
-        degrees = counted(np.degrees(solution.crank_angle)[rows], period) % period
-        for text, point in _merge_labels(degrees, curve[:, rows], near):
-            label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
-    ax.axhline(0, color=INK, lw=0.5)
-    ax.axvline(0, color=INK, lw=0.5)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.1)
-    notes = [f"× {why}" for why in sorted(whys)]
-    if any(np.any(size > sight) for size in sizes):
-        notes.insert(0, f"▸ beyond the frame: {canvas.size_text([factor * size for size in sizes], shown)}")
-    if notes:
-        canvas.write_notes(ax, notes)
-    ax.set_xlabel(f"{declared.label}, x [{shown}]")
-    ax.set_ylabel(f"{declared.label}, y [{shown}]")
-    if len(named) > 1 or isinstance(solutions, Mapping):
-        ax.legend(frameon=False)
-    return ax
-
-
-def _rows_at_marks(solution, step):
-    """Rows of the solution whose crank angles are multiples of a step in degrees, to half a degree."""
-    period = np.degrees(solution.period)
-    apart = (
-        np.mod(np.degrees(solution.crank_angle) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
-    )
-    return np.argmin(np.abs(apart), axis=1)[np.abs(apart).min(axis=1) < 0.5]
-
-
-def _merge_labels(degrees, points, near):
-    """Crank-angle labels of points (2, M) with their places; points nearer than `near` share a label."""
-    rows = range(points.shape[1])
-    for group in canvas.grouped(rows, lambda row, other: np.hypot(*(points[:, row] - points[:, other])) < near):
-        names = [f"{degrees[row]:.4g}°" for row in group]
-        yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, group[0]]

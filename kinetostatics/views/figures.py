@@ -38,8 +38,9 @@ from .canvas import (
     save_figure,
     with_line_styles,
 )
-from .curves import hodograph, torque
+from .curves import torque
 from .drawings import mechanism
+from .hodographs import hodograph
 from .strokes import load_strokes, moves_alike
 
 FONT: Any = {"font.size": 9}
@@ -167,7 +168,7 @@ def _hodographs(solutions, counted=FROM_X) -> Figure:
     """Hodographs of the support reaction; those that coincide share a panel."""
     reactions = {name: solution.reaction("O") for name, solution in solutions.items()}
     shown = {text: solutions[name] for text, name in distinct_curves(reactions, apart=True).items()}
-    return _one_each(partial(curves.hodograph, counted=counted), shown, 5.2, 4.6, 2)
+    return _one_each(partial(hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 
 def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
@@ -229,7 +230,7 @@ def _overview(solutions, counted=FROM_X) -> Figure:
     curves.torque(solutions, ax=axes["torque"], counted=counted)
     axes["torque"].set_title("torque the drive must give")
     for name in shown:
-        curves.hodograph(solutions[name], ax=axes[name], marks=45, counted=counted)
+        hodograph(solutions[name], ax=axes[name], marks=45, counted=counted)
         axes[name].set_title(f"support reaction, {name}")
     return figure
 

@@ -12,7 +12,6 @@ from .curves import (
     acceleration_error,
     cam_force,
     chain_unit_motion,
-    hodograph,
     over_turn,
     pressure_angle,
     shaking_force,
@@ -21,6 +20,7 @@ from .curves import (
 from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
+from .hodographs import hodograph, hodographs
 
 __all__ = [
     "acceleration_error",
@@ -38,6 +38,7 @@ __all__ = [
     "error_by_distance",
     "front",
     "hodograph",
+    "hodographs",
     "law_motion",
     "losses",
     "lost_power",

@@ -174,6 +174,25 @@ def test_process_force_table_takes_indicator_diagram(tmp_path):
     agree(variant.scene, ks.Scene(variant.mechanism, rpm(60), loads=LOADS["indicator diagram"][2]))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        'process_force = { force = "-2 kN", reaction = "frame" }',
+        '[[variants.loaded.loads]]\nkind = "process force"\nforce = "-2 kN"\nreaction = "frame"',
+    ],
+)
+def test_the_frame_takes_a_process_force(tmp_path, text):
+    found = ks.load_case(case_file(tmp_path, PUMP + text)).variant("loaded").scene
+    assert found.loads[-1].reaction == "frame"
+    force = found.solve(4).ground["process_force"].force
+    along = found.mechanism.guides["slider"].direction
+    np.testing.assert_allclose(force, np.outer(along, np.full(4, 2e3)), atol=1e-10)
+    key = "variants.loaded.process_force.reaction" if "[[" not in text else "variants.loaded.loads[1].reaction"
+    (problem,) = problems(tmp_path, PUMP + text.replace('"frame"', '"fram"'))
+    assert problem.startswith(key)
+    assert "allowed: 'outside', 'frame'; did you mean 'frame'?" in problem
+
+
 def test_loads_of_a_variant_replace_common_ones(tmp_path):
     common = '[common]\n[[common.loads]]\nkind = "force"\nat = "B"\nvalue = "1 N"\n'
     text = PUMP + common + '[variants.free]\nmechanism = "crank-slider"\ncrank_speed = "1 rpm"\n'

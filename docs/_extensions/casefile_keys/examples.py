@@ -19,6 +19,7 @@ BY_KEY: dict[str, list[Any]] = {
     "against": ["coupler"],
     "along": ["coupler"],
     "assembly": [1],
+    "reaction": ["frame"],
     "at": ["B", ["0.2 m", "0.05 m"]],
     "between": [["B", ["1 m", "0 m"]]],
     "cubic": ["1 MN/m^3", ["0 N/m^3", "50 MN/m^3"]],

@@ -142,6 +142,8 @@ def by_rule(rule):
         return by_rule(rule.rule)
     if isinstance(rule, checks.Sign):
         return ", ".join(["`1`", "`-1`", *(f"`{json.dumps(word)}`" for word in rule.words)])
+    if isinstance(rule, checks.Word):
+        return ", ".join(f"`{json.dumps(word)}`" for word in rule.words)
     if isinstance(rule, checks.Number):
         return in_unit(rule.unit, rule.low, rule.strict)
     if isinstance(rule, checks.Pair):

@@ -9,6 +9,7 @@ from ...machine.groups.lever import LeverGroup
 from ...machine.groups.rocker import RockerGroup
 from ...machine.groups.slider import SliderGroup
 from ...machine.groups.yoke import YokeGroup
+from ...machine.loads import ProcessForce
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable
@@ -33,6 +34,7 @@ SliderAssembly = Annotated[Any, BeforeValidator(value_reader(SliderGroup.RULES.r
 RockerAssembly = Annotated[Any, BeforeValidator(value_reader(RockerGroup.RULES.rules["assembly"]))]
 LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rules["assembly"]))]
 Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
+Reaction = Annotated[Any, BeforeValidator(value_reader(ProcessForce.RULES.rules["reaction"]))]
 Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
 
 
@@ -54,6 +56,8 @@ class ProcessForceTable(Table):
     """CSV file of crank angle and force."""
     period: Period = None
     """Crank angle after which that table repeats: one turn unless told."""
+    reaction: Reaction = "outside"
+    """What takes the opposite force: "outside", or the "frame" of the machine."""
 
     @model_validator(mode="after")
     def _one_of_two(self):

@@ -16,6 +16,8 @@ and inertia nearly cancel.
     misplaced(mechanism)    problems of the joints and links it names
     refusals(motion)        sentences on crank angles at which it has no value; REFUSES says that there may be any
     signs(motion)           symbols by which it is drawn
+    rests_on_frame(mechanism)  whether the frame takes a force or couple of it
+    support(motion)         that force and couple, a `Support`; by default its wrenches on the frame, about O
 
 A load or its value (a `Table`, a function of the motion) may declare kinks and jumps:
 
@@ -28,6 +30,7 @@ Functions without declared kinks are sampled at the resolution of the scene; nar
 """
 
 from contextlib import suppress
+from functools import reduce
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -35,6 +38,9 @@ import numpy as np
 from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.paths import Batched
+from ..group import FRAME
+from ..links import Wrench
+from ..supports import Support
 from .table import Table
 from .table_pieces import TURN
 
@@ -113,6 +119,16 @@ class Load(checks.Checked, Batched):
     def signs(self, motion) -> Any:
         """Symbols by which it is drawn, each a `Symbol`."""
         return ()
+
+    def rests_on_frame(self, mechanism) -> bool:
+        """Whether the frame takes a force or couple of it: by default if it gives wrenches."""
+        return hasattr(self, "wrenches")
+
+    def support(self: Any, motion) -> Support:
+        """What it puts on the frame."""
+        on_frame = (wrench for link, wrench in self.wrenches(motion) if link == FRAME)
+        total = reduce(Wrench.plus, on_frame, Wrench(None, None))
+        return Support(total.force, None, total.moment)
 
     def sense(self, motion) -> Any:
         """Sign of its value in the poses of a motion, 1 or -1.

@@ -27,6 +27,7 @@ from ...numbers.planar import (
 from ..crank import ray
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
+from ..supports import Support
 from .load import Load, Symbol, value_rule
 
 PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
@@ -221,6 +222,10 @@ class Force(Load):
         force = (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
         yield wrench_at(motion.placement, point_on_link(motion.mechanism, self.at), force)
 
+    def rests_on_frame(self, mechanism):
+        """False: at a fixed point it acts on the frame from outside, and is no force of the machine."""
+        return False
+
     def _axis(self, motion):
         """Unit vector of a positive force; None means +x."""
         axis = None if self.along is None else motion.placement.links[self.along].direction
@@ -264,6 +269,18 @@ class PointLoad(Load):
         force = self.pull(motion)
         for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
             yield wrench_at(motion.placement, point_on_link(motion.mechanism, place), part)
+
+    def rests_on_frame(self, mechanism):
+        """Whether one of its points is fixed."""
+        return any(point_on_link(mechanism, place).link == FRAME for place in self.between)
+
+    def support(self, motion):
+        """Its force at the fixed point."""
+        force = self.pull(motion)
+        for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
+            if point_on_link(motion.mechanism, place).link == FRAME:
+                return Support(part, motion.spot(place).position)
+        return Support(None, None)
 
     def signs(self, motion):
         """Symbol between both points."""

@@ -24,18 +24,48 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.planar import plus
-from ..links import present
+from ...numbers.planar import (
+    add_vectors,
+    minus,
+    number_or_zero,
+    plus,
+    product,
+    rotate,
+    scale_vector,
+    subtract_vectors,
+)
+from ..links import acceleration_of, present
+from ..supports import Support
 from . import surge
 from .load import Load, Symbol, value_rule
 from .table import Table
 from .table_pieces import TURN, WholeTurns
 
+REACTIONS = ("outside", "frame")
+"""What may take the force opposite to a process force."""
+
 
 class SliderLoad(Load):
-    """A load on the slider `on` along its guide."""
+    """A load on the slider `on` along its guide, which the frame takes on the same line."""
 
     on: str
+
+    def push(self, motion) -> Any:
+        """Force on the slider along the guide, N."""
+        raise NotImplementedError
+
+    def foot(self, motion) -> Any:
+        """Coordinate along the guide at which the frame takes the force, m: by default that of the pin."""
+        return motion.placement.travels[self.on].position
+
+    def rests_on_frame(self, mechanism):
+        return True
+
+    def support(self, motion):
+        """The opposite force on the frame, on the line along the guide through the pin."""
+        line = motion.mechanism.guides[self.on].line
+        point = rotate((self.foot(motion), number_or_zero(line.offset)), line.direction)
+        return Support(rotate((minus(None, self.push(motion)), 0.0), line.direction), point)
 
     def misplaced(self, mechanism):
         """Sentence if the mechanism has no such slider."""
@@ -187,6 +217,10 @@ class Spring(SliderLoad):
         length, more = found
         return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
 
+    def foot(self, motion):
+        """Coordinate at which it is free, m."""
+        return self.free_position
+
     def potential(self, motion):
         """Strain energy, J."""
         elongation = motion.elongation(self.free_position, self.on)
@@ -195,15 +229,15 @@ class Spring(SliderLoad):
             return 0.5 * self.stiffness * square
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
-    def foot_force(self, motion):
-        """Force on the frame at the feet of the springs, along the guide, (..., N), N."""
-        force = -self.push(motion)
-        if present(self.mass) is None:
-            return force
-        x, y = motion.mechanism.guides[self.on].direction
-        pull = (item.vector for item in motion.loads if getattr(item, "PATH", "") == "gravity")
-        weight = sum(0.5 * (gravity[0] * x + gravity[1] * y) for gravity in pull)
-        return force + self.mass * (weight - motion.travel_acceleration(self.on) / 6.0)
+    def support(self, motion):
+        """Force at the feet: opposite of the elastic force, less inertia, with weight of springs that have mass."""
+        force, point, _ = super().support(motion)
+        mass = present(self.mass)
+        if mass is not None:
+            joint, (square, alpha) = motion.placement.joints[motion.mechanism.references[self.on]], motion.accelerating
+            inertia = acceleration_of(joint.first, joint.second, mass / 6.0 * square, product(mass / 6.0, alpha))
+            force = subtract_vectors(add_vectors(force, scale_vector(0.5 * mass, motion.gravity)), inertia)
+        return Support(force, point)
 
     def signs(self, motion):
         """Symbol of a spring along the guide."""
@@ -235,12 +269,16 @@ class ProcessForce(SliderLoad):
         Slider that it acts on.
     period : float, optional
         Period of the force, rad: 4 pi for a four-stroke engine. By default the period of its `Table`, else 2 pi.
+    reaction : "outside" or "frame"
+        What takes the opposite force: something outside, as the ground that a mower's crop stands in, or the machine's
+        own frame, as that of a saw, on whose rollers the log rests, or of an engine, whose gas presses on its cylinder
+        too. It matters to the forces on the frame (`Solution.ground`) alone.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or the period not a whole number of turns; when a scene is made: there is no
-        such slider.
+        A value is not a finite number, or the period not a whole number of turns, or the reaction another; when a
+        scene is made: there is no such slider.
 
     Examples
     --------
@@ -255,6 +293,7 @@ class ProcessForce(SliderLoad):
     force: Any
     on: str = "slider"
     period: Any = field(default=None, kw_only=True, metadata={"structural": True})
+    reaction: str = field(default="outside", kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "process_force", "force", ("force",)
 
@@ -270,7 +309,12 @@ class ProcessForce(SliderLoad):
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
-        "process force", _period_problems, force=value_rule("N"), on=checks.Name(), period=WholeTurns()
+        "process force",
+        _period_problems,
+        force=value_rule("N"),
+        on=checks.Name(),
+        period=WholeTurns(),
+        reaction=checks.Word(REACTIONS),
     )
 
     @property
@@ -281,6 +325,9 @@ class ProcessForce(SliderLoad):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def rests_on_frame(self, mechanism):
+        return self.reaction == "frame"
 
     def signs(self, motion):
         """Symbol of a force along the guide."""

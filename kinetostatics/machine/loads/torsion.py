@@ -15,6 +15,7 @@ from ...numbers.planar import minus, number_or_zero, product, rotate_back
 from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
+from ..supports import Support
 from .load import Load, Symbol, value_rule
 from .table_pieces import TURN
 
@@ -57,6 +58,13 @@ class Couple(Load):
         yield self.on, Wrench(None, couple)
         if self._other is not None:
             yield self._other, Wrench(None, minus(None, couple))
+
+    def rests_on_frame(self, mechanism):
+        return self._other is None
+
+    def support(self, motion):
+        """The opposite couple on the frame, shown at the reference joint of the link."""
+        return Support(None, motion.placement.links[self.on].joint.position, minus(None, self.couple(motion)))
 
     def signs(self, motion):
         """Symbol at the reference joint of the link."""

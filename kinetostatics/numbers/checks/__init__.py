@@ -40,6 +40,7 @@ from .rules import (
     Rules,
     Series,
     Sign,
+    Word,
     check_values,
     implausibility,
     plausible_range_of,

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import HintWarning
 from ..fingerprint import LIBRARY
-from .messages import Problem, broadcast_problem, require, shown
+from .messages import Problem, broadcast_problem, choice, require, shown
 from .values import (
     DimensionError,
     NotANumberError,
@@ -343,6 +343,19 @@ class Sign:
             return str(value), None
         words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
         return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
+
+
+@dataclass(frozen=True)
+class Word:
+    """One of some words."""
+
+    words: tuple[str, ...]
+
+    def quick(self, value):
+        return value if type(value) is str and value in self.words else UNDECIDED
+
+    def check(self, value, field=""):
+        return value, choice(field, value, self.words)
 
 
 class Rules:

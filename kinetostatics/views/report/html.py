@@ -27,6 +27,7 @@ from .tables import readings
 
 QUANTITY_GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),
+    "Forces on the frame": ("ground",),
     "Motion": ("slider", "motion", "rate"),
 }
 """Kinds of quantities by the heading of their values."""
@@ -168,6 +169,8 @@ def _figures(subject, values, runs):
     for name, item in values.items():
         if item["kind"] == "reaction":
             made[f"reaction {name}"] = figures.over_turn(solutions, name, 230)
+        if item["kind"] == "ground":
+            made[name] = figures.hodograph(solutions, name, 300)
     if any(lose(solution) for solution in solutions.values()) and "friction_loss" in values:
         made["loss"] = figures.over_turn(solutions, "friction_loss", 260)
     if runs:

@@ -132,7 +132,7 @@ def ratio_text(ratio, bound=0.0):
 
 READING_DIGITS = 6
 """Largest number of digits shown of the largest value."""
-KINDS = ("force", "reaction", "friction", "slider", "motion", "whole", "rate")
+KINDS = ("force", "reaction", "friction", "slider", "motion", "whole", "ground", "rate")
 """Kinds of quantities in the order of the page."""
 
 

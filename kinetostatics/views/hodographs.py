@@ -1,0 +1,221 @@
+"""Hodographs: the curve that the tip of a force draws over the turn, in fixed axes or in those of a link."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import QuantityError
+from ..machine.group import GROUND
+from ..machine.supports import places
+from ..mechanics.quantities import of_scene
+from ..numbers.checks import choice, require, single_numbers
+from ..numbers.planar import rotate_back
+from . import canvas
+from .canvas import (
+    FROM_X,
+    INK,
+    axes,
+    close_curve,
+    display_unit,
+    drawn_limit,
+    ordinary_size,
+    panels,
+    solutions_by_label,
+    with_line_styles,
+    with_peaks,
+)
+from .labels import label
+
+MIN_MARK_STEP = 0.01
+"""Smallest step of the crank-angle marks, degrees."""
+PANEL_SIZE = 4.4, 4.0
+"""Width and height of a panel, inches."""
+MAX_COLUMNS = 3
+
+
+def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
+    """Hodograph of a force: the curve its tip draws over the turn (figure 7).
+
+    The curve includes extremes of the magnitude between the crank angles solved, kinks and jumps. It ends with a cross
+    where it has no value, and with an arrow head where it grows far beyond the rest.
+
+    In the axes of a link the force turns relative to the link: the curve shows from which side the load comes on a pin
+    fixed to it (a polar wear diagram), so that an oil hole goes where the load never points.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    joint : str
+        Joint, for its reaction; the vector attribute "shaking_force"; or a place where the machine pushes the frame
+        (`Solution.ground`), "cam", "spring" ..., for the force on the frame, that of a joint by "ground O".
+    ax : Axes, optional
+    marks : float
+        Step of the crank-angle marks, degrees; a mark appears if the solution has that angle, to half a degree.
+    counted : AngleConvention, optional
+        Convention for the marks; by default from +x, counter-clockwise.
+    on : str, optional
+        Link in whose axes the force is drawn, along the link and across it, to the left; by default fixed axes.
+
+    Returns
+    -------
+    Axes
+        With equal scales on both axes.
+
+    Raises
+    ------
+    QuantityError
+        A mechanism has no such vector or link; the message lists those there are.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ax = ks.plots.hodograph(saw.solve("plain", 90), "O", marks=60)
+    >>> ax.get_aspect()
+    1.0
+    >>> ks.plots.hodograph(saw.solve("plain", 90), "A", on="crank").get_xlabel()
+    'reaction A, along the crank [kN]'
+    """
+    marks = single_numbers("hodograph", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
+    ax = axes(ax)
+    given = solutions_by_label(solutions, joint)
+    name = joint
+    for solution in given.values():
+        name = _vector_name(solution, name)
+    shown, unit = _draw(ax, given, name, marks, counted, on)
+    ways = ("x", "y") if on is None else (f"along the {on}", f"across the {on}")
+    ax.set_xlabel(f"{shown}, {ways[0]} [{unit}]")
+    ax.set_ylabel(f"{shown}, {ways[1]} [{unit}]")
+    if len(given) > 1 or isinstance(solutions, Mapping):
+        ax.legend(frameon=False)
+    return ax
+
+
+def hodographs(solutions, marks=90, counted=FROM_X):
+    """Hodographs of the forces on the frame, a panel for each place where the machine pushes it (`Solution.ground`).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        A panel shows those that have the place.
+    marks, counted
+        As for `hodograph`.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> figure = ks.plots.hodographs(ks.load_case("sawframe_2r63").solve("cam-circle", 90))
+    >>> [ax.get_title() for ax in figure.axes]
+    ['O', 'cam', 'guide', 'spring']
+    """
+    marks = single_numbers("hodographs", marks=(marks, "deg", {"low": MIN_MARK_STEP}))["marks"]
+    given = solutions_by_label(solutions, GROUND)
+    found = {name: None for solution in given.values() for name, place in places(solution).items() if place.pushes}
+    styles = {
+        key: {"linestyle": style, "color": f"C{row}"} for row, (key, _, style) in enumerate(with_line_styles(given))
+    }
+    figure, several = panels(len(found), 2 if len(found) == 4 else MAX_COLUMNS, *PANEL_SIZE)
+    for ax, place in zip(several, found, strict=True):
+        name = f"{GROUND} {place}"
+        having = {key: solution for key, solution in given.items() if name in of_scene(solution)}
+        _, unit = _draw(ax, having, name, marks, counted, styles=styles)
+        ax.margins(0.16)
+        ax.set_title(place)
+        ax.set_xlabel(f"x [{unit}]")
+        ax.set_ylabel(f"y [{unit}]")
+        if len(having) > 1 or isinstance(solutions, Mapping):
+            ax.legend(frameon=False, fontsize="small")
+    figure.suptitle("force of the machine on the frame")
+    return figure
+
+
+def _vector_name(solution, name):
+    """Name of the vector quantity that is drawn: the quantity itself, or the force on the frame at a place."""
+    vectors = [known for known, found in of_scene(solution).items() if found.vector]
+    if name in vectors:
+        return name
+    if f"{GROUND} {name}" in vectors:
+        return f"{GROUND} {name}"
+    allowed = dict.fromkeys(known.removeprefix(f"{GROUND} ") for known in vectors)
+    raise QuantityError(choice(f"{solution.mechanism.name}: force", name, tuple(allowed)))
+
+
+def _in_axes(solution, vector, on):
+    """The vector in the axes of a link."""
+    links = solution.mechanism.links
+    require("hodograph", choice(f"{solution.mechanism.name}: on", on, tuple(links)))
+    return np.stack(np.broadcast_arrays(*rotate_back(vector, solution.placement.links[on].direction)))
+
+
+def _draw(ax, given, name, marks, counted, on=None, styles=None):
+    """Curves of a vector by label on axes with equal scales, in styles by label; returns its label and unit."""
+    named = with_peaks(given, name)
+    declared = of_scene(next(iter(named.values())))[name]
+    whole = {key: declared.read(solution) for key, solution in named.items()}
+    if on is not None:
+        whole = {key: _in_axes(solution, whole[key], on) for key, solution in named.items()}
+    factor, unit = display_unit(declared.unit, whole.values())
+    sizes = [np.hypot(*curve) for curve in whole.values()]
+    sight = drawn_limit(sizes)
+    curves = {key: canvas.hidden_beyond(sight, curve) for key, curve in whole.items()}
+    extents = {key: factor * extent for key, extent in _extents(curves, 2.0 * ordinary_size(sizes)).items()}
+    whys: set[str] = set()
+    for key, solution, style in with_line_styles(named):
+        curve = factor * curves[key]
+        (line,) = ax.plot(*close_curve(curve), label=key, **(styles[key] if styles else {"linestyle": style}))
+        color = line.get_color()
+        rows = [row for row in _rows_at_marks(solution, marks) if np.isfinite(curve[0, row])]
+        ax.plot(*curve[:, rows], "o", ms=3, color=color)
+        ends = list(canvas.curve_ends(solution, whole[key], curves[key]))
+        for end in ends:
+            cross, arrow = {"marker": "x", "ms": 6, "mew": 1.5}, {"marker": (3, 0, end.angle - 90.0), "ms": 8}
+            ax.plot(*curve[:, end.row], ls="", color=color, zorder=4, **(cross if end.why else arrow))
+        whys |= {end.why for end in ends if end.why}
+        rows += [end.row for end in ends if end.row not in rows]
+        near = max(0.03 * extents[key], 0.02 * max(extents.values()))
+        _write_angles(ax, solution, curve, rows, near, counted, color if len(named) > 1 else INK)
+    ax.axhline(0, color=INK, lw=0.5)
+    ax.axvline(0, color=INK, lw=0.5)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.1)
+    notes = [f"× {why}" for why in sorted(whys)]
+    if any(np.any(size > sight) for size in sizes):
+        notes.insert(0, f"▸ beyond the frame: {canvas.size_text([factor * size for size in sizes], unit)}")
+    if notes:
+        canvas.write_notes(ax, notes)
+    return declared.label, unit
+
+
+def _extents(curves, most):
+    """Width or height of each curve, up to a largest one."""
+    finite = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
+    return {name: min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()}
+
+
+def _write_angles(ax, solution, curve, rows, near, counted, color):
+    """Write the crank angles of rows at points of a curve; points nearer than `near` share a label."""
+    period = np.degrees(solution.period)
+    degrees = counted(np.degrees(solution.crank_angle)[rows], period) % period
+    for text, point in _merge_labels(degrees, curve[:, rows], near):
+        label(ax, text, point, color=color)
+
+
+def _rows_at_marks(solution, step):
+    """Rows of the solution whose crank angles are multiples of a step in degrees, to half a degree."""
+    period = np.degrees(solution.period)
+    apart = (
+        np.mod(np.degrees(solution.crank_angle) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
+    )
+    return np.argmin(np.abs(apart), axis=1)[np.abs(apart).min(axis=1) < 0.5]
+
+
+def _merge_labels(degrees, points, near):
+    """Crank-angle labels of points (2, M) with their places; points nearer than `near` share a label."""
+    rows = range(points.shape[1])
+    for group in canvas.grouped(rows, lambda row, other: np.hypot(*(points[:, row] - points[:, other])) < near):
+        names = [f"{degrees[row]:.4g}°" for row in group]
+        yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, group[0]]
