@@ -99,7 +99,7 @@ class Solution(Certainty, Motion):
     measure(name)
     at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
-    explain(quantity, angle, design), frame()
+    explain(quantity, angle, design), shares(quantity), frame()
 
     Notes
     -----
@@ -377,6 +377,50 @@ class Solution(Certainty, Motion):
         from ..cycle.losses import losses
 
         return losses(self)
+
+    def shares(self, quantity):
+        """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
+
+        A share is the value that the source alone causes where the total is largest, of a vector its projection on the
+        total; shares add up to the peak. Beside it stand peak and root mean square of the source alone. With friction,
+        which is not linear, a row is the effect of leaving out its source, and friction of each joint has one too.
+
+        Parameters
+        ----------
+        quantity : str
+            A reaction ("O"), a force or moment ("balancing_torque", "cam_force", "guide_moment"), "shaking_force",
+            "shaking_moment" or "load_torque"; of one design. Its own crank angles do not matter.
+
+        Returns
+        -------
+        Shares
+            ``print`` it; ``shares["inertia of coupler"]`` is a `Share`, `.frame()` a table.
+
+        Raises
+        ------
+        QuantityError
+            There is no such quantity, or it is not linear in masses and loads; the message lists those that are.
+        ParameterError
+            The solution is a batch of designs or does not close all round, or the quantity is 0 or grows without bound.
+        JammingError
+            Friction jams, or jams without one of the sources.
+
+        Warns
+        -----
+        ConditionWarning
+            A load is so uneven that fewer digits of the root mean squares are right.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+        >>> print(f"{s.shares('O')['inertia of slider'].value:.0f} N of {s.shares('O').total.value:.0f} N")
+        232305 N of 286596 N
+        """
+        from .shares import shares
+
+        return shares(self, quantity)
 
     @property
     def efficiency(self):
