@@ -180,8 +180,11 @@ def shares(solution, name) -> Shares:
     whole = replace(solution, engine=NUMPY if getattr(solution.engine, "compiled", False) else solution.engine)
     superposed = not solution.friction.acting
     find, other_machines = (_alone, sources_alone) if superposed else (_left_out, machines_without)
+    others = other_machines(whole)
+    if not solution.mechanism.trusted:
+        _require_massless_links(others, name)
     parts = [Part(TOTAL, partial(components, name=name), *_peak(whole, name))]
-    parts += [find(whole, name, source, other) for source, other in other_machines(whole).items()]
+    parts += [find(whole, name, source, other) for source, other in others.items()]
     _require_finite(solution, name, parts)
     total = parts[0]
     if total.peak == 0.0:
@@ -272,6 +275,18 @@ def _titled_loads(solution):
     """Titles and loads, without weight."""
     loads = [item for item in solution.loads if not isinstance(item, Gravity)]
     return list(zip(numbered_titles(loads), loads, strict=True))
+
+
+def _require_massless_links(machines, name):
+    """Refuse groups of the user's own that cannot resolve a link without mass, whose force is None."""
+    for source, machine in machines.items():
+        try:
+            components(machine.at(np.zeros(1)), name)
+        except (TypeError, AttributeError) as error:
+            raise ParameterError(
+                f"shares: a group of your own fails where nothing but {source} acts ({error}); what is zero comes to "
+                "its resolve as None: add it by the functions of kinetostatics.numbers.planar"
+            ) from error
 
 
 def _with_friction_solved(solution):

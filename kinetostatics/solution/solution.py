@@ -381,20 +381,14 @@ class Solution(Certainty, Motion):
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
 
-        A share is the value that the source alone causes where the total is largest, of a vector its projection on the
-        total; shares add up to the peak. Beside it stand peak and root mean square of the source alone. With friction,
-        which is not linear, a row is the effect of leaving out its source, and friction of each joint has one too.
+        A share is what the source alone causes where the total is largest, of a vector its projection on the total; the
+        shares add up to the peak. Beside it stand peak and root mean square of the source alone. With friction a row is
+        the effect of leaving out its source, friction of each joint among them. Of one design, over its whole period.
 
         Parameters
         ----------
         quantity : str
-            A reaction ("O"), a force or moment ("balancing_torque", "cam_force", "guide_moment"), "shaking_force",
-            "shaking_moment" or "load_torque"; of one design. Its own crank angles do not matter.
-
-        Returns
-        -------
-        Shares
-            ``print`` it; ``shares["inertia of coupler"]`` is a `Share`, `.frame()` a table.
+            A reaction ("O"), a force or moment ("balancing_torque", "cam_force"), "shaking_force", "load_torque" ...
 
         Raises
         ------
@@ -405,17 +399,12 @@ class Solution(Certainty, Motion):
         JammingError
             Friction jams, or jams without one of the sources.
 
-        Warns
-        -----
-        ConditionWarning
-            A load is so uneven that fewer digits of the root mean squares are right.
-
         Examples
         --------
         >>> import kinetostatics as ks
         >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
-        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
-        >>> print(f"{s.shares('O')['inertia of slider'].value:.0f} N of {s.shares('O').total.value:.0f} N")
+        >>> shares = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360).shares("O")
+        >>> print(f"{shares['inertia of slider'].value:.0f} N of {shares.total.value:.0f} N")
         232305 N of 286596 N
         """
         from .shares import shares

@@ -179,7 +179,7 @@ def _draw_forces(ax, actions, link, extent, middle):
         return
     scale, gap = LONGEST_ARROW * extent / largest, ARROW_GAP * LONGEST_ARROW * extent
     factor, unit = display_unit("N", [np.array(sizes)])
-    arrows: list[Any] = []  # point, direction from it, and number of arrows beside
+    arrows: list[Any] = []  # points and the directions from them
     for item, size in shown:
         point, along = item.point[:, 0], item.force[:, 0] / size
         presses = along @ (middle - point) > PRESSING * np.hypot(*(middle - point))
@@ -227,7 +227,10 @@ def _draw_couples(ax, actions, link, longest):
     floor = MIN_DRAWN * max(moments, default=0.0)
     shown = [item for item in actions if abs(item.couple[0]) > floor]
     factor, unit = display_unit("N m", [np.array([item.couple[0] for item in shown])])
-    for row, item in enumerate(shown):
+    for place, item in enumerate(shown):
+        row = sum(
+            bool(np.hypot(*(other.point - item.point)[:, 0]) < longest * COUPLE_RADIUS) for other in shown[:place]
+        )
         radius, sense = COUPLE_RADIUS * longest * (1.0 + 0.5 * row), np.sign(item.couple[0])
         turned = ARC_START + row * ARC_TURN + sense * np.linspace(0.0, ARC, 40)
         points = item.point + radius * np.array([np.cos(turned), np.sin(turned)])

@@ -1,5 +1,7 @@
 """Who causes a force: shares add up, the saw's printed shares, effects of leaving out with friction, refusals."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from support import chains, followers, friction_machines
 from support.case_files import shipped, variant_names
 from support.every import every
 from support.machines import largest
-from support.scenes import SCENES
+from support.scenes import OWN, SCENES
 
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 ANGLES = np.linspace(0.05, 6.3, 40)
@@ -205,6 +207,28 @@ PASSING = ks.solve(
 def test_bad_input_is_refused(solution, quantity, error, message):
     with pytest.raises(error, match=message):
         solution.shares(quantity)
+
+
+@dataclass(frozen=True)
+class Drag:
+    """A load of the user's own."""
+
+    on: str = "slider"
+
+    def push(self, motion):
+        """Force that grows with the square of the speed."""
+        return -40.0 * motion.slider_velocity * abs(motion.slider_velocity)
+
+
+def test_loads_of_the_users_own_have_a_share():
+    found = saw(Drag()).shares("balancing_torque")
+    assert abs(found.rest) < 1e-9
+    assert found["Drag on 'slider'"].rms > 0.0
+
+
+def test_own_group_that_needs_mass_is_refused():
+    with pytest.raises(ks.ParameterError, match="fails where nothing but inertia of crank acts"):
+        OWN["group"][0].solve(8).shares("O")
 
 
 def test_unknown_source_is_refused_with_those_there():
