@@ -78,6 +78,7 @@ from .solution.program import Program as Program
 from .solution.program import compile as compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene as Scene
 from .solution.scene import solve as solve
+from .solution.shares import Shares as Shares
 from .solution.solution import Solution as Solution
 from .studies import precision as precision
 from .studies import stability as stability

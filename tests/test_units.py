@@ -340,6 +340,7 @@ SLOW = {
     ),
     "plots.mechanism": (ks.plots.mechanism, {"angles": ([40.0, 50.0], "deg")}, {"solutions": SOLVED}),
     "plots.mass_centres": (ks.plots.mass_centres, {"angle": (40.0, "deg")}, {"solutions": SOLVED}),
+    "plots.free_body": (ks.plots.free_body, {"angle": (40.0, "deg")}, {"solution": SOLVED, "link": "coupler"}),
     "plots.animation": (ks.plots.animation, {"interval": (40.0, "ms")}, {"solution": SOLVED}),
     "plots.hodograph": (ks.plots.hodograph, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
     "plots.cam_curvature": (ks.plots.cam_curvature, {"roller_radius": (0.0625, "m")}, {"cams": CAM}),
@@ -489,7 +490,7 @@ RESULTS |= {
     "Variant",
 }
 RESULTS |= {"Comparison", "DrivenComparison", "EnergyFlow", "Extremes", "Losses", "Needs", "PrincipalPoints", "Program"}
-RESULTS |= {"ResolutionCheck", "Tolerances", "Uncertainty"}
+RESULTS |= {"ResolutionCheck", "Shares", "Tolerances", "Uncertainty"}
 """Classes that the library makes itself."""
 
 

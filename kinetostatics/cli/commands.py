@@ -70,19 +70,20 @@ def run(options):
     names = list(case.variants) if options.variant is None else [options.variant]
     given = sweep_commands.standard_uncertainties(case, names, options.uncertain or ())
     solutions = {name: case.solve(name, options.angles) for name in output.progress(options, names, "solving")}
+    shares = {name: [s.shares(quantity) for quantity in options.shares or ()] for name, s in solutions.items()}
     output.deliver(
         options,
         lambda: {
             "angles": options.angles,
-            "variants": {name: _extremes(solution, given[name]) for name, solution in solutions.items()},
+            "variants": {name: _extremes(solution, given[name], shares[name]) for name, solution in solutions.items()},
         },
-        lambda: _print_extremes(case, solutions, given, options),
+        lambda: _print_extremes(case, solutions, given, shares, options),
         lambda: output.stacked({name: solution.frame() for name, solution in solutions.items()}, "variant"),
         case,
     )
 
 
-def _extremes(solution, given):
+def _extremes(solution, given, shares):
     """Results of a variant for ``--json``."""
     from ..cycle.extremes import SHOWN, extremes_by_name
     from ..cycle.losses import lose
@@ -100,10 +101,12 @@ def _extremes(solution, given):
     if given:
         largest = output.rows_by_name(largest_with_uncertainty(solution, given))
         found["uncertainty"] = {"inputs": given, "largest": largest}
+    if shares:
+        found["shares"] = {one.quantity: output.rows_by_name(one.frame()) for one in shares}
     return found
 
 
-def _print_extremes(case, solutions, given, options):
+def _print_extremes(case, solutions, given, shares, options):
     from ..cycle.extremes import SHOWN, extremes_by_name
     from ..cycle.losses import lose
     from . import sweep_commands
@@ -128,6 +131,11 @@ def _print_extremes(case, solutions, given, options):
             print("\npower lost by friction, exact means over the turn\n")
             print_table(solution.losses.frame())
             print_folded(f"\n{solution.losses}")
+        for found in shares[name]:
+            print(f"\nwho causes the peak: {found.label}\n")
+            print_table(found.frame())
+            if found.note:
+                print_folded(f"\n{found.note}")
         if options.uncertain:
             sweep_commands.print_uncertainty(solution, given[name])
 

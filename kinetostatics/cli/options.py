@@ -93,6 +93,13 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
             '"tolerances" for those of the case file; several, each with --uncertain before it',
             action="append",
         ),
+        _option(
+            "--shares",
+            "NAME",
+            'also who causes a force or torque, "O": inertia and weight of each link, and each load; several, each '
+            "with --shares before it",
+            action="append",
+        ),
         JSON,
         _csv("all results, a row for each crank angle"),
     ),

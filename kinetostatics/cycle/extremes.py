@@ -194,14 +194,18 @@ def _degrees(angles):
     return ", ".join(f"{np.degrees(angle):.6g}" for angle in angles)
 
 
-def extrema(solution, quantity):
-    """The extrema without a warning; those of named quantities are cached for all solutions of the same turn."""
+def extrema(solution, quantity, pulsed=True):
+    """The extrema without a warning; those of named quantities are cached for all solutions of the same turn.
+
+    A `quantity` that is a function may have pulses of its own, unless `pulsed` is False: then all its kinks are those
+    of friction and loads, and it is not sampled every quarter of a degree.
+    """
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
     note = resolution_note(solution, quantity)
     if callable(quantity):
-        return replace(_extrema(solution, turn, quantity), note=note)
+        return replace(_extrema(solution, turn, quantity, pulsed), note=note)
     if quantity not in turn.extrema:
         turn.extrema[quantity] = replace(_extrema(solution, turn, quantity), solution=None)
     found = turn.extrema[quantity]
@@ -217,7 +221,7 @@ def largest_of(found):
     return float(found.value[place]), float(found.angle[place])
 
 
-def _extrema(solution, turn, quantity):
+def _extrema(solution, turn, quantity, pulsed=False):
     def function(at):
         return np.asarray(values(at, quantity))
 
@@ -240,7 +244,7 @@ def _extrema(solution, turn, quantity):
             return _constant(name, float(np.max(samples)), left_out, own)
         root_of_force = not is_function and of_scene(solution)[quantity].kind == "contact"
         scale = 2.0 * size if root_of_force else 1.0
-        pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, scale)
+        pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, scale, pulsed)
         cuts = turn.limits[~good[np.searchsorted(turn.angle, turn.limits)]]
         found = list(paths(turn, pieces, known, rough, function, rounding, size, cuts, scale))
         if not any(turning_points(path)[1].size for path in found):
@@ -254,7 +258,7 @@ def _constant(name, value, left_out, solution):
     return Extremes(name, empty, empty, empty.astype(bool), value, left_out, solution)
 
 
-def _resolved(turn, quantity, good, floor, scale):
+def _resolved(turn, quantity, good, floor, scale, pulsed):
     """Pieces with resolved series of a quantity, its values, NaN without digits, which stay rough, and its rounding.
 
     Values (1 or 2, pieces, points + 2) are those of the quantity, or its components; with a `scale` its square, whose
@@ -280,7 +284,7 @@ def _resolved(turn, quantity, good, floor, scale):
         open_part = finite.any(axis=1) & ~finite.all(axis=1) & (2.0 * pieces.half[:, 0] > MIN_OPEN_WIDTH)
         with np.errstate(invalid="ignore"):
             floors = TAIL_SHARE * scale * rounding(pieces) + steep(pieces, values)
-            return (errors > floors).any(axis=0) | open_part | (missed(pieces, values) if callable(quantity) else False)
+            return (errors > floors).any(axis=0) | open_part | (missed(pieces, values) if pulsed else False)
 
     def missed(pieces, values):
         """Whether the function differs from its series between the points of a piece."""

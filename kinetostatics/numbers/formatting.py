@@ -18,7 +18,7 @@ MAX_PLAIN_NUMBER = 1e9
 """Size below which a number has no power of ten."""
 ANGLE_DECIMALS = 3
 """Decimals of a crank angle in degrees: six digits of a full turn."""
-DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
+DIGITS_OF = {"ratio": 4, "share [%]": 4, "of total [%]": 4, "power residual": 2}
 """Significant digits of rough quantities, by column or row."""
 UNIT_SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
 _HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")

@@ -101,7 +101,7 @@ class Solution(Certainty, Motion):
     measure(name)
     at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
-    explain(quantity, angle, design), frame()
+    explain(quantity, angle, design), shares(quantity), frame()
 
     Notes
     -----
@@ -391,6 +391,39 @@ class Solution(Certainty, Motion):
         from ..cycle.losses import losses
 
         return losses(self)
+
+    def shares(self, quantity):
+        """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
+
+        A share is what the source alone causes where the total is largest, of a vector its projection on the total; the
+        shares add up to the peak. Beside it stand peak and root mean square of the source alone. With friction a row is
+        the effect of leaving out its source, friction of each joint among them. Of one design, over its whole period.
+
+        Parameters
+        ----------
+        quantity : str
+            A reaction ("O"), a force or moment ("balancing_torque", "cam_force"), "shaking_force", "load_torque" ...
+
+        Raises
+        ------
+        QuantityError
+            There is no such quantity, or it is not linear in masses and loads; the message lists those that are.
+        ParameterError
+            The solution is a batch of designs or does not close all round, or the quantity is 0 or grows without bound.
+        JammingError
+            Friction jams, or jams without one of the sources.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> shares = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360).shares("O")
+        >>> print(f"{shares['inertia of slider'].value:.0f} N of {shares.total.value:.0f} N")
+        232305 N of 286596 N
+        """
+        from .shares import shares
+
+        return shares(self, quantity)
 
     @property
     def efficiency(self):

@@ -20,6 +20,7 @@ from .curves import (
 from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
+from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "drive_torques",
     "energy_flow",
     "error_by_distance",
+    "free_body",
     "front",
     "hodograph",
     "hodographs",
@@ -48,6 +50,7 @@ __all__ = [
     "over_turn",
     "pressure_angle",
     "shaking_force",
+    "shares",
     "sweep_map",
     "torque",
     "work_precision",

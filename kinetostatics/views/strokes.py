@@ -152,14 +152,16 @@ class Shape:
             start, end = self.ways[slider].T
             yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.unit)
 
-    def strokes(self, pose):
-        """Lines and plates of all links in the poses of a motion, from back to front."""
+    def strokes(self, pose, links=None):
+        """Lines and plates of all links, or of some, in the poses of a motion, from back to front."""
+        links = self.mechanism.links if links is None else links
         for group in self.mechanism.groups:
             for link, points in group.outlines.items():
-                yield Stroke("outline", _link_points(pose, link, points))
+                if link in links:
+                    yield Stroke("outline", _link_points(pose, link, points))
         for link, corners in self.corners.items():
             order = _line_order(corners)
-            if corners.shape[1] > 1:
+            if corners.shape[1] > 1 and link in links:
                 kind = "plate" if order is None else "bar"
                 if order is None:
                     x, y = corners - corners.mean(axis=1, keepdims=True)
@@ -169,15 +171,18 @@ class Shape:
                 yield Stroke(kind, _link_points(pose, link, corners[:, order]))
         for slot, ends in self.slots:
             line = _link_points(pose, slot.link, ends)
-            yield from self._piston(pose, slot, ends) if slot.rod else (Stroke("slotted", line), Stroke("slot", line))
+            parts = self._piston(pose, slot, ends) if slot.rod else (Stroke("slotted", line), Stroke("slot", line))
+            yield from (part for part in parts if (slot.rod if part.kind == "bar" else slot.link) in links)
         rods = {slot.rod for slot in self.mechanism.slots}
         for link, corners in self.corners.items():
-            if link in self.mechanism.guides or (corners.shape[1] == 1 and link not in rods):
+            if link in links and (link in self.mechanism.guides or (corners.shape[1] == 1 and link not in rods)):
                 turn = pose.as_vector(pose.placement.links[link].direction)
                 place = pose.position(self.mechanism.references[link])
                 size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
                 yield Stroke("block", place_sign(RECTANGLE, place, turn, size))
         for joint, radius in self.mechanism.rollers.items():
+            if self.mechanism.joints[joint].link not in links:
+                continue
             size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
             yield Stroke("roller", self._ring(pose.position(joint), size))
 

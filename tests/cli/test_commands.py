@@ -1,5 +1,6 @@
 """Commands and their printed text."""
 
+import json
 import math
 import re
 import subprocess
@@ -32,6 +33,22 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]  # each extremum beside its angle
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
+
+
+def test_run_prints_who_causes_a_force(capsys):
+    options = ["run", "sawframe_2r63", "--variant", "cam-cosine", "--angles", "36", "--shares", "O"]
+    printed = printed_by(options, capsys).split("who causes the peak: reaction O")[1]
+    rows = {line[:20].strip(): line[20:].split() for line in printed.splitlines()}
+    assert rows["inertia of coupler"] == ["19148.3", "97.3", "19149.9", "46.813", "12812.6"]
+    assert rows["weight of slider"] == ["0", "0", "0", "0"]
+    assert rows["total"][:3] == ["19679.6", "100", "19679.6"]
+    found = json.loads(printed_by([*options, "--json"], capsys))["variants"]["cam-cosine"]["shares"]["O"]
+    assert found["inertia of coupler"]["share [N]"] == pytest.approx(19148.3, rel=1e-5)
+
+
+def test_run_refuses_shares_of_what_is_no_force(capsys):
+    assert main(["run", "sawframe_2r63", "--angles", "12", "--shares", "slider_velocity"]) == 2
+    assert "slider_velocity is not linear in masses and loads" in capsys.readouterr().err
 
 
 @pytest.mark.slow

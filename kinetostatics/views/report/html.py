@@ -73,7 +73,7 @@ def _contents(subject, progress):
     progress("extremes")
     contents = {"glance": tables.glance(subject), "extremes": tables.extremes(subject)}
     progress("comparisons")
-    contents["comparisons"] = tables.comparisons(subject)
+    contents |= {"comparisons": tables.comparisons(subject), "shares": tables.shares(subject)}
     progress("certainty")
     contents |= {"certainty": tables.certainty(subject), "losses": tables.losses(subject)}
     progress("drive")

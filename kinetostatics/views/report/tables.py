@@ -380,6 +380,23 @@ def calculations(subject, row):
     return found
 
 
+SHARED = ("balancing_torque", "O")
+"""Quantities with a table of shares."""
+
+
+def shares(subject):
+    """Tables of who causes the peaks of torque and reaction O, for machines without friction that close all round."""
+    tables = []
+    for machine in subject.machines.values():
+        for name in SHARED if not machine.solution.friction.acting else ():
+            try:
+                found = machine.solution.shares(name)
+            except KinetostaticsError:  # no such quantity, none that has a peak, or gaps
+                continue
+            tables.append(table_of_frame(found.frame(), f"{machine.name}: {found.label}", found.note))
+    return tables
+
+
 def losses(subject):
     """Tables of power lost by joint, for machines with friction."""
     tables = []

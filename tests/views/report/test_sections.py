@@ -45,6 +45,16 @@ def test_extremes_state_the_resolution_of_load_functions():
     assert "every 0.05 deg" in function.note
 
 
+def test_shares_of_torque_and_support_reaction_stand_for_machines_without_friction():
+    found = {table.caption: table for table in tables.shares(subject("sawframe_2r63"))}
+    assert list(found)[4:6] == ["cam-cosine: balancing torque", "cam-cosine: reaction O"]
+    saw = ks.load_case("sawframe_2r63").solve("cam-cosine").shares("O")
+    row = table_of(found["cam-cosine: reaction O"], "inertia of coupler")
+    assert float(row[1]) == pytest.approx(saw["inertia of coupler"].value, rel=1e-5)
+    assert "Who causes the peaks" in html.page(subject("sawframe_2r63"))
+    assert tables.shares(RUBBING()) == []
+
+
 def test_comparison_with_each_reference_is_one_table():
     found, upright = tables.comparisons(subject("sawframe_2r63"))
     assert upright.columns == ["", "unit", "upright-plain", "upright-circle", "upright-cosine", "upright-optimal"]
