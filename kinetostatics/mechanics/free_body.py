@@ -170,7 +170,7 @@ def _of_cam(dynamics, led):
 
 
 def _masses(dynamics, link):
-    """Yield inertia force and couple, and weight, of a link with mass."""
+    """Yield inertia force and couple, and weight, of a link with mass, and those of springs on a slider."""
     body, centre = dynamics.mechanism.links[link].body, dynamics.spot(link).position
     force, couple = dynamics.inertia[link].force, None
     if body.inertia is not None:
@@ -179,6 +179,10 @@ def _masses(dynamics, link):
         yield "inertia", INERTIA, centre, force, couple
     if body.mass is not None and dynamics.gravity is not None:
         yield "weight", WEIGHT, centre, scale_vector(body.mass, dynamics.gravity), None
+    for name, wrench in dynamics.spring_loads:
+        if name == link:
+            origin = dynamics.placement.links[link].joint.position
+            yield "inertia and weight of springs", INERTIA, origin, wrench.force, None
 
 
 def _loads(dynamics, link):

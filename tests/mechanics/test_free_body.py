@@ -67,6 +67,13 @@ def test_loads_of_all_kinds_are_in_equilibrium(seed):
     assert imbalance(ks.Scene(six_bar(), 7.0, 20.0, list(loads)).solve(ANGLES)) < CLOSED
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_springs_with_mass_are_in_equilibrium():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    loads = ks.Gravity(9.81, -0.9), ks.Spring(5e5, 2.0, mass=100.0), ks.GasSpring(0.01, 0.01, 2e6, at=2.0)
+    assert imbalance(ks.Scene(saw, 33.5, 20.0, loads).solve(ANGLES)) < CLOSED
+
+
 def test_forces_on_the_slider_of_a_saw():
     saw = ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0))
     s = ks.Scene(saw, 33.5, loads=[ks.Gravity(), ks.Spring(1e5, 2.0), ks.ProcessForce(-500.0)]).solve(np.array([0.4]))

@@ -51,6 +51,17 @@ def test_sources_add_up_on_followers(kind):
     assert misfit(followers.scene(followers.KINDS[kind]()).solve(ANGLES)) < ROUNDING
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_inertia_and_weight_of_springs_are_their_own():
+    loads = ks.Spring(5e5, 2.0, mass=100.0), ks.Spring(1e5, 2.1, mass=50.0), ks.GasSpring(0.01, 0.01, 2e6, at=2.0)
+    assert misfit(saw(*loads).at(ANGLES), ("shaking_force", "shaking_moment")) < ROUNDING
+    assert list(sources_alone(saw(*loads)))[-3:] == [
+        "Spring on 'slider'",
+        "Spring on 'slider' #2",
+        "GasSpring on 'slider'",
+    ]
+
+
 @pytest.mark.slow
 @every("case", [case for case in shipped_cases() if "friction" not in case])
 def test_shares_add_up_to_the_peak_in_every_shipped_machine(case):
