@@ -254,13 +254,13 @@ def spring_surge(solution, spring_mass=None):
     checks.require("spring_surge", checks.solution("solution", solution))
     require_single(solution, "spring_surge", "slider_position")
     springs = [load for load in solution.loads if isinstance(load, Spring)]
+    if spring_mass is None and not any(np.any(spring.mass) for spring in springs):
+        raise ParameterError("spring_surge: spring_mass must be given, kg, since no Spring of the solution has a mass")
+    given = springs[0].mass if spring_mass is None else spring_mass
+    mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
-    if spring_mass is None and not np.any(spring.mass):
-        raise ParameterError("spring_surge: the Spring has no mass; give spring_mass, kg, or Spring(..., mass=)")
-    given = spring.mass if spring_mass is None else spring_mass
-    mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
     end = solution.at(angle).placement.travels[spring.on].position

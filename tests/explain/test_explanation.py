@@ -284,6 +284,8 @@ LOADS = {
     "torsion spring": ks.TorsionSpring(5.0, 0.1, on="coupler", moment=0.3),
     "torsion damper": ks.TorsionDamper(0.3, on="coupler", against="crank"),
     "cubic spring": ks.Spring(1e3, 0.2, cubic=1e5),
+    "spring with mass": ks.Spring(1e3, 0.2, mass=0.001),
+    "gas spring": ks.GasSpring(1e-3, 3e-4, 3e5, at=0.2),
     "table over the angle": ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [1.0, 5.0, 2.0])),
     "table over travel": ks.ProcessForce(ks.Table([0.1, 0.2, 0.3], [9.0, 5.0, 7.0], over="travel")),
 }

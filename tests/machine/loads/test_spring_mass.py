@@ -304,9 +304,7 @@ def test_surge_takes_the_mass_of_the_spring():
     by_default, given = ks.design.spring_surge(s), ks.design.spring_surge(pump(), 3.0)
     assert by_default.natural_frequency == given.natural_frequency
     assert given.natural_frequency == pytest.approx(np.pi * np.sqrt(500.0 / 3.0), rel=1e-14)
-    with pytest.raises(
-        ks.ParameterError, match=r"the Spring has no mass; give spring_mass, kg, or Spring\(..., mass=\)"
-    ):
+    with pytest.raises(ks.ParameterError, match="spring_mass must be given, kg, since no Spring of the solution has"):
         ks.design.spring_surge(pump())
 
 
