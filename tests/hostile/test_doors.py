@@ -66,6 +66,8 @@ WANTED = {
     **{name: (getattr(ks.plots, name), SOLUTIONS) for name in ("mechanism", "mass_centres", "animation")},
     "over_turn": (lambda thing: ks.plots.over_turn(thing, "O"), SOLUTIONS),
     "over_turn, among others": (lambda thing: ks.plots.over_turn({"a": PLAIN, "b": thing}, "O"), f"b {SOLUTIONS}"),
+    "free_body": (lambda thing: ks.plots.free_body(thing, "coupler", 60), SOLUTIONS),
+    "shares": (lambda thing: ks.plots.shares(thing, "O"), SOLUTIONS),
     "chain_unit_motion": (lambda thing: ks.plots.chain_unit_motion(thing, "rocker"), SOLUTIONS),
     "characteristics": (lambda thing: ks.linkage.characteristics({"a": thing}, "a"), f"a {SOLUTIONS}"),
     "model_ladder": (ks.plots.model_ladder, "needs must be what ks.needs(...) returns"),
