@@ -2,7 +2,6 @@
 
 import pytest
 
-import kinetostatics as ks
 from support import kept
 from support.case_files import shipped
 from support.every import every
@@ -10,7 +9,7 @@ from support.every import every
 pytestmark = pytest.mark.skipif(
     not kept.FOLDER.is_dir(), reason="nothing is kept: python tests/references/make_kept.py writes it"
 )
-CASES = list(ks.shipped_cases())
+CASES = kept.CASES
 QUICK = "compressor", "pumpjack", "yoke_pump"
 """Cases whose values take less than half a second."""
 COMPILED = (
