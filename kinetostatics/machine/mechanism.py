@@ -217,13 +217,13 @@ class Mechanism(Batched):
     def grows(self, name):
         """Whether a force grows without bound at change points: one of a group that passes them, or at O.
 
-        So does the opposite force on the frame, and a term of the sum of these.
+        So do the opposite forces on the frame, and then their sum loses its digits.
         """
         parts = [group for group in self.groups if group.passes]
-        if parts and name == GROUND:
-            return True
+        if not parts or name == "balancing_torque":
+            return False
         name = name.removeprefix(f"{GROUND} ")
-        return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
+        return name == GROUND or any(name in part.outputs for part in (self.crank, *parts))
 
     @cached_property
     def change_points(self):

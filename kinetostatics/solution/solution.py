@@ -353,7 +353,7 @@ class Solution(Certainty, Motion):
 
         return energy_per_turn(self)
 
-    @cached_property
+    @property
     def ground(self):
         """Forces and couples of the machine on the frame, by place, a `Ground`."""
         return Ground(self)

@@ -225,6 +225,18 @@ def test_cursor_and_point_of_the_hodograph_follow(page):
     assert place == 200
 
 
+def test_points_of_the_forces_on_the_frame_follow(page):
+    driver, solutions = page
+    driver.execute_script("""document.querySelector("[data-figure='ground cam']").scrollIntoView()""")
+    time.sleep(0.3)
+    choose(driver, 200)
+    script = """return [0, 1].map((row) => report.figures["ground cam"].model.renderers
+        .find((x) => x.name === `tip ${row}`).data_source.data).map(({ x, y }) => [...x, ...y])"""
+    without, shown = driver.execute_script(script)
+    assert without == []
+    np.testing.assert_allclose(shown, 1e-3 * solutions[OTHER].ground["cam"].force[:, 200], rtol=1e-12)
+
+
 def test_another_quantity_or_vector_can_be_chosen(page):
     driver, solutions = page
     script = """const box = document.getElementById(arguments[0]);

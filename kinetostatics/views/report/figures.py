@@ -89,14 +89,13 @@ def hodograph(solutions, name, height=420):
         height, f"{known.label}, x [{pretty_unit(unit)}]", f"{known.label}, y [{pretty_unit(unit)}]", match_aspect=True
     )
     names = list(solutions)
-    for row, vector in vectors.items():
-        angle = np.degrees(have[row].crank_angle)
-        x, y = factor * vector
+    for row, name in enumerate(names):  # of a machine without it the line is empty
+        angle = np.degrees(have[row].crank_angle) if row in have else np.empty(0)
+        x, y = factor * vectors.get(row, np.empty((2, 0)))
         closed = close_curve(np.stack([angle, x, y]))
-        _line(plot, row, names[row], dict(zip(("angle", "x", "y"), closed, strict=True)), "x", "y")
-        plot.scatter(
-            [x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}"
-        )
+        _line(plot, row, name, dict(zip(("angle", "x", "y"), closed, strict=True)), "x", "y")
+        style = {"fill_color": COLOURS[row % len(COLOURS)], "line_color": "white", "name": f"tip {row}"}
+        plot.scatter(x[:1], y[:1], size=9, **style)
     text = "@x{0.0000 a}, @y{0.0000 a}"
     _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("x, y", text)], "mouse")
     return plot

@@ -62,6 +62,13 @@ def test_absent_quantity_has_an_empty_line():
     assert len(found["line 0"]["angle"]) == 0
 
 
+def test_absent_vector_has_an_empty_line_and_no_point():
+    plot = figures.hodograph(subject("sawframe_2r63").solutions, "ground cam")
+    assert [len(lines(plot)[f"line {row}"]["angle"]) > 360 for row in range(3)] == [False, True, True]
+    tips = {item.name: item.data_source.data["x"] for item in plot.renderers if item.name.startswith("tip")}
+    assert [len(tips[f"tip {row}"]) for row in range(3)] == [0, 1, 1]
+
+
 def test_hodograph_has_components_and_points():
     solutions = subject("pumpjack").solutions
     plot = figures.hodograph(solutions, "O")

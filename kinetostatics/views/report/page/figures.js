@@ -43,16 +43,20 @@
   spare(rest);
 
   function follow(index) {
-    for (const figure of Object.values(figures)) {
-      if (figure && figure.cursor && seen.has(figure.place)) figure.cursor.location = index * data.step;
+    for (const [name, figure] of Object.entries(figures)) {
+      if (!figure || !seen.has(figure.place)) continue;
+      if (figure.cursor) figure.cursor.location = index * data.step;
+      tips(name, index);
     }
-    if (model("hodograph") && seen.has(figures.hodograph.place)) tips(index);
   }
 
-  function tips(index) {
+  // Points of a hodograph; that of a chosen vector has a name of its own, others that of their quantity.
+  function tips(name, index) {
     data.counts.forEach((count, row) => {
-      const tip = renderer("hodograph", `tip ${row}`), parts = report.values(vector.value, row);
-      if (tip) tip.data_source.data = parts ? { x: [parts[0][index % count]], y: [parts[1][index % count]] } : { x: [], y: [] };
+      const tip = renderer(name, `tip ${row}`);
+      if (!tip) return;
+      const parts = report.values(name === "hodograph" ? vector.value : name, row);
+      tip.data_source.data = parts ? { x: [parts[0][index % count]], y: [parts[1][index % count]] } : { x: [], y: [] };
     });
   }
 
@@ -71,7 +75,7 @@
     [model("hodograph").below[0], model("hodograph").left[0]].forEach((axis, place) => {
       axis.axis_label.text = title(item, `${item.label}, ${"xy"[place]}`);
     });
-    tips(report.index);
+    tips("hodograph", report.index);
   }
 
   function chooseQuantity() {
