@@ -61,8 +61,8 @@ _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 
 def of_mechanism(mechanism) -> dict[str, Quantity]:
     """Every quantity of a mechanism, by name."""
-    if mechanism in _known:
-        return _known[mechanism]
+    if known := _known.get(mechanism):
+        return known
     found: dict[str, Quantity] = {}
 
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
