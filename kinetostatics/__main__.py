@@ -1,10 +1,15 @@
 """The command line, as ``kinetostatics`` and ``python -m kinetostatics`` start it."""
 
+import gc
 import sys
+
+COLLECTION_THRESHOLD = 100_000
+"""New objects after which unreachable cycles are collected; libraries and figures make many objects that stay."""
 
 
 def main():
     """Run the command line; returns the exit status. Ctrl-C ends it in the same way while its libraries are loaded."""
+    gc.set_threshold(COLLECTION_THRESHOLD, 50, 100)
     try:
         from .signals import deferred
 

@@ -56,9 +56,9 @@ def interpreted(monkeypatch):
     loaded = cache(code_cache.load_module)
     for module in (numba_backend, program, jax_backend):
         monkeypatch.setattr(module, "load_compiled", loaded)
-    parameter_tree.forget()
+    parameter_tree.structure_cache.cache_clear()
     yield
-    parameter_tree.forget()
+    parameter_tree.structure_cache.cache_clear()
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ from ..numbers.lazy import cached_property
 from .limit_positions import MAX_WIDTH, require_single
 from .load_functions import resolution_note, with_resolution
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
-from .turning_points import extrema_of, paths, turning_points
+from .turning_points import extrema_of, paths
 
 PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
 """Places in the period, relative to it, at which functions are compared with their values a period later."""
@@ -174,7 +174,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = jamming.jammed_angles(solution.sampled.even)
+    jams = jamming.jammed_angles(solution.sampled.even) if solution.friction.acting else np.empty(0)
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
@@ -207,7 +207,7 @@ def extrema(solution, quantity, pulsed=True):
     if callable(quantity):
         return replace(_extrema(solution, turn, quantity, pulsed), note=note)
     if quantity not in turn.extrema:
-        turn.extrema[quantity] = replace(_extrema(solution, turn, quantity), solution=None)
+        turn.extrema[quantity] = _extrema(solution, turn, quantity)
     found = turn.extrema[quantity]
     arrays = {name: getattr(found, name).copy() for name in ("angle", "value", "maximum", "left_out")}
     return replace(found, solution=solution, note=note, **arrays)
@@ -226,7 +226,7 @@ def _extrema(solution, turn, quantity, pulsed=False):
         return np.asarray(values(at, quantity))
 
     is_function = callable(quantity)
-    position, own = unit_of(solution, quantity) == "m", None if is_function else solution
+    position = unit_of(solution, quantity) == "m"
     name = quantity if isinstance(quantity, str) else "a function of the solution"
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -241,21 +241,21 @@ def _extrema(solution, turn, quantity, pulsed=False):
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _size_and_rounding(turn, quantity, samples, good, position)
         if not is_function and not turn.limits.size and np.ptp(samples) <= floor[0]:
-            return _constant(name, float(np.max(samples)), left_out, own)
+            return _constant(name, samples[good], left_out)
         root_of_force = not is_function and of_scene(solution)[quantity].kind == "contact"
         scale = 2.0 * size if root_of_force else 1.0
         pieces, known, rough, rounding = _resolved(turn, quantity, good, floor, scale, pulsed)
         cuts = turn.limits[~good[np.searchsorted(turn.angle, turn.limits)]]
-        found = list(paths(turn, pieces, known, rough, function, rounding, size, cuts, scale))
-        if not any(turning_points(path)[1].size for path in found):
-            return _constant(name, float(np.max(samples[good])) if good.any() else np.nan, left_out, own)
+        found = paths(turn, pieces, known, rough, function, rounding, size, cuts, scale)
         angle, value, maximum = extrema_of(turn, function, found, size)
-    return Extremes(name, angle, value, maximum, np.nan, left_out, own)
+    if not angle.size:
+        return _constant(name, samples[good], left_out)
+    return Extremes(name, angle, value, maximum, np.nan, left_out)
 
 
-def _constant(name, value, left_out, solution):
+def _constant(name, values, left_out):
     empty = np.empty(0)
-    return Extremes(name, empty, empty, empty.astype(bool), value, left_out, solution)
+    return Extremes(name, empty, empty, empty.astype(bool), float(np.max(values)) if values.size else np.nan, left_out)
 
 
 def _resolved(turn, quantity, good, floor, scale, pulsed):

@@ -91,7 +91,7 @@ class Turn:
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
         return cls(first, pieces, gaps, limits, kinks, jumps, passed)
 
-    @property
+    @cached_property
     def period(self):
         return self.at.period
 
@@ -138,6 +138,8 @@ class Turn:
     def lost(self):
         """Crank angles inside the closed intervals around which rates and forces have no correct digit, rad."""
         good = self.usable | np.isnan(self.condition)
+        if good.all():
+            return np.empty(0)
         places = []
         for run in runs(~good):
             low, high = self.angle[run[0]], self.angle[run[-1]]
@@ -159,7 +161,7 @@ class Turn:
 
     def evaluate(self, function, angle):
         """Values of a function of a solution at any crank angles."""
-        return function(self.at.at(np.mod(angle, self.period)))
+        return function(self.at.moved_to(np.mod(angle, self.period)))
 
     def limit(self, function, angle, side, size=0.0):
         """Limit of a function of a solution at a limit position, from one side (+1: from greater crank angles).
@@ -215,7 +217,9 @@ class Turn:
 def _limit_positions(solution, forces):
     """Gaps, limit positions, and the change points passed among these, over the period of a solution."""
     mechanism, period = solution.mechanism, solution.period
-    near = assembly.limit_angles(mechanism, NEAR)
+    near, passed = assembly.limit_angles(mechanism, NEAR), np.array(mechanism.change_points if forces else ())
+    if not (near.size or passed.size):
+        return (), near, passed
     gaps = assembly.gap_intervals(mechanism) if near.size else ()
     own = TURN * mechanism.turns
     near = np.concatenate([near, *gaps])
@@ -223,7 +227,6 @@ def _limit_positions(solution, forces):
     near = near[np.diff(near, prepend=-1.0) > 2 * ANGLE_TOLERANCE]
     starts = own * np.arange(round(period / own))
     limits = np.ravel(near + starts[:, None])
-    passed = np.array(mechanism.change_points if forces else ())
     passed = np.ravel(passed + TURN * np.arange(round(period / TURN))[:, None])
     limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
     return tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps), limits, passed
@@ -243,7 +246,7 @@ def runs(marked):
 
 def require_single(solution, owner, name):
     """Raise `ParameterError` for a batch of designs."""
-    *designs, _ = solution.at(np.zeros(1)).shape
+    *designs, _ = solution.moved_to(np.zeros(1)).shape
     if designs:
         raise ParameterError(
             f"{owner} works on one design at a time, but {name!r} has shape {(*designs, FINE_SAMPLES)}; solve a single "

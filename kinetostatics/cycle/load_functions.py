@@ -14,6 +14,7 @@ from ..machine.loads import TURN, has_no_user_code, kink_sources, pad_rows, peri
 from ..mechanics.load_values import title_of, user_value
 from ..mechanics.quantities import LOAD_FREE_KINDS, quantity
 from ..numbers import checks
+from .piecewise import rolled
 
 FUNCTION_STEP = math.radians(0.05)
 """Default step of crank angles, rad, at which load functions without declared kinks are sampled."""
@@ -190,7 +191,7 @@ class FunctionSamples(NamedTuple):
     def of(cls, item, solution):
         angle = np.linspace(0.0, solution.period, round(solution.period / solution.resolution), endpoint=False)
         value = _values_of(item, solution, angle)
-        near, far = (_beside(value, -step) + _beside(value, step) for step in (1, 2))
+        near, far = (rolled(value, step) + rolled(value, -step) for step in (1, 2))
         return cls(item, solution, angle, value, abs(far - 4.0 * near + 6.0 * value))
 
     @property
@@ -204,8 +205,8 @@ class FunctionSamples(NamedTuple):
 
         Jumps and kinks lie between them. A long stretch, as of measured values with noise, is split every fourth step.
         """
-        rough = np.any([_beside(self.change > self.negligible, step) for step in range(-2, 3)], axis=0)
-        inside = _beside(rough, -1) & _beside(rough, 1) & (np.arange(self.angle.size) % SPLIT_SAMPLES > 0)
+        rough = np.any([rolled(self.change > self.negligible, -step) for step in range(-2, 3)], axis=0)
+        inside = rolled(rough, 1) & rolled(rough, -1) & (np.arange(self.angle.size) % SPLIT_SAMPLES > 0)
         design, place = np.nonzero(rough & ~inside)
         return pad_rows(design, len(self.value), self.angle[place])[0]
 
@@ -218,10 +219,10 @@ class FunctionSamples(NamedTuple):
         angle = (np.arange(count) + 0.5) * (self.solution.period / count)
         share, place = np.modf(angle / self.angle[1])
         place = place.astype(int)
-        before, low, high, after = (_beside(self.value, at)[:, place] for at in range(-1, 3))
+        before, low, high, after = (rolled(self.value, -at)[:, place] for at in range(-1, 3))
         expected = low + share * (high - low) - 0.25 * share * (1.0 - share) * (before - low - high + after)
         excess = _values_of(self.item, self.solution, angle) - expected
-        rough = np.max([_beside(self.change, at) for at in range(-2, 4)], axis=0)
+        rough = np.max([rolled(self.change, -at) for at in range(-2, 4)], axis=0)
         excess = np.where(abs(excess) > (self.negligible + rough)[:, place], excess, 0.0)
         excess = excess[abs(excess).argmax(axis=0), np.arange(count)]  # of the design where it is largest
         found = np.flatnonzero(excess)
@@ -257,11 +258,6 @@ def _values_of(item, solution, angle):
     blocks = np.array_split(angle, 1 + angle.size * math.prod(solution.shape[:-1]) // BLOCK_VALUES)
     values = [np.atleast_2d(user_value(item, solution.at(some))) + 0.0 * some for some in blocks]
     return np.concatenate(values, axis=-1)
-
-
-def _beside(row, step):
-    """Values so many samples ahead, around the period."""
-    return np.roll(row, -step, axis=-1)
 
 
 def repeating_problem(solution):

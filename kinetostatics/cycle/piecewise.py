@@ -33,7 +33,8 @@ MIN_WIDTH = 1e-13
 """Width of a piece, relative to the period, below which it is not split: it contains a jump."""
 JUMP_OFFSET = 2.0**-44
 """Distance of the crank angles on both sides of a jump from it, rad."""
-NEWTON_STEPS = 5
+NEWTON_STEPS, NEWTON_TOLERANCE = 5, 1e-9
+"""Steps of Newton's method at most, and the last change of a place in [-1, 1]: the next one would be rounding."""
 CHOPPED = 2e-3
 """Size of coefficients at the end of a series, relative to the rounding of values, that are set to 0 for its slope."""
 
@@ -326,7 +327,7 @@ class Pieces:
         moves = (np.ptp(values, axis=2) > level).any(axis=0)
         place, piece = self._roots(slope, bend, moves, slopes, series)
         rises = np.where(moves, np.sign(slope[[0, -1]]), 0.0)
-        return self.angle_at(piece, place), piece, np.roll(rises[1], 1) * rises[0] <= 0.0
+        return self.angle_at(piece, place), piece, rolled(rises[1], 1) * rises[0] <= 0.0
 
     def zeros(self, values):
         """Places from -1 to 1, and their pieces, at which a function (pieces, points) changes its sign."""
@@ -366,15 +367,22 @@ class Pieces:
         with np.errstate(divide="ignore", invalid="ignore"):
             place = np.clip(np.nan_to_num(low + (high - low) * one / (one - two)), low, high)
             for _ in range(NEWTON_STEPS):
-                value, rate = evaluate(piece, place)
+                (value, rate), last = evaluate(piece, place), place
                 step = place - value / rate
                 place = np.clip(np.where(np.isfinite(step), step, place), low, high)
+                if np.abs(place - last).max() < NEWTON_TOLERANCE:
+                    break
         return place, piece
 
 
 def product(values, matrix):
     """Values (..., N) times a matrix (M, N); by BLAS a row would depend on those beside it."""
     return np.einsum("...n,mn->...m", values, matrix)
+
+
+def rolled(values, step):
+    """Values moved by some places along the last axis, round its end; `np.roll` takes five times as long on a few."""
+    return np.concatenate([values[..., -step:], values[..., :-step]], axis=-1)
 
 
 def highest(height, group):

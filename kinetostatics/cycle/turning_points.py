@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 from ..numbers.brackets import find_minima
 from .kinks import ANGLE_TOLERANCE
 from .limit_positions import runs
-from .piecewise import JUMP_OFFSET, rule
+from .piecewise import JUMP_OFFSET, rolled, rule
 
 JUMP_TOLERANCE = 1e-9
 """Difference of the values on both sides of an edge, relative to the largest value, that is no jump."""
@@ -116,7 +116,7 @@ def _polished(turn, function, angle, floor):
 def _rough_candidates(turn, pieces, values, rough, function):
     """The same on unresolved pieces, by minimisation around points that are higher or lower than those beside them."""
     angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
-    rises, falls = ((value > np.roll(value, k)).astype(int) - (value < np.roll(value, k)) for k in (1, -1))
+    rises, falls = ((value > rolled(value, k)).astype(int) - (value < rolled(value, k)) for k in (1, -1))
     side = rises + falls  # of two equal points each has one
     top = np.flatnonzero((rises * falls >= 0) & (side != 0) & np.repeat(rough, pieces.count + 2))
     if not top.size:
@@ -131,14 +131,14 @@ def _candidates(pieces, values, resolved, known, level):
     """Crank angles at which a quantity may turn, rising, and the piece of each; both sides of jumps."""
     with np.errstate(invalid="ignore"):
         inner, owner, turns = pieces.turning(np.where(known[:, None], values[..., 1:-1], 0.0), level)
-        gaps = np.abs(np.roll(values[..., -1], 1, axis=1) - values[..., 0]).max(axis=0)
+        gaps = np.abs(rolled(values[..., -1], 1) - values[..., 0]).max(axis=0)
         gaps = gaps > JUMP_TOLERANCE * np.nanmax(np.abs(values), initial=0.0)
     narrow = ~pieces.can_split
-    jump = gaps | narrow | np.roll(narrow, 1)  # at the start of each piece
+    jump = gaps | narrow | rolled(narrow, 1)  # at the start of each piece
     smooth = resolved[owner] & ~narrow[owner]
     first = turns & known & ~jump
     after = jump & known & ~narrow
-    before = np.roll(jump, -1) & known & ~narrow
+    before = rolled(jump, -1) & known & ~narrow
     pieces_of = [owner[smooth], *map(np.flatnonzero, (first, after, before))]
     edges = pieces.edges
     angles = [inner[smooth], edges[:-1][first], edges[:-1][after] + JUMP_OFFSET, edges[1:][before] - JUMP_OFFSET]
@@ -154,7 +154,7 @@ def turning_points(path):
     """
     _, value, floor, period = path
     count = value.size
-    direction = np.sign(np.roll(value, -1) - value)
+    direction = np.sign(rolled(value, -1) - value)
     direction[-1:] = direction[-1:] if period else 0.0
     moving = np.flatnonzero(direction)
     following = np.append(moving[1:], moving[:1] + count)
@@ -166,9 +166,9 @@ def turning_points(path):
         places = np.concatenate([[0], places, [count - 1]])
         maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
         maximum = maximum if moving.size else np.array([True, False])
-    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
+    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != rolled(maximum, 1))):
         height, rounding = value[places], floor[places]
-        change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
+        change = np.abs(rolled(height, -1) - height) / np.maximum(rounding, rolled(rounding, -1))
         least = int(np.argmin(change[: None if period else -1]))
         if change[least] > 1:
             break
@@ -185,8 +185,8 @@ def level_stretches(path, places):
     """Yield indices of extrema in level stretches, each with the ends of the stretch and the angles beyond them."""
     angle, value, floor, period = path
     count = value.size
-    after = np.abs(np.roll(value, -1) - value) <= floor
-    for number in np.flatnonzero((after | np.roll(after, 1))[places]):
+    after = np.abs(rolled(value, -1) - value) <= floor
+    for number in np.flatnonzero((after | rolled(after, 1))[places]):
         middle = int(places[number])
         ends = []
         for step in (-1, 1):
@@ -207,7 +207,7 @@ def level_stretches(path, places):
 
 def extrema_of(turn, function, found, size):
     """Angle, value and kind of the extrema on paths, in order of angle; a level stretch counts once, at its middle."""
-    columns = []
+    columns = [(np.empty(0), np.empty(0), np.empty(0, dtype=bool), np.empty(0, dtype=bool))]
     for path in found:
         places, maximum = turning_points(path)
         angle, value = path.angle[places], path.value[places]
@@ -232,8 +232,8 @@ def extrema_of(turn, function, found, size):
     order = np.argsort(angle, kind="stable")
     angle, value, maximum, end = angle[order], value[order], maximum[order], end[order]
     # two ends of paths at one angle with one value: a level pair counts once, a smooth passage not at all
-    same = (np.abs(angle - np.roll(angle, -1)) <= ANGLE_TOLERANCE) & end & np.roll(end, -1)
-    alike = (value == np.roll(value, -1)) | (np.abs(value - np.roll(value, -1)) <= LIMIT_TOLERANCE * size)
+    same = (np.abs(angle - rolled(angle, -1)) <= ANGLE_TOLERANCE) & end & rolled(end, -1)
+    alike = (value == rolled(value, -1)) | (np.abs(value - rolled(value, -1)) <= LIMIT_TOLERANCE * size)
     pair = same & alike & (np.arange(angle.size) < angle.size - 1)
-    kept = ~(np.roll(pair, 1) | (pair & (maximum != np.roll(maximum, -1))))
+    kept = ~(rolled(pair, 1) | (pair & (maximum != rolled(maximum, -1))))
     return angle[kept], value[kept], maximum[kept]

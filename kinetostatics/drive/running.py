@@ -49,8 +49,11 @@ class RunningSolution(Solution):
 
     def at(self, crank_angle):
         """The same machine in the same running at other crank angles."""
-        angle = crank_angles(crank_angle)
         hint_at_angles(self.mechanism.name, crank_angle)
+        return self.moved_to(crank_angles(crank_angle))
+
+    def moved_to(self, angle):
+        """The same without a hint at angles that look like degrees."""
         motion = self.running.motion(angle)
         speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
         return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)

@@ -64,8 +64,8 @@ _known_scenes: WeakKeyDictionary[Any, dict[Any, dict[str, Quantity]]] = WeakKeyD
 
 def of_mechanism(mechanism) -> dict[str, Quantity]:
     """Every quantity of a mechanism, by name."""
-    if mechanism in _known:
-        return _known[mechanism]
+    if known := _known.get(mechanism):
+        return known
     found: dict[str, Quantity] = {}
 
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):

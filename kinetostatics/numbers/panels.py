@@ -123,21 +123,18 @@ def _refine(function, edges, depth=MAX_HALVINGS):
     """Coefficients by the start of each panel, and the intervals that stay rough, neighbours joined."""
     waiting = list(pairwise(edges))
     found: dict[float, np.ndarray] = {}
-    rough, size = [], 0.0
+    size = 0.0
     for level in range(depth + 1):
-        if not waiting:
-            break
         low, high = np.array(waiting).T
         values = function(panel_nodes(low[:, None], high[:, None]).ravel()).reshape(len(waiting), -1)
         size = max(size, float(np.max(np.abs(values))))
         coefficients = values @ _FIT.T
         smooth = np.max(np.abs(coefficients[:, -TAIL_COEFFICIENTS:]), axis=1) <= COEFFICIENT_TOLERANCE * size
         found |= dict(zip(low[smooth], coefficients[smooth], strict=True))
-        left = [pair for pair, done in zip(waiting, smooth, strict=True) if not done]
-        if level == depth or len(left) > MAX_ROUGH_PANELS:
-            rough = left
+        rough = [pair for pair, done in zip(waiting, smooth, strict=True) if not done]
+        if not rough or level == depth or len(rough) > MAX_ROUGH_PANELS:
             break
-        waiting = [half for a, b in left for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
+        waiting = [half for a, b in rough for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
     joined: list = []
     for low, high in sorted(rough):
         if joined and joined[-1][1] == low:
@@ -150,17 +147,13 @@ def _refine(function, edges, depth=MAX_HALVINGS):
 def _find_kink(function, low, high, period):
     """Argument of the kink, by bisection: the value belongs to the curve from the left or the right."""
     width = CONTINUATION_WIDTH * period
-    sides = []
-    for start, stop in ((low - width, low), (high, high + width)):
-        sides.append((start, stop, _FIT @ function(np.mod(panel_nodes(start, stop), period))))
+    beside = (low - width, low), (high, high + width)
+    sides = [chebyshev.Chebyshev(_FIT @ function(np.mod(panel_nodes(*ends), period)), ends) for ends in beside]
     for _ in range(60):
         middle = (low + high) / 2
         if not low < middle < high:
             break
         value = function(np.mod(np.array([middle]), period))[0]
-        off = [
-            abs(value - chebyshev.chebval(2.0 * (middle - start) / (stop - start) - 1.0, row))
-            for start, stop, row in sides
-        ]
-        low, high = (middle, high) if off[0] <= off[1] else (low, middle)
+        before, after = (abs(value - side(middle)) for side in sides)
+        low, high = (middle, high) if before <= after else (low, middle)
     return high

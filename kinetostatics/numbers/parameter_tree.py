@@ -224,15 +224,10 @@ def _flatten_tabulated(item, leaves):
 
 
 def _flatten_tuple(item, leaves):
-    found: list[Any] = [tuple]
-    for part in item:
-        if type(part) is float:  # most are
-            if part:
-                leaves.numbers.append(part)
-            found.append(NUMBER if part else 0.0)
-        else:
-            found.append(_FLATTENERS[type(part)](part, leaves))
-    return tuple(found)
+    if FLOATS.issuperset(map(type, item)):  # most are
+        leaves.numbers += filter(None, item)
+        return (tuple, *[NUMBER if part else 0.0 for part in item])
+    return (tuple, *[_FLATTENERS[type(part)](part, leaves) for part in item])
 
 
 def _unchanged(item, leaves):
@@ -360,11 +355,6 @@ class StructureCache:
 def structure_cache(structure) -> StructureCache:
     """Cache of a structure."""
     return StructureCache(structure)
-
-
-def forget():
-    """Drop all cached structures."""
-    structure_cache.cache_clear()
 
 
 def come_from_one_class(kind, name, *others):

@@ -3,6 +3,7 @@
 import math
 import warnings
 from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,7 @@ from .solution import Solution
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 PARTS = (*SceneParts._fields, "resolution")
 """Fields of a scene that its solutions share."""
+read_parts = attrgetter(*PARTS)
 MIN_VALUES_COMPILED = 1_000_000
 """Crank angles times designs from which a compiled loop is worth its preparation."""
 
@@ -177,7 +179,7 @@ class Scene(Parameters):
     @property
     def _parts(self):
         """All fields by name."""
-        return {name: getattr(self, name) for name in PARTS}
+        return dict(zip(PARTS, read_parts(self), strict=True))
 
     def check_resolution(self, step=None):
         """Look for features of load functions without `kinks` that the resolution misses.

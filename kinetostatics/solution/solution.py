@@ -8,6 +8,7 @@ and uncertainties those of `Certainty`. SI and radians; shapes (..., N), vectors
 import math
 import warnings
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from ..mechanics.quantities import largest_term, of_mechanism, of_scene, resolve
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import construct_unchecked
+from ..numbers.parameter_tree import construct_unchecked, replace_unchecked
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .ground import Ground
@@ -42,6 +43,10 @@ from .parameters import (
 MAX_VALUES_TOGETHER = 100_000
 """Values over designs and angles up to which all forces are computed together."""
 
+SHARED_WITH_DYNAMICS = (*SceneParts._fields, "crank_angle", "apart", "loads_are_given", "kind", "shape")
+"""Members that a solution shares with its `Dynamics`."""
+read_shared = attrgetter(*SHARED_WITH_DYNAMICS)
+
 
 def _member(name):
     """Member of `Dynamics` with its docstring; a quantity is computed by the engine when first read, and kept."""
@@ -50,7 +55,7 @@ def _member(name):
 
 def _scalar(name, text):
     """Force or moment that the forces of a mechanism have by a name."""
-    return property(lambda self: self._force_value(name, 3) if name in self._values else self.scalar(name), doc=text)
+    return property(lambda self: self._force("quantity", name, False), doc=text)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +121,8 @@ class Solution(Certainty, Motion):
 
     For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
     `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
-    `places`, `PATHS`, `RULES`, `first_look`, `with_doubt`, `proportion`, `farthest`, `loads_are_given`, `is_given` and
-    `check`.
+    `places`, `PATHS`, `RULES`, `moved_to`, `first_look`, `with_doubt`, `proportion`, `farthest`, `loads_are_given`,
+    `is_given` and `check`.
 
     Examples
     --------
@@ -202,9 +207,15 @@ class Solution(Certainty, Motion):
             )
         angle = crank_angles(crank_angle)
         hint_at_angles(self.mechanism.name, crank_angle)
-        return replace(self, crank_angle=angle)
+        return self.moved_to(angle)
 
-    @property
+    def moved_to(self, angle):
+        """The same at an array of crank angles, without any check; the structure is not read again."""
+        moved = replace_unchecked(self, crank_angle=read_only(angle))
+        vars(moved).update(apart=self.apart, kind=self.kind)
+        return moved
+
+    @cached_property
     def period(self):
         """Crank angle after which motion and loads repeat, rad: a turn unless loads or passed change points take more.
 
@@ -539,9 +550,8 @@ class Solution(Certainty, Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        names = (*SceneParts._fields, "crank_angle", "apart", "loads_are_given", "kind", "shape")
-        known = {name: getattr(self, name) for name in names}
-        return construct_unchecked(Dynamics, **known, way=getattr(self.engine, "way", None))
+        shared = dict(zip(SHARED_WITH_DYNAMICS, read_shared(self), strict=True))
+        return construct_unchecked(Dynamics, **shared, way=getattr(self.engine, "way", None))
 
     placement = _member("placement")
 
@@ -552,20 +562,21 @@ class Solution(Certainty, Motion):
     def _force(self, kind, name, vector):
         """A force by name, once known without looking up its name."""
         known = self._values.get(name) if isinstance(name, str) and name != "closure" else None
-        if known is None or (np.ndim(known) > len(self.shape)) != vector:
+        if known is None or (getattr(known, "ndim", 0) > len(self.shape)) != vector:
             self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
-        return self._force_value(name, 4)
+            known = self._found(name)
+        if self.mechanism.passes:
+            self._warn_of_growth(name, known)
+        return known
 
-    def _force_value(self, name, stacklevel):
-        """A force; warns once where it grows without bound at a change point that is passed."""
-        found = self._found(name)
-        if self.mechanism.passes and not self.silent and self.mechanism.grows(name):
+    def _warn_of_growth(self, name, found):
+        """Warn once where a force grows without bound at a change point that is passed."""
+        if not self.silent and self.mechanism.grows(name):
             is_plain = isinstance(found, np.ndarray) and found.dtype == float
             text = assembly.unbounded_force_problem(self, name, found) if is_plain else None
             if text:
                 object.__setattr__(self, "silent", True)
-                warnings.warn(text, ConditionWarning, stacklevel=stacklevel)
-        return found
+                warnings.warn(text, ConditionWarning, stacklevel=4)
 
     def _at_joint(self, joint, ending):
         """A quantity of friction at a joint; 0 without friction there."""

@@ -306,7 +306,7 @@ def test_a_second_process_loads_the_compiled_program(numba, tmp_path, monkeypatc
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
     numba_backend.load_compiled.cache_clear()
-    parameter_tree.forget()
+    parameter_tree.structure_cache.cache_clear()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
     sources, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
