@@ -64,7 +64,7 @@ def disagreements(seed, flywheel=False, count=40_000):
     return wrong
 
 
-@pytest.mark.parametrize("seed", [2, 5, 6, 12, 55])
+@pytest.mark.parametrize("seed", [2, 6, 12])
 def test_all_parts_agree(seed):
     assert disagreements(seed) == {}
 
