@@ -81,7 +81,7 @@ def test_another_speed_unbalances_it():
     assert np.ptp(torque) > 1e-3 * found.uneven[0]
 
 
-@pytest.mark.parametrize("given", [{"mass": 0.05}, {"mass": 1.7}, {"mass": 0.1, "stiffness": 12400.0}])
+@pytest.mark.parametrize("given", [{"mass": 1.7}, {"mass": 0.1, "stiffness": 12400.0}])
 def test_contact_is_kept_down_to_the_bound(given):
     """The stiff spring needs hardly any preload."""
     found = balanced(drive(), **given)

@@ -148,7 +148,7 @@ def swept(function, designs, outputs, **options):
     return ks.sweep(function, pd.DataFrame(designs), outputs, progress=False, **options)
 
 
-@every("coupler, guide", [(0.5, 0.0), (0.8, 0.1), (0.99, 77.0), (0.99999, 0.0), (0.9999999, 0.1)])
+@every("coupler, guide", [(0.5, 0.0), (0.99, 77.0), (0.9999999, 0.1)])
 def test_extremes_reach_the_ends_of_closed_intervals(coupler, guide):
     """Under the ends the slider stands at the foot of the crank pin, where its velocity grows without bound."""
     mechanism = ks.crank_slider(1.0, coupler, guide_angle=np.radians(guide), slider=ks.Link(1.0))
@@ -340,6 +340,7 @@ def test_mean_torque_sees_narrow_pulses(half_width):
     assert mean_absolute_torque(solution) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_unconverged_mean_says_its_accuracy():
     wild = ks.ProcessForce(lambda motion: 1e4 * np.sin(1e7 * np.sin(motion.crank_angle)))
     _, said = silently(mean_absolute_torque, at_rest(SAW, [wild]))

@@ -343,6 +343,7 @@ def test_torque_free_cams():
         assert image[path] == pytest.approx(sign * value, rel=1e-7, abs=1e-9), path
 
 
+@pytest.mark.slow
 def test_torque_balancing_cams():
     def made(scene, angle):
         return ks.design.torque_balancing_cam(scene, mass=0.3, travel=0.01, guide_angle=angle)
@@ -355,15 +356,14 @@ def test_torque_balancing_cams():
 # Both senses of rotation, and rest
 
 MOTOR = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5, transmission=5.0)
-LIMITS = {"lift_off_speed": 5.0, "starting_torque": 3.0}
+LIMITS = {"lift_off_speed": 5.0, "starting_torque": 3.0, "life": 10.0}
 ROUND = {"guide": ks.GuideFriction(0.1)}
 STANDS = "solve: friction acts against motion, but crank_speed and crank_acceleration are both 0"
 FREE = "without masses or at rest the machine needs no torque"
 CALLS = {
     "contact": (lambda w: ks.design.contact(cam_saw(w).solve(12)).largest_pressure.value, None),
-    "limits of contact": (lambda w: len(ks.design.contact(cam_saw(w).solve(12), limits=LIMITS).exceeded), None),
     "life of a roller": (
-        lambda w: len(ks.design.contact(cam_saw(w).solve(12), load_rating=1e4, limits={"life": 10.0}).exceeded),
+        lambda w: len(ks.design.contact(cam_saw(w).solve(12), load_rating=1e4, limits=LIMITS).exceeded),
         "a machine that stands wears no bearing",
     ),
     "lift_off_speed": (lambda w: ks.design.lift_off_speed(cam_drive(w).solve(4), "contact_force"), None),
