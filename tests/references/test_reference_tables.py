@@ -172,7 +172,9 @@ def comparison(variant):
     return ks.compare(solution("plain", np.zeros(1)), solution(variant, np.zeros(1)))
 
 
-@pytest.mark.parametrize("variant", TABLES)
+@pytest.mark.parametrize(
+    "variant", ["plain", *(pytest.param(name, marks=pytest.mark.slow) for name in TABLES if name != "plain")]
+)
 def test_torque_extremes_equal_the_reference(variant):
     found = ks.extremes(solution(variant, np.zeros(1)), "balancing_torque").value
     np.testing.assert_allclose(found, torque_extremes(variant), rtol=CLOSE[variant])
