@@ -144,7 +144,7 @@ def test_scalar_functions_are_those_of_the_library(numba):
         np.testing.assert_array_max_ulp(row, np.array(list(map(function, values.tolist()))), 1)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_angle_and_design_counts_do_not_change_bits(numba):
     graph = Graph()
     angle, length, offset = graph.angle(), graph.parameter(0), graph.parameter(1)

@@ -196,6 +196,7 @@ def test_mean_torque_ratio(variant, documented):
     assert round(float(found.mean_torque_ratio), 3) == documented
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("variant", "documented"), [("cosine", [7.27, 6.11, 6.45, 7.62]), ("circle", [6.37, 5.50, 5.73, 6.60])]
 )
