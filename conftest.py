@@ -9,17 +9,6 @@ import pytest
 NEEDS_FLINT = re.compile(r"(certified|enclosure|relative_errors|precision\.study(_running)?|stability\.study)\(")
 """Calls that compute at many digits (extra `precision`)."""
 
-LONG_EXAMPLES = ("study_running", "weight_options", "animation")
-"""Examples that take half a second or more: slow tests."""
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """Mark long examples as slow, before tests are chosen by their marks."""
-    for item in items:
-        if isinstance(item, pytest.DoctestItem) and item.name.endswith(LONG_EXAMPLES):
-            item.add_marker(pytest.mark.slow)
-
 
 @pytest.fixture(autouse=True)
 def _example(request):

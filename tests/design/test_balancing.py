@@ -188,6 +188,9 @@ def test_keep_out_radius_spares_an_outer_optimum():
     free = optimum(mower(), "largest", False)
     kept = optimal(mower(), crank=Counterweight(mass=5.0, keep_out=0.02))
     np.testing.assert_allclose(unbalance(kept), unbalance(free), rtol=1e-5)
+
+
+def test_an_arm_inside_the_keep_out_radius_is_refused():
     with pytest.raises(ks.ParameterError, match=r"0\.035 m, lies inside the keep-out radius 0\.04 m"):
         optimal(mower(), crank=Counterweight(arm=0.035, keep_out=0.04))
 

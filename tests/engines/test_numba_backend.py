@@ -261,7 +261,7 @@ def test_what_holds_is_what_reductions_mean():
     assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
-@pytest.mark.slow
+@pytest.mark.slow_start
 def test_columns_of_a_table_become_a_function_of_them(numba):
     def function(parts, chosen, sqrt):
         one, other, *_ = parts
