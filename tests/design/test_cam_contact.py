@@ -82,6 +82,11 @@ BROKEN = {
 }
 
 
+def test_the_largest_pressure_angle_is_that_of_the_cam():
+    angles = np.abs(CAM.pressure_angle(np.linspace(0.0, 2 * np.pi, 3601)))
+    assert contact().largest_pressure_angle.value == pytest.approx(angles.max(), rel=1e-6)
+
+
 @pytest.mark.parametrize("name", BROKEN)
 def test_exceeded_limits_are_named_with_both_numbers(name):
     limit, message = BROKEN[name]
