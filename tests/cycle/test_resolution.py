@@ -9,6 +9,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
+from support.every import quick
 
 STEP = 0.05
 """Default resolution, degrees."""
@@ -65,7 +66,7 @@ def _no_warnings():
         yield
 
 
-@pytest.mark.parametrize("seed", [0, 2, 3, 4])
+@pytest.mark.parametrize("seed", quick([0, 3, 2, 4], 2))
 def test_pulses_wider_than_the_resolution_are_found_everywhere(seed):
     rng = np.random.default_rng(seed)
     middle, width = rng.uniform(10.0, 350.0), STEP * rng.uniform(1.001, 1.2) if seed < 3 else rng.uniform(0.2, 20.0)

@@ -227,8 +227,8 @@ def test_torque_does_no_work_over_the_period():
 
 
 FEW = {
-    **dict.fromkeys(("parallelogram", "4/1/3/2", "outside left", "near"), "open"),
-    **dict.fromkeys(("kite", "meeting", "grazing", "deltoid"), "crossed"),
+    **dict.fromkeys(("parallelogram", "4/1/3/2", "outside left"), "open"),
+    **dict.fromkeys(("kite", "meeting"), "crossed"),
 }
 """Which are compared in unit tests; the others differ from them in lengths or in a sign alone."""
 

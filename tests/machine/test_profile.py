@@ -14,6 +14,7 @@ import kinetostatics as ks
 from kinetostatics.machine.cams import roller
 from kinetostatics.numbers.files import read_columns
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
+from support.every import quick
 
 TURN = 2 * np.pi
 ANGLES = np.linspace(0.0, TURN, 97)
@@ -199,7 +200,7 @@ def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
     assert "0" in texts
 
 
-@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("units", quick(UNITS, 2))
 def test_csv_gives_back_points_and_cam(tmp_path, units):
     CUT_CAM.export(tmp_path / "cam.csv", units=units, **GIVEN)
     names = dict.fromkeys(("roller_x", "roller_y", "surface_x", "surface_y", "cutter_x", "cutter_y", "radius"), "m")
@@ -357,7 +358,7 @@ def test_roller_conforms_to_a_ring_not_a_disk():
 
 @pytest.mark.parametrize(
     "rise",
-    [ks.laws.cycloidal, *(pytest.param(law, marks=pytest.mark.slow) for law in (ks.laws.harmonic, ks.laws.polynomial))],
+    quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1),
 )
 def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
     """Against 200 000 points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
