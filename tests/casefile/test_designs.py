@@ -59,7 +59,7 @@ def test_default_variation_is_written_out(tmp_path):
 
 
 def test_cases_without_designs_have_none():
-    assert not ks.load_case("mower_drive").designs
+    assert not ks.load_case("pumpjack").designs
 
 
 def test_impossible_stroke_is_refused_with_numbers(tmp_path):

@@ -64,12 +64,11 @@ def disagreements(seed, flywheel=False, count=40_000):
     return wrong
 
 
-@pytest.mark.parametrize("seed", [2, 5, 6, 12, 55])
-def test_all_parts_agree(seed):
-    assert disagreements(seed) == {}
+def test_all_parts_agree():
+    assert disagreements(12) == {}
 
 
 @pytest.mark.slow
-@every("seed", range(0, 200, 5))  # all 200 take six minutes
+@every("seed", [2, 6, *range(0, 200, 5)])  # all 200 take six minutes
 def test_all_parts_agree_on_many_scenes(seed):
     assert disagreements(seed, flywheel=seed % 10 == 0) == {}

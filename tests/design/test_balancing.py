@@ -171,7 +171,7 @@ def test_study_ratio_minimises_mean_square_force():
     assert optimum(mower(), "largest", True).ratio == pytest.approx(0.4499, abs=5e-4)
 
 
-@pytest.mark.parametrize("norm", ["largest", "weighted"])
+@pytest.mark.parametrize("norm", ["largest", pytest.param("weighted", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("mechanism", "limits", "most"),
     [(mower(), {"arm": 0.035, "largest_mass": 1.0}, 0.035), (INCLINED, {"mass": 5.0, "largest_arm": 0.01}, 0.05)],
@@ -182,11 +182,15 @@ def test_optimum_keeps_its_limits_and_is_best_within(mechanism, limits, most, no
     assert norm_of(found, norm) <= scan(mechanism, norm, largest_unbalance=most) * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_keep_out_radius_spares_an_outer_optimum():
     """The best counterweight of 5 kg on the mower's crank lies 37 mm from O."""
     free = optimum(mower(), "largest", False)
     kept = optimal(mower(), crank=Counterweight(mass=5.0, keep_out=0.02))
     np.testing.assert_allclose(unbalance(kept), unbalance(free), rtol=1e-5)
+
+
+def test_an_arm_inside_the_keep_out_radius_is_refused():
     with pytest.raises(ks.ParameterError, match=r"0\.035 m, lies inside the keep-out radius 0\.04 m"):
         optimal(mower(), crank=Counterweight(arm=0.035, keep_out=0.04))
 

@@ -82,6 +82,11 @@ BROKEN = {
 }
 
 
+def test_the_largest_pressure_angle_is_that_of_the_cam():
+    angles = np.abs(CAM.pressure_angle(np.linspace(0.0, 2 * np.pi, 3601)))
+    assert contact().largest_pressure_angle.value == pytest.approx(angles.max(), rel=1e-6)
+
+
 @pytest.mark.parametrize("name", BROKEN)
 def test_exceeded_limits_are_named_with_both_numbers(name):
     limit, message = BROKEN[name]
@@ -325,7 +330,7 @@ def pulled(speed, place, height, *others):
 def test_a_pulse_lifts_off_a_machine_at_rest():
     """The spring presses with 600 to 1000 N; at the top 2 kg need 0.02 omega^2 of it."""
     assert ks.design.lift_off_speed(pulled(10.0, 2.0, 500.0), "contact_force") == pytest.approx(np.sqrt(5e4), rel=1e-9)
-    for place in np.linspace(0.4, 5.9, 12):
+    for place in np.linspace(0.4, 5.9, 5):
         assert ks.design.lift_off_speed(pulled(10.0, place, 2500.0), "contact_force") == 0.0
         share = 0.5 * 2e4 * (0.04 + 0.01 * np.cos(place)) / 2500.0
         ((start, stop),) = ks.design.lifted(pulled(1e-3, place, 2500.0), "contact_force")
@@ -358,9 +363,7 @@ def test_a_pulse_is_what_must_be_overcome_to_start():
     assert found.angle == pytest.approx(np.pi / 2, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("place", "height", "sides"), [(0.7, -4e5, ("disk", "ring")), (2.35, -4e5, ("ring",)), (4.4, 4e5, ("disk", "ring"))]
-)
+@pytest.mark.parametrize(("place", "height", "sides"), [(2.35, -4e5, ("ring",)), (4.4, 4e5, ("disk", "ring"))])
 def test_a_pulse_presses_the_roller_and_wears_its_bearing(place, height, sides):
     """By Hertz's formula for two radii at 80 000 crank angles."""
     loads = [*LOADS, ks.ProcessForce(pulse(place, height))]

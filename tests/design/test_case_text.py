@@ -5,13 +5,14 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design import case_text
+from support.case_files import shipped
 
 CASES = ("sawframe_2r63", "mower_drive", "chain_unit", "in_line_twin")
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_shipped_scenes_written_and_read_are_the_same(tmp_path, name):
-    case = ks.load_case(name)
+    case = shipped(name)
     scenes = {variant: item.scene for variant, item in case.variants.items()}
     read = ks.load_case(case_text.write_case(tmp_path / "again.toml", case.title, scenes))
     assert read.title == case.title

@@ -127,9 +127,7 @@ def wrong(found, expected):
 CLOCKWISE = np.linspace(0.0, 2 * np.pi, 361)[:-1] + 0.001
 
 
-@pytest.mark.parametrize(
-    "lengths", [(0.1, 1.0, 2 / 3, 0.9), (0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)]
-)
+@pytest.mark.parametrize("lengths", [(0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)])
 def test_study_agrees_where_its_conditions_hold(lengths):
     found = study(lengths, CLOCKWISE[::5])
     for name in ("study", "library"):
@@ -160,7 +158,7 @@ def test_study_fails_where_its_conditions_fail(lengths, closed, coupler_wrong, r
     assert not any(np.any(wrong(a, b)) for a, b in zip(found["library"], found["exact"], strict=True))
 
 
-@pytest.mark.parametrize("margin", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("margin", [1e-4, 1e-10])
 def test_both_lose_digits_near_a_toggle(margin):
     """Both: directions eps / sqrt(margin), rates 0.1 eps / margin; acos costs the study twice what the library loses.
 
@@ -177,7 +175,7 @@ def test_both_lose_digits_near_a_toggle(margin):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
-@pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
+@pytest.mark.parametrize("longer", [1e2, 1e6])
 def test_long_rocker_costs_the_study_digits(longer):
     """A coupler of 1 and a rocker of `longer`: the cosine from which psi comes is 1 but for 1 / longer^2."""
     found = study((0.5, 1.0, longer, np.sqrt(0.75)), CLOCKWISE[::5])

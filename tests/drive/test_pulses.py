@@ -16,7 +16,7 @@ import kinetostatics as ks
 TURN = 2.0 * math.pi
 MASSLESS = ks.crank_slider(0.3, 1.1)
 MOTOR = ks.drive.Motor.kloss(5000.0, 99.0, synchronous_speed=104.7, overload=2.5)
-QUICK, TURNED = (0, 3, 6, 11), (6, 11, 14, 15)
+QUICK, TURNED = (0, 6), (6, 11, 14, 15)
 """Drawn machines that are tested always, and those that turn back."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 

@@ -5,7 +5,6 @@ import math
 import threading
 import warnings
 from operator import add, mul, neg, sub, truediv
-from time import perf_counter
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ import kinetostatics as ks
 from kinetostatics.engines import numba_backend, simd_reductions
 from kinetostatics.engines.codegen import BY_DESIGN
 from kinetostatics.engines.graph import Graph
-from kinetostatics.engines.program import Program, program_of
+from kinetostatics.engines.program import Program
 from kinetostatics.engines.record import Recording
 from kinetostatics.numbers import arithmetic
 from support import by_arrays
@@ -90,22 +89,6 @@ def test_limit_positions_warn_alike_on_both_engines(interpreted):
     assert [(kind, file) for kind, _, file in found[0]] == [(ks.ConditionWarning, __file__)]
 
 
-@pytest.mark.slow
-def test_loops_of_many_outputs_are_vectorised(numba):
-    state = ks.load_case("sawframe_2r63").variants["plain"].scene.solve(np.linspace(0.0, 6.0, 3600)).dynamics
-    values, leaves = program_of(state, ("O", "A", "B", "guide"))
-    bounded = values.bounded()
-    assert len(bounded.outputs) > 12
-    times = {of: min(seconds(of, state, leaves) for _ in range(20)) for of in (values, bounded)}
-    assert times[bounded] < 8.0 * times[values]  # fifteen times, if they are not
-
-
-def seconds(program, state, leaves):
-    begun = perf_counter()
-    program.run(state, leaves, compiled=True)
-    return perf_counter() - begun
-
-
 def test_the_compiled_engine_refuses_single_precision(interpreted):
     with (
         pytest.warns(UserWarning, match="single precision"),
@@ -153,7 +136,7 @@ def test_operations_agree_at_zeros_infs_and_nans(numba):
         assert np.array_equal(np.signbit(values[real]), np.signbit(expected[real])), place
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_scalar_functions_are_those_of_the_library(numba):
     values = np.linspace(-7.0, 7.0, 37)
     found = of_rows(lambda a: (a.sin(), a.cos(), a.arctan()), values[None])
@@ -161,7 +144,7 @@ def test_scalar_functions_are_those_of_the_library(numba):
         np.testing.assert_array_max_ulp(row, np.array(list(map(function, values.tolist()))), 1)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_angle_and_design_counts_do_not_change_bits(numba):
     graph = Graph()
     angle, length, offset = graph.angle(), graph.parameter(0), graph.parameter(1)

@@ -22,7 +22,7 @@ from kinetostatics.mechanics.quantities import magnitude
 from kinetostatics.numbers import parameter_tree
 from support import DATA, graphs
 from support.case_files import shipped
-from support.every import every
+from support.every import every, quick
 from support.scenes import (
     ANGLES,
     BATCHES,
@@ -236,7 +236,7 @@ def test_program_under_a_process_force_equals_solve(interpreted, name):
     assert_program_equals(s, tables)
 
 
-@pytest.mark.parametrize("name", BATCHES)
+@pytest.mark.parametrize("name", quick(BATCHES, 5))
 def test_program_of_many_designs_equals_solve(interpreted, name):
     s = BATCHES[name]()
     made, run = program(s, ["balancing_torque"])

@@ -12,7 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.every import each, every
+from support.every import each, every, quick
 
 TURN = np.linspace(0.1, 6.2, 40)
 PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.01, 0.01), slider=ks.Link(1.0))
@@ -307,7 +307,7 @@ IDLE = {
 """Loads that take no torque, by what they are; those at pivots may load these."""
 
 
-@pytest.mark.parametrize(("mechanism", "load"), IDLE.values(), ids=IDLE)
+@pytest.mark.parametrize(("mechanism", "load"), quick(IDLE.values(), 5), ids=IDLE)
 def test_idle_loads_take_no_torque(mechanism, load):
     bare, loaded = ks.Scene(mechanism, 10.0), ks.Scene(mechanism, 10.0, loads=load)
     expected, found = bare.solve(TURN), loaded.solve(TURN)

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import simpson
 
 import kinetostatics as ks
-from support.every import every
+from support.every import every, quick
 from support.friction_machines import Drawn
 from support.multibody import Body, CrankSlider, pin_on_crank
 
@@ -119,7 +119,7 @@ KINKS = {
 }
 
 
-@pytest.mark.parametrize(("flywheel", "angle", "speed"), KINKS.values(), ids=KINKS)
+@pytest.mark.parametrize(("flywheel", "angle", "speed"), quick(KINKS.values(), 3), ids=KINKS)
 def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
     scene = ks.Scene(HEAVY, 1.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.8)})
     motion = ks.drive.coast(scene, flywheel, from_angle=angle, from_speed=speed, until=1e-3)
@@ -128,7 +128,7 @@ def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
     obeys(motion.at(motion.time[:1]), machine.system, flywheel)
 
 
-@pytest.mark.parametrize("step", [-4, -1, 0, 1, 4])
+@pytest.mark.parametrize("step", quick([-4, 0, 1, -1, 4], 3))
 def test_acceleration_at_zero_guide_force_is_found(step):
     force = 14078.237116336823 * (1.0 + step * 2.0**-52)
     rod = ks.Link(5.0, 0.2, 0.1)

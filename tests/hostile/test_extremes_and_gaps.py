@@ -148,7 +148,7 @@ def swept(function, designs, outputs, **options):
     return ks.sweep(function, pd.DataFrame(designs), outputs, progress=False, **options)
 
 
-@every("coupler, guide", [(0.5, 0.0), (0.8, 0.1), (0.99, 77.0), (0.99999, 0.0), (0.9999999, 0.1)])
+@every("coupler, guide", [(0.5, 0.0), (0.99, 77.0), (0.9999999, 0.1)])
 def test_extremes_reach_the_ends_of_closed_intervals(coupler, guide):
     """Under the ends the slider stands at the foot of the crank pin, where its velocity grows without bound."""
     mechanism = ks.crank_slider(1.0, coupler, guide_angle=np.radians(guide), slider=ks.Link(1.0))

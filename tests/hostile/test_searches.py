@@ -234,6 +234,7 @@ def test_many_designs_are_no_source():
             ks.design.optimise(source, {"coupler_length": (0.1, 0.3)}, TORQUE, reference=reference)
 
 
+@pytest.mark.slow
 def test_weight_is_blamed_only_where_it_binds():
     saw = ks.load_case("sawframe_2r63")
     with pytest.raises(ks.DesignError) as caught:

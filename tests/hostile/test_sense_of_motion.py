@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.every import every
+from support.every import every, quick
 from support.mirror import mirrored
 from support.turning_machines import ANGLES, turning_scene
 
@@ -384,7 +384,7 @@ def test_nothing_is_derived_by_the_sense(name):
 
 
 @pytest.mark.parametrize(
-    ("kind", "sense"), [("crank slider", 1), ("lever", -1), ("roller follower", 1), ("two sliders", -1)]
+    ("kind", "sense"), quick([("crank slider", 1), ("lever", -1), ("roller follower", 1), ("two sliders", -1)], 2)
 )
 def test_machine_at_rest_equals_one_that_creeps(kind, sense):
     turning = turning_scene(kind, 60, friction=True)

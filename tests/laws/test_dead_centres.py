@@ -18,7 +18,7 @@ DIGITS = 50
 ULPS = 4
 """Largest error of the slider position, in units in the last place of the coupler length."""
 GUIDES = ("through O", "nearly through O", "offset", "level", "by angle")
-COUNT = 8
+COUNT = 4
 """Mechanisms for each kind of guide; each with two assemblies, two dead centres and 39 crank angles."""
 each_assembly = pytest.mark.parametrize("assembly", [1, -1])
 

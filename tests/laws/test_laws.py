@@ -132,14 +132,6 @@ def test_forces_superpose(kind):
 
 
 @every_kind
-def test_two_loads_of_a_kind_add_up(kind):
-    machine = Machine(kind)
-    halves = (ks.Gravity(4.0, -1.2), ks.Spring(200.0, 0.8), ks.ProcessForce(15.0))
-    rest = (ks.Gravity(5.81, -1.2), ks.Spring(300.0, 0.8), ks.ProcessForce(25.0))
-    assert_equal(results(machine.solve(loads=halves + rest)), results(machine.solve()))
-
-
-@every_kind
 def test_inertia_forces_grow_with_the_square_of_speed(kind):
     """Twice the speed and four times the crank acceleration is exact in binary arithmetic."""
     machine = Machine(kind)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -225,18 +226,21 @@ def test_torque_does_no_work_over_the_period():
 # Change points passed
 
 
-FEW = ("parallelogram", "kite", "4/1/3/2", "meeting", "outside left", "grazing")
-"""Whose sides are compared in unit tests; the others differ from them in lengths or in a sign alone."""
+FEW = {
+    **dict.fromkeys(("parallelogram", "4/1/3/2", "outside left"), "open"),
+    **dict.fromkeys(("kite", "meeting"), "crossed"),
+}
+"""Which are compared in unit tests; the others differ from them in lengths or in a sign alone."""
 
 
-@pytest.mark.parametrize(
-    ("name", "assembly"),
-    [
-        pytest.param(name, assembly, marks=() if name in FEW else pytest.mark.slow)
-        for name in [*LINKAGES, *LEVERS]
-        for assembly in SIDES
-    ],
-)
+def few_quick(*names):
+    """Every name and assembly; those that are not of the few are slow tests."""
+    pairs = product(names, SIDES)
+    rows = [pytest.param(*pair, marks=() if pair in FEW.items() else pytest.mark.slow) for pair in pairs]
+    return pytest.mark.parametrize(("name", "assembly"), rows)
+
+
+@few_quick(*LINKAGES, *LEVERS)
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 def test_both_sides_of_a_change_point_are_exact(name, assembly):
     angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
@@ -271,8 +275,7 @@ def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
         assert np.isinf(solution.scalar("slot_force")[1])
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-@pytest.mark.parametrize("name", [*LINKAGES, "meeting", "outside left", "inside right"])
+@few_quick(*LINKAGES, "meeting", "outside left", "inside right")
 def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
     """The crank angle counts from the direction O -> O2, whose own angle lies between -pi and pi."""
     psi = np.linspace(-7.0, 7.0, 28)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import matplotlib.pyplot as plt
-import mpmath as mp
 import numpy as np
 import pandas as pd
 import pytest
@@ -135,67 +134,14 @@ def solution():
     return scene().solve(ANGLES)
 
 
-def reference(angle):
-    """All forces by one system of nine equations; motion by differentiating positions with 40 digits."""
-    guide, slot = mp.expj(TILT), mp.expj(TILT + SLOT)
-    base = {"crank": lambda t: 0, "block": lambda t: pin(t), "slider": lambda t: foot_of(t)}
-
-    def pin(t):
-        return mp.mpf("0.1") * mp.expj(angle + 30 * t + 25 * t * t)
-
-    def foot_of(t):
-        """Where the line through A along the slot meets the guide, from the two equations of the lines."""
-        foot = 1j * OFFSET * guide
-        matrix = mp.matrix([[guide.real, -slot.real], [guide.imag, -slot.imag]])
-        far = mp.lu_solve(matrix, mp.matrix([(pin(t) - foot).real, (pin(t) - foot).imag]))[0]
-        return foot + far * guide
-
-    def direction(name, t):
-        return {"crank": mp.expj(angle + 30 * t + 25 * t * t), "block": slot, "slider": guide}[name]
-
-    def centre(name, t):
-        return base[name](t) + mp.mpc(*LINKS[name].centre) * direction(name, t)
-
-    at = {"O": 0, "A": pin(0), "B": foot_of(0)}
-    columns = [
-        *(("O", part, 0, "O", "crank", None) for part in (1, 1j)),
-        *(("A", part, 0, "A", "block", "crank") for part in (1, 1j)),
-        ("slot_force", 1j * slot, 0, "A", "block", "slider"),
-        ("slot_moment", 0, 1, "A", "block", "slider"),
-        ("guide_force", 1j * guide, 0, "B", "slider", None),
-        ("guide_moment", 0, 1, "B", "slider", None),
-        ("balancing_torque", 0, 1, "O", "crank", None),
-    ]
-    names = list(LINKS)
-    matrix, right = mp.zeros(9), mp.zeros(9, 1)
-    gravity = mp.mpf("9.81") * mp.expj(mp.mpf("-1.3"))
-    reach = (mp.conj(guide) * foot_of(0)).real
-    applied = (35 - 800 * (reach - mp.mpf("0.02"))) * guide
-    for row, name in enumerate(names):
-        middle = centre(name, 0)
-        inertia = LINKS[name].mass * (mp.diff(lambda t, name=name: centre(name, t), 0, 2) - gravity)
-        inertia -= applied if name == "slider" else 0
-        turning = LINKS[name].inertia * (50 if name == "crank" else 0)
-        turning -= (mp.conj(at["B"] - middle) * applied).imag if name == "slider" else 0
-        right[3 * row], right[3 * row + 1], right[3 * row + 2] = inertia.real, inertia.imag, turning
-        for column, (_, force, couple, joint, on, by) in enumerate(columns):
-            sign = (name == on) - (name == by)
-            moment = couple + (mp.conj(at[joint] - middle) * force).imag
-            for part, value in enumerate((mp.mpc(force).real, mp.mpc(force).imag, moment)):
-                matrix[3 * row + part, column] = sign * value
-    found = {}
-    for (name, part, *_), value in zip(columns, mp.lu_solve(matrix, right), strict=True):
-        found[name] = found.get(name, 0) + complex(value) * (part if name in ("O", "A") else 1)
-    return found
-
-
-def test_group_agrees_with_an_independent_system(solution):
-    with mp.workdps(40):
-        expected = [reference(angle) for angle in ANGLES]
+def test_group_agrees_with_the_yoke_of_the_package(solution):
+    """Which agrees with two full systems of equations (`tests/laws/test_chains.py`)."""
+    yoke = ks.YokeGroup(ks.Guide.at(TILT, OFFSET), SLOT, slider=LINKS["slider"], block=LINKS["block"])
+    other = ks.Mechanism("yoke", ks.Crank(0.1, LINKS["crank"]), (yoke,))
+    known = ks.solve(other, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=LOADS)
     for name in QUANTITIES:
-        found = solution.reaction(name) if name in ("O", "A") else (solution.scalar(name), 0.0)
-        error = found[0] + 1j * found[1] - np.array([row[name] for row in expected])
-        assert np.max(np.abs(error)) < 1e-12 * max(np.max(np.abs(found[0])), 1.0), name
+        found, expected = (np.array(components(s, name)) for s in (solution, known))
+        assert np.max(np.abs(found - expected)) < 1e-13 * np.max(np.abs(expected)), name
 
 
 def test_its_class_takes_at_most_sixty_lines_of_code():

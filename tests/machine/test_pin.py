@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import kinetostatics as ks
 from kinetostatics.errors import ParameterError
 from support.chains import error_beside_constraints
+from support.every import quick
 from support.machines import planar
 from support.strategies import reproducible
 
@@ -62,7 +63,7 @@ def test_two_rods_on_one_pin_load_it_together():
 
 
 @pytest.mark.parametrize(
-    "link", ["crank", "coupler", "slider", "rocker", "dyad1", "dyad2", "lever", "block", "rod", "cylinder"]
+    "link", quick(["crank", "coupler", "dyad1", "block", "rod", "slider", "rocker", "dyad2", "lever", "cylinder"], 5)
 )
 def test_any_link_bears_what_hangs_on_a_pin(link):
     parts = {

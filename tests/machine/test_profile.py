@@ -14,6 +14,7 @@ import kinetostatics as ks
 from kinetostatics.machine.cams import roller
 from kinetostatics.numbers.files import read_columns
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
+from support.every import quick
 
 TURN = 2 * np.pi
 ANGLES = np.linspace(0.0, TURN, 97)
@@ -199,7 +200,7 @@ def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
     assert "0" in texts
 
 
-@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("units", quick(UNITS, 2))
 def test_csv_gives_back_points_and_cam(tmp_path, units):
     CUT_CAM.export(tmp_path / "cam.csv", units=units, **GIVEN)
     names = dict.fromkeys(("roller_x", "roller_y", "surface_x", "surface_y", "cutter_x", "cutter_y", "radius"), "m")
@@ -355,14 +356,17 @@ def test_roller_conforms_to_a_ring_not_a_disk():
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)
 
 
-@pytest.mark.parametrize("rise", [ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial])
+@pytest.mark.parametrize(
+    "rise",
+    quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1),
+)
 def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
-    """Against a million points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
+    """Against 200 000 points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
     height, width = 1e-7, np.radians(0.1)
     back = ks.laws.cycloidal(0.08 + height, 0.08, 1.5)
     dwells = ks.laws.dwell(0.08 + height, 1.0), ks.laws.dwell(0.08, TURN - 2.5 - width)
     law = ks.laws.joined(rise(0.08, 0.08 + height, width), dwells[0], back, dwells[1], smooth="velocity")
-    phi = np.linspace(1e-12, width - 1e-12, 1_000_001)
+    phi = np.linspace(1e-12, width - 1e-12, 200_001)
     s, v, a, _ = law(phi)
     velocity, bend = v - 1j * s, a - 2j * v - s
     sharpest = np.max(-(np.conj(velocity) * bend).imag / np.abs(velocity) ** 3)

@@ -136,7 +136,7 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize(("power", "assembly"), [(2, 1), (6, -1), (10, 1), (14, -1)])
+@pytest.mark.parametrize(("power", "assembly"), [(2, 1), (10, 1), (14, -1)])
 def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 

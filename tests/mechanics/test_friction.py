@@ -18,7 +18,7 @@ from kinetostatics.mechanics.friction import (
     kink_functions,
     size_of,
 )
-from support.every import every
+from support.every import every, quick
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
@@ -32,7 +32,7 @@ def rubbed(friction=JOINTS, **drive):
     return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", quick(KINDS, 5))
 def test_forces_obey_newton_for_all_bodies(kind):
     difference, solution = differences(kind, 1)
     assert difference < 1e-13

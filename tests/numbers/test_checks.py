@@ -141,7 +141,6 @@ def test_unknown_names_list_valid_and_nearest(ask, message):
         (lambda: ks.cams.Sampled(np.linspace(0, 2 * np.pi, 40), ROUND), "within one turn, end excluded"),
         (lambda: ks.cams.Sampled(EVEN, ROUND - 0.3), "radius must be greater than 0"),
         (lambda: ks.cams.Sampled(EVEN, np.where(EVEN > 3, np.nan, ROUND)), "radius must be finite"),
-        (lambda: ks.cams.Sampled(EVEN, np.where(EVEN > 3, np.nan, ROUND)), "radius must be finite"),
         (lambda: ks.cams.Sampled(np.where(EVEN > 3, np.nan, EVEN), ROUND), "angle must be finite"),
     ],
 )

@@ -172,7 +172,9 @@ def comparison(variant):
     return ks.compare(solution("plain", np.zeros(1)), solution(variant, np.zeros(1)))
 
 
-@pytest.mark.parametrize("variant", TABLES)
+@pytest.mark.parametrize(
+    "variant", ["plain", *(pytest.param(name, marks=pytest.mark.slow) for name in TABLES if name != "plain")]
+)
 def test_torque_extremes_equal_the_reference(variant):
     found = ks.extremes(solution(variant, np.zeros(1)), "balancing_torque").value
     np.testing.assert_allclose(found, torque_extremes(variant), rtol=CLOSE[variant])
@@ -194,6 +196,7 @@ def test_mean_torque_ratio(variant, documented):
     assert round(float(found.mean_torque_ratio), 3) == documented
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("variant", "documented"), [("cosine", [7.27, 6.11, 6.45, 7.62]), ("circle", [6.37, 5.50, 5.73, 6.60])]
 )

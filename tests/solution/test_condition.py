@@ -384,6 +384,7 @@ SPECIAL = {
 }
 
 
+@pytest.mark.slow
 @every("name", SPECIAL)
 def test_condition_bounds_it_near_special_positions(name):
     """From 0.1 to 1e-10 rad on both sides; infinite within some roundings of the position."""

@@ -52,9 +52,8 @@ def test_what_cannot_be_studied_says_why(call, kind, words):
 
 
 def test_times_are_those_of_one_call_and_in_order():
-    short, long = method.seconds(lambda: time.sleep(0.001), lambda: time.sleep(0.004), repeats=1)
-    assert 0.001 <= short < long
-    assert 0.004 <= long < 0.4
+    short, long = method.seconds(lambda: time.sleep(0.001), lambda: time.sleep(0.1), repeats=1)
+    assert 0.001 <= short < 0.1 <= long < 10.0
 
 
 def test_machine_and_versions_are_told():

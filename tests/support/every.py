@@ -39,6 +39,13 @@ def every(names, values, ids=None):
     return taking
 
 
+def quick(rows, count):
+    """Rows of ``pytest.mark.parametrize``; those after the first `count` are slow tests."""
+    rows = list(rows)
+    slow = (pytest.param(*(row if isinstance(row, tuple) else (row,)), marks=pytest.mark.slow) for row in rows[count:])
+    return [*rows[:count], *slow]
+
+
 def each(error, *rows):
     """Rows (error, call, input, words) of rows (call, inputs, words), for tests of refusals by `every`."""
     return [(error, call, given, words) for call, inputs, words in rows for given in inputs]

@@ -122,6 +122,8 @@ def run_methods(methods, problem, quantity, measure, progress=None, **unknown):
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 MIN_MEASURED_TIME = 2e-3
 """Shortest time, s, that the clock measures well; a faster function is called repeatedly within it."""
+LONG_CALL = 1.0
+"""A call that takes longer is timed once, s."""
 
 
 def seconds(*runs, repeats=5):
@@ -135,7 +137,7 @@ def seconds(*runs, repeats=5):
     *runs : function
         Without arguments.
     repeats : int
-        Rounds, of which the median counts.
+        Rounds, of which the median counts; a call that takes more than a second is timed once.
 
     Returns
     -------
@@ -151,8 +153,12 @@ def seconds(*runs, repeats=5):
     """
     for run in runs:
         run()
-    calls = [max(1, int(MIN_MEASURED_TIME / _mean_time(run, 1))) for run in runs]
-    rounds = [[_mean_time(*pair) for pair in zip(runs, calls, strict=True)] for _ in range(repeats)]
+    once = [_mean_time(run, 1) for run in runs]
+    calls = [max(1, int(MIN_MEASURED_TIME / time)) for time in once]
+    timed = list(zip(runs, calls, once, strict=True))
+    rounds = [
+        [time if time > LONG_CALL else _mean_time(run, count) for run, count, time in timed] for _ in range(repeats)
+    ]
     return [statistics.median(column) for column in zip(*rounds, strict=True)]
 
 
