@@ -151,13 +151,13 @@ def resolve_energy(driven, pieces, found, kinks, again):
         energy, _, linear = found
         rows = driven.kink_rows(pieces.angle, linear.speed) if step < MAX_ROUNDS else []
         moved = split_at_kinks(driven, pieces, rows, kinks)
-        if moved is None:
+        if moved is not None:
+            finer, kinks = moved
+        else:
             marked = _unresolved(driven, pieces, energy, linear)
             if not marked.any() or len(pieces.half) > MAX_PIECES:
                 break
             finer = pieces.split(marked)
-        else:
-            finer, kinks = moved
 
         def interpolated(values, finer=finer, old=pieces):
             return old.evaluate(old.series(values), finer.angle)

@@ -54,6 +54,8 @@ BRACKET_TOLERANCE = 1e-16
 """Error of an acceleration relative to its bracket."""
 ANGLE_AHEAD = 1e-9
 """Crank angle, rad, ahead of a crank at rest where the senses of motion are read."""
+FORCE_ROUNDING = 1e-9
+"""Force of a joint, relative to the largest of those that friction depends on, below which its sign is rounding."""
 BLOCK_SIZE = 4096
 """Crank angles of one call of the friction program."""
 
@@ -482,7 +484,8 @@ class DrivenMachine:
                 rows += kink_functions("size", (found[force],))
             else:
                 rows += kink_functions("larger", (found[force], found[couple] / half))
-        return rows
+        noise = FORCE_ROUNDING * np.max([np.abs(row).max() for row in rows])
+        return [np.where(np.abs(row) > noise, row, 0.0) for row in rows]
 
 
 def _distinct_angles(angles, period):

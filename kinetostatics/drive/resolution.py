@@ -18,8 +18,8 @@ from ..numbers.parameter_tree import replace_unchecked
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
 """Rounds of locating kinks of friction."""
-KINK_TOLERANCE = 1e-9
-"""Shift of an edge, relative to the period, that is harmless."""
+KINK_TOLERANCE = 1e-8
+"""Shift of an edge, relative to the period, that is harmless: its square is rounding."""
 MIN_EDGE_DISTANCE = 1e-6
 """Distance of edges from a new one, relative to the period, below which they are removed."""
 MIN_RESOLVED_WIDTH = 1e-6
@@ -28,6 +28,15 @@ MAX_UNRESOLVED = 1e-6
 """Share of a torque in unresolved pieces above which running is refused."""
 MIN_INERTIA_RATIO = 1e-10
 """Smallest inertia, relative to the largest, with which there is a speed."""
+MIN_PAST, MAX_PAST = 3, 4
+"""Periods by which the next ones are predicted."""
+MAX_PERIODS = 8
+"""Periods that are solved together."""
+MAX_PREDICTED_CHANGE = 0.1
+"""Relative change of the energy over these."""
+MAX_PREDICTED_PIECES = 2000
+MAX_ADDED_EDGES = 6
+"""Edges besides those of the first period above which a period begins with the first ones again."""
 NO_ANGLES = np.empty(0)
 
 
@@ -72,22 +81,26 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
     """
     if not rows:
         return None
-    period = driven.period
-    angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]])
+    period, (first, last) = driven.period, pieces.edges[[0, -1]]
+    angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]]).ravel()
     zeros = []
-    for value in map(pieces.with_ends, rows):  # a jump from one piece to the next is no zero
-        at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
-        (low, high), (first, second) = ((part[:, :-1][at], part[:, 1:][at]) for part in (angle, value))
-        zeros.append(low + (high - low) * first / (first - second))
-    first, last = pieces.edges[[0, -1]]
-    fixed = np.concatenate([[first], driven.kinks[(driven.kinks > first) & (driven.kinks < last)], [last]])
+    for value in (pieces.with_ends(row).ravel() for row in rows):  # at an edge its value is there twice
+        at = np.flatnonzero((np.signbit(value[:-1]) != np.signbit(value[1:])) & (value[:-1] != value[1:]))
+        found = angle[at] + (angle[at + 1] - angle[at]) * value[at] / (value[at] - value[at + 1])
+        zeros.append(found[np.diff(found, prepend=-np.inf) > MIN_EDGE_DISTANCE * min(last - first, period)])
+    turns = period * np.arange(math.floor(first / period), math.ceil(last / period))
+    fixed = np.add.outer(turns, np.append(0.0, driven.kinks)).ravel()
+    fixed = np.concatenate([[first], fixed[(fixed > first) & (fixed < last)], [last]])
     kinks = np.concatenate(zeros)
     kinks = kinks[_distance(kinks, fixed) > KINK_TOLERANCE * period]
-    if np.all(_distance(kinks, pieces.edges) <= KINK_TOLERANCE * period):
+    gap = np.abs(kinks[:, None] - pieces.edges)
+    known = gap.min(axis=1) <= KINK_TOLERANCE * period
+    if np.all(known):
         return None
+    kinks = np.where(known, pieces.edges[gap.argmin(axis=1)], kinks)
     other = np.setdiff1d(pieces.edges, before)
-    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * pieces.period]
-    return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), kinks
+    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * min(last - first, period)]
+    return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), np.unique(kinks)
 
 
 def _distance(angles, others):
@@ -141,3 +154,77 @@ def require_inertia(driven, pieces):
             "flywheel, or the crank or the rotor of the motor its inertia",
             crank_angle=angle,
         )
+
+
+class PastPeriods:
+    """Pieces of the period, and the energy and kinks of the last whole periods, which predict those of the next ones.
+
+    `past` has, for each period in order, its pieces, the series of the energy, and the kinks of friction.
+    """
+
+    def __init__(self, driven, pieces, kinks):
+        self.driven, self.first, self.pieces, self.kinks = driven, pieces, pieces, kinks
+        self.past: list[tuple] = []
+        self.change = math.inf
+
+    @property
+    def count(self):
+        """Points of a piece."""
+        return self.first.count
+
+    def periods_ahead(self, energy, reach):
+        """Whole periods within a crank angle that can be predicted: a power of 2."""
+        if len(self.past) < MIN_PAST:
+            return 1
+        most = min(MAX_PERIODS, reach / self.driven.period, MAX_PREDICTED_PIECES / self.pieces.edges.size)
+        if self.change:
+            most = min(most, MAX_PREDICTED_CHANGE * energy / self.change)
+        return 2 ** int(math.log2(max(most, 1.0)))
+
+    def edges_ahead(self, periods):
+        """Edges of the next periods, and the kinks of friction among them."""
+        kept, angles, kinks = np.setdiff1d(self.pieces.edges, self.kinks), [], []
+        same = [own for *_, own in self.past if own.size == self.kinks.size]
+        for number in range(1, periods + 1):
+            own = self.kinks
+            if len(same) == len(self.past) > 1:
+                own = weights_ahead(len(same), number) @ np.array(same)
+            shift = self.driven.direction * (number - 1) * self.driven.period
+            own = own[(own > 0.0) & (own < self.driven.period)]
+            kinks.append(own + shift)
+            angles += [kept + shift, own + shift]
+        return np.unique(np.concatenate(angles)), np.concatenate(kinks)
+
+    def energy_ahead(self, pieces, energy):
+        """Energy at the points of pieces of the next periods, by a polynomial in their number; at first one energy."""
+        period, found = self.driven.period, np.zeros(pieces.angle.shape)
+        turns = np.floor(pieces.middle / period)
+        ahead = np.abs(turns - turns[0 if self.driven.direction > 0.0 else -1]) + 1.0
+        angle = np.clip(pieces.angle - turns[:, None] * period, 0.0, period)
+        for weight, (part, series, _) in zip(weights_ahead(len(self.past), ahead), self.past, strict=True):
+            found += weight[:, None] * part.evaluate(series, angle)
+        return found if found.min() > 0.0 else np.full(found.shape, energy)
+
+    def keep(self, pieces, kinks, energy, change):
+        """Keep whole periods, and the change of the energy in one."""
+        period, self.change = self.driven.period, change
+        turns, series = np.floor(pieces.middle / period), pieces.series(energy)
+        for turn in np.unique(turns)[:: int(self.driven.direction)]:
+            own = np.flatnonzero(turns == turn)
+            part = Pieces(pieces.edges[own[0] : own[-1] + 2] - turn * period, pieces.count)
+            inside = kinks - turn * period
+            self.past.append((part, series[:, own], np.sort(inside[(inside > 0.0) & (inside < period)])))
+        self.past = self.past[-MAX_PAST:]
+        part, _, self.kinks = self.past[-1]
+        self.pieces = part if part.edges.size <= self.first.edges.size + MAX_ADDED_EDGES else self.first
+
+
+def weights_ahead(count, number):
+    """Weights of `count` even values, in rows, in those at places so many numbers further, by a polynomial."""
+    places = np.arange(1.0 - count, 1.0)
+    others = (places[places != own] for own in places)
+    rows = [
+        np.prod(np.subtract.outer(number, other) / (own - other), axis=-1)
+        for own, other in zip(places, others, strict=True)
+    ]
+    return np.array(rows)

@@ -265,7 +265,7 @@ def _run_under_motor(driven, scene):
     pieces, kinks = resolve_and_hint(driven, start)
     require_inertia(driven, pieces)
 
-    def near(pieces, guess, _=None):
+    def near(pieces, guess, *_):
         return solve_near(driven, pieces, guess) or settle_from_above(driven, pieces, start)
 
     pieces, found = near(pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
