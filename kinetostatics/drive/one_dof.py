@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import declared_kinks, kinks_and_jumps
-from ..cycle.load_functions import repeating_problem, undeclared_functions, undeclared_jumps
+from ..cycle.kinks import declared_kinks
+from ..cycle.load_functions import repeating_problem, samples_of_functions, undeclared_functions, undeclared_jumps
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
@@ -98,7 +98,7 @@ class DrivenMachine:
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         checks.require(owner, repeating_problem(self.scene.unsolved(np.zeros(1))))  # of pure functions
         self._engine, self._compiled = engine, engine == "compiled"
-        self.constant_torque = 0.0
+        self.constant_torque, self.functions = 0.0, []
         self._cached_state: tuple[Any, State] | None = None
         if any("crank_acceleration" in inputs for _, inputs in self._function_loads):
             checks.require(
@@ -160,7 +160,10 @@ class DrivenMachine:
         return self._kinks_at(self.direction)
 
     def locate_kinks(self, speed):
-        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on."""
+        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on.
+
+        `functions` are samples of the load functions without `kinks` there.
+        """
         if self.loads_by_speed or undeclared_functions(self.scene.loads):
             self.kinks = self._kinks_at(speed)
 
@@ -180,15 +183,14 @@ class DrivenMachine:
             )
 
     def _kinks_at(self, speed):
-        scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
-        free = replace_unchecked(scene.unsolved(np.zeros(1)), silent=True)
-        angles = [kinks_and_jumps(free)[0], self.jumps]
-        if undeclared_functions(self.scene.loads):
+        kinks, self.functions = load_kinks(replace_unchecked(self.scene, crank_speed=speed))
+        angles = [kinks, self.jumps]
+        if self.functions:
 
             def torque(angle):
                 return self.without_friction(angle, np.full(angle.shape, speed)).torque
 
-            places = np.append(angles[0], angles[0][:1] + self.period)
+            places = np.append(kinks, kinks[:1] + self.period)
             angles.append(undeclared_jumps(torque, places, self.scene.resolution))
         return _distinct_angles(np.concatenate(angles), self.period)
 
@@ -486,6 +488,14 @@ class DrivenMachine:
                 rows += kink_functions("larger", (found[force], found[couple] / half))
         noise = FORCE_ROUNDING * np.max([np.abs(row).max() for row in rows])
         return [np.where(np.abs(row) > noise, row, 0.0) for row in rows]
+
+
+def load_kinks(scene):
+    """Crank angles over the period of all kinks of loads and laws of cams, and samples of functions without `kinks`."""
+    motion = replace_unchecked(scene, friction=NO_FRICTION).unsolved(np.zeros(1))
+    functions = samples_of_functions(motion)
+    rough = [function.rough_places.ravel() for function in functions]
+    return np.unique(np.concatenate([declared_kinks(motion)[0], *rough])), functions
 
 
 def _distinct_angles(angles, period):

@@ -9,11 +9,10 @@ import warnings
 
 import numpy as np
 
-from ..cycle.load_functions import check_resolution, samples_of_functions, undeclared_functions
-from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
+from ..cycle.load_functions import check_resolution, undeclared_functions
+from ..cycle.piecewise import TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
-from ..numbers.parameter_tree import replace_unchecked
 
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
@@ -53,8 +52,7 @@ def plain_pieces(driven, speed):
 def resolve_and_hint(driven, speed):
     """`resolved`, with a hint at load functions without `kinks` that change between their samples."""
     found = resolved(driven, speed)
-    running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
-    for text in check_resolution(running, samples_of_functions(running), running.resolution).hints:
+    for text in check_resolution(driven.scene, driven.functions, driven.scene.resolution).hints:
         warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
     return found
 
@@ -68,9 +66,18 @@ def resolved(driven, speed):
         if split is None:
             break
         pieces, kinks = split
-    pieces = _halve_unresolved(driven, pieces, speed)
-    if np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period) or len(pieces.half) > MAX_PIECES:
-        _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
+
+    def evaluate(angle, _=None):
+        state = driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
+        return np.array([state.torque, state.inertia])
+
+    def rough(pieces, errors, values):
+        size = np.abs(values).max(axis=(1, 2))[:, None]
+        return (errors * [weights(pieces), np.ones(len(pieces.half))] > TAIL * size).any(axis=0)
+
+    pieces, values, unresolved = pieces.resolved(evaluate(pieces.checked), evaluate, rough)
+    if unresolved.any() or np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period):
+        _require_resolved(driven, pieces, values[0, :, 1:-1])
     return pieces, kinks
 
 
@@ -106,21 +113,6 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
 def _distance(angles, others):
     """Distance of each angle to the nearest of others; infinite where there are none."""
     return np.abs(angles[:, None] - others).min(axis=1, initial=np.inf)
-
-
-def _state_at(driven, angle, speed):
-    return driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
-
-
-def _halve_unresolved(driven, pieces, speed):
-    for _ in range(MAX_HALVINGS):
-        state = _state_at(driven, pieces.angle, speed)
-        rough = pieces.tail(state.torque) * weights(pieces) > TAIL
-        marked = (rough | (pieces.tail(state.inertia) > TAIL)) & pieces.can_split
-        if not marked.any() or len(marked) > MAX_PIECES:
-            break
-        pieces = pieces.split(marked)
-    return pieces
 
 
 def weights(pieces):
