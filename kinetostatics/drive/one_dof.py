@@ -184,7 +184,7 @@ class DrivenMachine:
 
     def _kinks_at(self, speed):
         kinks, self.functions = load_kinks(replace_unchecked(self.scene, crank_speed=speed))
-        angles = [kinks, self.jumps]
+        angles = [kinks] if self._slip is None else [kinks, self._slip.all_edges]
         if self.functions:
 
             def torque(angle):
@@ -193,14 +193,6 @@ class DrivenMachine:
             places = np.append(kinks, kinks[:1] + self.period)
             angles.append(undeclared_jumps(torque, places, self.scene.resolution))
         return _distinct_angles(np.concatenate(angles), self.period)
-
-    def _speeds(self, angle):
-        return np.full(angle.shape, self.direction)
-
-    @property
-    def jumps(self):
-        """Crank angles in [0, period) at which friction torque jumps, rad, exact."""
-        return np.empty(0) if self._slip is None else self._slip.all_edges
 
     def at(self, angle, speed=None, near=None) -> State:
         """State at crank angles; `speed` counts where loads or friction depend on it.
@@ -310,7 +302,7 @@ class DrivenMachine:
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
-        return self.flywheel + self.without_friction(angle, self._speeds(angle)).inertia
+        return self.flywheel + self.without_friction(angle, np.full(angle.shape, self.direction)).inertia
 
     def motor_torque(self, speed):
         """Torque of the motor on the crank, N m; without motor `constant_torque`."""

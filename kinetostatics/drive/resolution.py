@@ -71,9 +71,9 @@ def resolved(driven, speed):
         state = driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
         return np.array([state.torque, state.inertia])
 
-    def rough(pieces, errors, values):
-        size = np.abs(values).max(axis=(1, 2))[:, None]
-        return (errors * [weights(pieces), np.ones(len(pieces.half))] > TAIL * size).any(axis=0)
+    def rough(pieces, _, values):
+        torque, inertia = values[..., 1:-1]
+        return (pieces.tail(torque) * weights(pieces) > TAIL) | (pieces.tail(inertia) > TAIL)
 
     pieces, values, unresolved = pieces.resolved(evaluate(pieces.checked), evaluate, rough)
     if unresolved.any() or np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period):
