@@ -259,6 +259,10 @@ class March:
         if self.energy == 0.0:
             found = self._attempt(leave_rest, machine, self.inside, abs(far - self.inside), known.count)
             return found and (found[0], far, found[1]), reach
+        if self._stops_within(machine, 0.5 * min(room, reach)):
+            found = self._attempt(come_to_rest, machine, self.inside, self.energy, room, known.count)
+            if found is not None:
+                return (found[0], self.inside + direction * found[1], 0.0), reach
         inner = ahead[direction * (far - ahead) > 0.0]
         part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), known.count)
         whole = part.edges.size == edges.size and far == ahead[-1]
@@ -280,6 +284,12 @@ class March:
             return None, 2.0 * before[-1] if isinstance(self.problem, StandstillError) else reach
         found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, known.count)
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
+
+    def _stops_within(self, machine, reach):
+        """Whether the torque just ahead takes the energy within a crank angle."""
+        place = self.inside + machine.direction * ANGLE_AHEAD
+        net = self._attempt(machine.torque_at, place, machine.direction * self.speed)
+        return net is not None and -machine.direction * net * reach > self.energy
 
     def _attempt(self, function, *parts):
         """Result of a function, or None where it has none or fails; `problem` is its error."""
@@ -383,7 +393,8 @@ def leave_rest(driven, angle, length, count):
 
 def come_to_rest(driven, angle, energy, room, count):
     """Stretch from a crank angle and energy to a standstill within `room`, and the angle to it; or None."""
-    net = driven.torque_at(angle, driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0]))
+    speed = driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0])
+    net = driven.torque_at(angle + driven.direction * ANGLE_AHEAD, speed)  # loads may jump here
     length = -energy / (driven.direction * net) if driven.direction * net < 0.0 else room
     found = _beside_rest(driven, angle, min(length, room), energy, count)
     return found and (found[0], found[1]) if found and found[1] <= room else None
