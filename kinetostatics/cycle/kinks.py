@@ -28,7 +28,7 @@ SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
 SAMPLES = 720
 """Crank angles of a turn between which a rate or force of friction is expected to change its sign once."""
 FINE_SAMPLES = 1440
-"""The same over the period of one design."""
+"""The same for one design."""
 SAMPLE_OFFSET = 1e-3
 """Crank angle of the first sample, rad: no sample stands at a dead centre."""
 MAX_VERTEX = 0.1
@@ -54,7 +54,7 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
     """
     sources, largest_left_out = [law_kinks(solution)[None]], 0.0
     if solution.friction.acting:
-        sources.append(_friction_sign_changes(solution, SAMPLES * round(solution.period / TURN))[1])
+        sources.append(_friction_sign_changes(solution, SAMPLES)[1])
     for part in kink_sources(solution.loads):
         angles, _, left_out = significant_kinks(part, solution, SMALL_KINK)
         if angles.shape[1] > MAX_SMALL_KINKS:
@@ -113,7 +113,8 @@ def _period_starts(part, solution):
 
 
 def _friction_sign_changes(solution, samples):
-    return sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)
+    count = samples * round(solution.period / TURN)
+    return sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, count)
 
 
 def sign_changes(function, period, samples):

@@ -6,7 +6,7 @@ by its integrating factor in Chebyshev series; about four steps reach rounding.
 """
 
 import math
-from functools import reduce
+from functools import partial, reduce
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -147,35 +147,55 @@ def resolve_energy(driven, pieces, found, kinks, again):
         From finer pieces, a guess of the energy, a function of pieces, and a `Linear` of near energies, to pieces and
         a solution; or to None, which ends the search.
     """
-    for step in range(MAX_ROUNDS + MAX_HALVINGS):
+
+    def rows(pieces, found):
+        return driven.kink_rows(pieces.angle, found[2].speed)
+
+    def solve(finer, old, found):
         energy, _, linear = found
-        rows = driven.kink_rows(pieces.angle, linear.speed) if step < MAX_ROUNDS else []
-        moved = split_at_kinks(driven, pieces, rows, kinks)
-        if moved is None:
-            marked = _unresolved(driven, pieces, energy, linear)
+
+        def on(values, pieces):
+            return old.evaluate(old.series(values), pieces.angle)
+
+        motion = linear.motion and [on(values, finer) for values in linear.motion]
+        return again(finer, partial(on, energy), linear._replace(growth=on(linear.growth, finer), motion=motion))
+
+    return refine(driven, pieces, found, kinks, rows, partial(_unresolved, driven), solve)
+
+
+def refine(driven, pieces, found, kinks, rows, unresolved, solve):
+    """Pieces split at kinks of friction and then halved, the last solution on them, and the kinks; or None.
+
+    Parameters
+    ----------
+    found : tuple
+        Solution on the pieces.
+    kinks : array
+        Crank angles of kinks of friction among the edges, which move.
+    rows, unresolved : functions
+        From pieces and a solution to `kink_rows`, and to a mask of the pieces to halve.
+    solve : function
+        From finer pieces, the pieces before and their solution to pieces and their solution; or to None.
+    """
+    for step in range(MAX_ROUNDS + MAX_HALVINGS):
+        moved = split_at_kinks(driven, pieces, rows(pieces, found) if step < MAX_ROUNDS else [], kinks)
+        if moved is not None:
+            finer, kinks = moved
+        else:
+            marked = unresolved(pieces, found)
             if not marked.any() or len(pieces.half) > MAX_PIECES:
                 break
             finer = pieces.split(marked)
-        else:
-            finer, kinks = moved
-
-        def interpolated(values, finer=finer, old=pieces):
-            return old.evaluate(old.series(values), finer.angle)
-
-        motion = linear.motion and [interpolated(values) for values in linear.motion]
-        near = linear._replace(growth=interpolated(linear.growth), motion=motion)
-        solved = again(
-            finer, lambda finer, old=pieces, energy=energy: old.evaluate(old.series(energy), finer.angle), near
-        )
+        solved = solve(finer, pieces, found)
         if solved is None:
             return None
         pieces, found = solved
     return pieces, found, kinks
 
 
-def _unresolved(driven, pieces, energy, linear):
+def _unresolved(driven, pieces, found):
     """Mask of the pieces whose series are not resolved and that can be halved."""
-    state, inertia, speed, net, growth, _ = linear
+    energy, _, (state, inertia, speed, net, growth, _) = found
     wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
     rounding = max(SPEED_ROUNDING * np.abs(driven.motor_slope(speed) * speed).max(), EPSILON * energy.max())
     floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(net + state.torque).max()), rounding)

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import declared_kinks, kinks_and_jumps
-from ..cycle.load_functions import repeating_problem, undeclared_functions, undeclared_jumps
+from ..cycle.kinks import declared_kinks
+from ..cycle.load_functions import repeating_problem, samples_of_functions, undeclared_functions, undeclared_jumps
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NO_FRICTION
 from ..machine.links import Rolling, Sliding
@@ -54,6 +54,8 @@ BRACKET_TOLERANCE = 1e-16
 """Error of an acceleration relative to its bracket."""
 ANGLE_AHEAD = 1e-9
 """Crank angle, rad, ahead of a crank at rest where the senses of motion are read."""
+FORCE_ROUNDING = 1e-9
+"""Force of a joint, relative to the largest of those that friction depends on, below which its sign is rounding."""
 BLOCK_SIZE = 4096
 """Crank angles of one call of the friction program."""
 
@@ -96,7 +98,7 @@ class DrivenMachine:
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
         checks.require(owner, repeating_problem(self.scene.unsolved(np.zeros(1))))  # of pure functions
         self._engine, self._compiled = engine, engine == "compiled"
-        self.constant_torque = 0.0
+        self.constant_torque, self.functions = 0.0, []
         self._cached_state: tuple[Any, State] | None = None
         if any("crank_acceleration" in inputs for _, inputs in self._function_loads):
             checks.require(
@@ -158,7 +160,10 @@ class DrivenMachine:
         return self._kinks_at(self.direction)
 
     def locate_kinks(self, speed):
-        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on."""
+        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on.
+
+        `functions` are samples of the load functions without `kinks` there.
+        """
         if self.loads_by_speed or undeclared_functions(self.scene.loads):
             self.kinks = self._kinks_at(speed)
 
@@ -178,25 +183,16 @@ class DrivenMachine:
             )
 
     def _kinks_at(self, speed):
-        scene = replace_unchecked(self.scene, friction=NO_FRICTION, crank_speed=speed)
-        free = replace_unchecked(scene.unsolved(np.zeros(1)), silent=True)
-        angles = [kinks_and_jumps(free)[0], self.jumps]
-        if undeclared_functions(self.scene.loads):
+        kinks, self.functions = load_kinks(replace_unchecked(self.scene, crank_speed=speed))
+        angles = [kinks] if self._slip is None else [kinks, self._slip.all_edges]
+        if self.functions:
 
             def torque(angle):
                 return self.without_friction(angle, np.full(angle.shape, speed)).torque
 
-            places = np.append(angles[0], angles[0][:1] + self.period)
+            places = np.append(kinks, kinks[:1] + self.period)
             angles.append(undeclared_jumps(torque, places, self.scene.resolution))
         return _distinct_angles(np.concatenate(angles), self.period)
-
-    def _speeds(self, angle):
-        return np.full(angle.shape, self.direction)
-
-    @property
-    def jumps(self):
-        """Crank angles in [0, period) at which friction torque jumps, rad, exact."""
-        return np.empty(0) if self._slip is None else self._slip.all_edges
 
     def at(self, angle, speed=None, near=None) -> State:
         """State at crank angles; `speed` counts where loads or friction depend on it.
@@ -306,7 +302,7 @@ class DrivenMachine:
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
-        return self.flywheel + self.without_friction(angle, self._speeds(angle)).inertia
+        return self.flywheel + self.without_friction(angle, np.full(angle.shape, self.direction)).inertia
 
     def motor_torque(self, speed):
         """Torque of the motor on the crank, N m; without motor `constant_torque`."""
@@ -482,7 +478,16 @@ class DrivenMachine:
                 rows += kink_functions("size", (found[force],))
             else:
                 rows += kink_functions("larger", (found[force], found[couple] / half))
-        return rows
+        noise = FORCE_ROUNDING * np.max([np.abs(row).max() for row in rows])
+        return [np.where(np.abs(row) > noise, row, 0.0) for row in rows]
+
+
+def load_kinks(scene):
+    """Crank angles over the period of all kinks of loads and laws of cams, and samples of functions without `kinks`."""
+    motion = replace_unchecked(scene, friction=NO_FRICTION).unsolved(np.zeros(1))
+    functions = samples_of_functions(motion)
+    rough = [function.rough_places.ravel() for function in functions]
+    return np.unique(np.concatenate([declared_kinks(motion)[0], *rough])), functions
 
 
 def _distinct_angles(angles, period):

@@ -9,17 +9,16 @@ import warnings
 
 import numpy as np
 
-from ..cycle.load_functions import check_resolution, samples_of_functions, undeclared_functions
-from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces, edges_between, point_count
+from ..cycle.load_functions import check_resolution, undeclared_functions
+from ..cycle.piecewise import TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
-from ..numbers.parameter_tree import replace_unchecked
 
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
 """Rounds of locating kinks of friction."""
-KINK_TOLERANCE = 1e-9
-"""Shift of an edge, relative to the period, that is harmless."""
+KINK_TOLERANCE = 1e-8
+"""Shift of an edge, relative to the period, that is harmless: its square is rounding."""
 MIN_EDGE_DISTANCE = 1e-6
 """Distance of edges from a new one, relative to the period, below which they are removed."""
 MIN_RESOLVED_WIDTH = 1e-6
@@ -28,6 +27,15 @@ MAX_UNRESOLVED = 1e-6
 """Share of a torque in unresolved pieces above which running is refused."""
 MIN_INERTIA_RATIO = 1e-10
 """Smallest inertia, relative to the largest, with which there is a speed."""
+MIN_PAST, MAX_PAST = 3, 4
+"""Periods by which the next ones are predicted."""
+MAX_PERIODS = 8
+"""Periods that are solved together."""
+MAX_PREDICTED_CHANGE = 0.1
+"""Relative change of the energy over these."""
+MAX_PREDICTED_PIECES = 2000
+MAX_ADDED_EDGES = 6
+"""Edges besides those of the first period above which a period begins with the first ones again."""
 NO_ANGLES = np.empty(0)
 
 
@@ -44,8 +52,7 @@ def plain_pieces(driven, speed):
 def resolve_and_hint(driven, speed):
     """`resolved`, with a hint at load functions without `kinks` that change between their samples."""
     found = resolved(driven, speed)
-    running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(np.zeros(1))
-    for text in check_resolution(running, samples_of_functions(running), running.resolution).hints:
+    for text in check_resolution(driven.scene, driven.functions, driven.scene.resolution).hints:
         warnings.warn(HintWarning(driven.scene.mechanism.name, text), stacklevel=3)
     return found
 
@@ -59,9 +66,18 @@ def resolved(driven, speed):
         if split is None:
             break
         pieces, kinks = split
-    pieces = _halve_unresolved(driven, pieces, speed)
-    if np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period) or len(pieces.half) > MAX_PIECES:
-        _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
+
+    def evaluate(angle, _=None):
+        state = driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
+        return np.array([state.torque, state.inertia])
+
+    def rough(pieces, _, values):
+        torque, inertia = values[..., 1:-1]
+        return (pieces.tail(torque) * weights(pieces) > TAIL) | (pieces.tail(inertia) > TAIL)
+
+    pieces, values, unresolved = pieces.resolved(evaluate(pieces.checked), evaluate, rough)
+    if unresolved.any() or np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period):
+        _require_resolved(driven, pieces, values[0, :, 1:-1])
     return pieces, kinks
 
 
@@ -72,42 +88,31 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
     """
     if not rows:
         return None
-    period = driven.period
-    angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]])
+    period, (first, last) = driven.period, pieces.edges[[0, -1]]
+    angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]]).ravel()
     zeros = []
-    for value in map(pieces.with_ends, rows):  # a jump from one piece to the next is no zero
-        at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
-        (low, high), (first, second) = ((part[:, :-1][at], part[:, 1:][at]) for part in (angle, value))
-        zeros.append(low + (high - low) * first / (first - second))
-    first, last = pieces.edges[[0, -1]]
-    fixed = np.concatenate([[first], driven.kinks[(driven.kinks > first) & (driven.kinks < last)], [last]])
+    for value in (pieces.with_ends(row).ravel() for row in rows):  # at an edge its value is there twice
+        at = np.flatnonzero((np.signbit(value[:-1]) != np.signbit(value[1:])) & (value[:-1] != value[1:]))
+        found = angle[at] + (angle[at + 1] - angle[at]) * value[at] / (value[at] - value[at + 1])
+        zeros.append(found[np.diff(found, prepend=-np.inf) > MIN_EDGE_DISTANCE * min(last - first, period)])
+    turns = period * np.arange(math.floor(first / period), math.ceil(last / period))
+    fixed = np.add.outer(turns, np.append(0.0, driven.kinks)).ravel()
+    fixed = np.concatenate([[first], fixed[(fixed > first) & (fixed < last)], [last]])
     kinks = np.concatenate(zeros)
     kinks = kinks[_distance(kinks, fixed) > KINK_TOLERANCE * period]
-    if np.all(_distance(kinks, pieces.edges) <= KINK_TOLERANCE * period):
+    gap = np.abs(kinks[:, None] - pieces.edges)
+    known = gap.min(axis=1) <= KINK_TOLERANCE * period
+    if np.all(known):
         return None
+    kinks = np.where(known, pieces.edges[gap.argmin(axis=1)], kinks)
     other = np.setdiff1d(pieces.edges, before)
-    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * pieces.period]
-    return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), kinks
+    other = other[_distance(other, kinks) > MIN_EDGE_DISTANCE * min(last - first, period)]
+    return Pieces(np.unique(np.concatenate([fixed, other, kinks])), pieces.count), np.unique(kinks)
 
 
 def _distance(angles, others):
     """Distance of each angle to the nearest of others; infinite where there are none."""
     return np.abs(angles[:, None] - others).min(axis=1, initial=np.inf)
-
-
-def _state_at(driven, angle, speed):
-    return driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
-
-
-def _halve_unresolved(driven, pieces, speed):
-    for _ in range(MAX_HALVINGS):
-        state = _state_at(driven, pieces.angle, speed)
-        rough = pieces.tail(state.torque) * weights(pieces) > TAIL
-        marked = (rough | (pieces.tail(state.inertia) > TAIL)) & pieces.can_split
-        if not marked.any() or len(marked) > MAX_PIECES:
-            break
-        pieces = pieces.split(marked)
-    return pieces
 
 
 def weights(pieces):
@@ -141,3 +146,77 @@ def require_inertia(driven, pieces):
             "flywheel, or the crank or the rotor of the motor its inertia",
             crank_angle=angle,
         )
+
+
+class PastPeriods:
+    """Pieces of the period, and the energy and kinks of the last whole periods, which predict those of the next ones.
+
+    `past` has, for each period in order, its pieces, the series of the energy, and the kinks of friction.
+    """
+
+    def __init__(self, driven, pieces, kinks):
+        self.driven, self.first, self.pieces, self.kinks = driven, pieces, pieces, kinks
+        self.past: list[tuple] = []
+        self.change = math.inf
+
+    @property
+    def count(self):
+        """Points of a piece."""
+        return self.first.count
+
+    def periods_ahead(self, energy, reach):
+        """Whole periods within a crank angle that can be predicted: a power of 2."""
+        if len(self.past) < MIN_PAST:
+            return 1
+        most = min(MAX_PERIODS, reach / self.driven.period, MAX_PREDICTED_PIECES / self.pieces.edges.size)
+        if self.change:
+            most = min(most, MAX_PREDICTED_CHANGE * energy / self.change)
+        return 2 ** int(math.log2(max(most, 1.0)))
+
+    def edges_ahead(self, periods):
+        """Edges of the next periods, and the kinks of friction among them."""
+        kept, angles, kinks = np.setdiff1d(self.pieces.edges, self.kinks), [], []
+        same = [own for *_, own in self.past if own.size == self.kinks.size]
+        for number in range(1, periods + 1):
+            own = self.kinks
+            if len(same) == len(self.past) > 1:
+                own = weights_ahead(len(same), number) @ np.array(same)
+            shift = self.driven.direction * (number - 1) * self.driven.period
+            own = own[(own > 0.0) & (own < self.driven.period)]
+            kinks.append(own + shift)
+            angles += [kept + shift, own + shift]
+        return np.unique(np.concatenate(angles)), np.concatenate(kinks)
+
+    def energy_ahead(self, pieces, energy):
+        """Energy at the points of pieces of the next periods, by a polynomial in their number; at first one energy."""
+        period, found = self.driven.period, np.zeros(pieces.angle.shape)
+        turns = np.floor(pieces.middle / period)
+        ahead = np.abs(turns - turns[0 if self.driven.direction > 0.0 else -1]) + 1.0
+        angle = np.clip(pieces.angle - turns[:, None] * period, 0.0, period)
+        for weight, (part, series, _) in zip(weights_ahead(len(self.past), ahead), self.past, strict=True):
+            found += weight[:, None] * part.evaluate(series, angle)
+        return found if found.min() > 0.0 else np.full(found.shape, energy)
+
+    def keep(self, pieces, kinks, energy, change):
+        """Keep whole periods, and the change of the energy in one."""
+        period, self.change = self.driven.period, change
+        turns, series = np.floor(pieces.middle / period), pieces.series(energy)
+        for turn in np.unique(turns)[:: int(self.driven.direction)]:
+            own = np.flatnonzero(turns == turn)
+            part = Pieces(pieces.edges[own[0] : own[-1] + 2] - turn * period, pieces.count)
+            inside = kinks - turn * period
+            self.past.append((part, series[:, own], np.sort(inside[(inside > 0.0) & (inside < period)])))
+        self.past = self.past[-MAX_PAST:]
+        part, _, self.kinks = self.past[-1]
+        self.pieces = part if part.edges.size <= self.first.edges.size + MAX_ADDED_EDGES else self.first
+
+
+def weights_ahead(count, number):
+    """Weights of `count` even values, in rows, in those at places so many numbers further, by a polynomial."""
+    places = np.arange(1.0 - count, 1.0)
+    others = (places[places != own] for own in places)
+    rows = [
+        np.prod(np.subtract.outer(number, other) / (own - other), axis=-1)
+        for own, other in zip(places, others, strict=True)
+    ]
+    return np.array(rows)

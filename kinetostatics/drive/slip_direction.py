@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cycle.kinks import FINE_SAMPLES, sign_changes
 from ..machine.links import Rolling
+from ..machine.loads import TURN
 from ..mechanics.friction import pair_rate
 
 ANGLE_TOLERANCE = 1e-12
@@ -51,7 +52,7 @@ class SlipDirections:
             found = (pair_rate(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 
-        row, angle = (part[0] for part in sign_changes(rates, period, FINE_SAMPLES))
+        row, angle = (part[0] for part in sign_changes(rates, period, FINE_SAMPLES * round(period / TURN)))
         angle = np.where((angle < ANGLE_TOLERANCE) | (angle > period - ANGLE_TOLERANCE), 0.0, angle)
         edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
         signs = {}

@@ -10,16 +10,16 @@ from functools import partial
 
 import numpy as np
 
-from ..cycle.piecewise import MAX_HALVINGS, MAX_PIECES, TAIL, Pieces
+from ..cycle.piecewise import MAX_PIECES, TAIL, Pieces
 from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import scene_problem
-from .energy_equation import MAX_GROWTH_EXPONENT, linearise, resolve_energy, solve_energy
+from .energy_equation import MAX_GROWTH_EXPONENT, linearise, refine, resolve_energy, solve_energy
 from .one_dof import DrivenMachine
-from .resolution import require_inertia, resolve_and_hint, split_at_kinks
+from .resolution import require_inertia, resolve_and_hint
 from .running import Running
 from .stick_slip import March
 
@@ -265,7 +265,7 @@ def _run_under_motor(driven, scene):
     pieces, kinks = resolve_and_hint(driven, start)
     require_inertia(driven, pieces)
 
-    def near(pieces, guess, _=None):
+    def near(pieces, guess, *_):
         return solve_near(driven, pieces, guess) or settle_from_above(driven, pieces, start)
 
     pieces, found = near(pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
@@ -284,17 +284,18 @@ def _run_at_mean_speed(driven, scene):
     speed = abs(scene.crank_speed)
     pieces, kinks = resolve_and_hint(driven, driven.direction * speed)
     require_inertia(driven, pieces)
-    for _ in range(MAX_HALVINGS):
-        energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)
-        rows = driven.kink_rows(pieces.angle, driven.direction / slow, acceleration)
-        moved = split_at_kinks(driven, pieces, rows, kinks)
-        if moved is not None:
-            pieces, kinks = moved
-            continue
-        marked = ((pieces.tail(energy) > TAIL) | (pieces.tail(slow) > TAIL)) & pieces.can_split
-        if not marked.any():
-            break
-        pieces = pieces.split(marked)
+
+    def rows(pieces, found):
+        _, slow, acceleration = found
+        return driven.kink_rows(pieces.angle, driven.direction / slow, acceleration)
+
+    def unresolved(pieces, found):
+        return np.any([pieces.tail(part) > TAIL for part in found[:2]], axis=0) & pieces.can_split
+
+    def solve(pieces, *_):
+        return pieces, _under_constant_torque(driven, pieces, speed)
+
+    pieces, (energy, *_), _ = refine(driven, *solve(pieces), kinks, rows, unresolved, solve)
     return pieces, energy
 
 

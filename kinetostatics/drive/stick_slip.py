@@ -18,7 +18,7 @@ from ..errors import DriveError, KinetostaticsError
 from ..numbers.brackets import find_roots
 from .energy_equation import StandstillError, resolve_energy, solve_energy
 from .one_dof import ANGLE_AHEAD
-from .resolution import MIN_INERTIA_RATIO, plain_pieces, resolved
+from .resolution import MAX_PERIODS, MIN_INERTIA_RATIO, PastPeriods, plain_pieces, resolved
 
 MAX_PARTS = 10_000
 """Parts of the period, most of them whole, after which a motion is refused."""
@@ -32,8 +32,6 @@ ROUNDING = 1e-15
 """Relative rounding of crank angles and torques: noise of the net torque on steep ramps and near an equilibrium."""
 MAX_REACH_GROWTH = 8.0
 """Ratio of the crank angles that are tried one after the other."""
-MAX_ADDED_EDGES = 6
-"""Edges besides those of the first period above which a period begins with the first ones again."""
 MAX_EDGES = 200
 """Edges of a part, besides 8 times those at first, above which a shorter part is tried."""
 MIN_SPEED = 1e-3
@@ -175,8 +173,7 @@ class March:
         self.energy = 0.5 * float(driven.inertia(np.array([self.inside]))[0]) * speed * speed
         self.fastest = max(abs(speed), abs(target or 0.0), MIN_SPEED)
         self.stretches: list[Stretch] = []
-        self.known: dict[float, tuple] = {}
-        self.first: dict[float, Pieces] = {}
+        self.known: dict[float, PastPeriods] = {}
         self.turned: list[tuple[Pieces, Any]] = []
         self.problem: Any = None
         self.parts = self.passed = 0
@@ -199,7 +196,7 @@ class March:
                         raise self.problem
                     return "lost", None
                 continue
-            reach = min(MAX_REACH_GROWTH * reach, self.driven.period)
+            reach = min(MAX_REACH_GROWTH * reach, MAX_PERIODS * self.driven.period)
             stretch, far, self.energy = found
             self.left -= abs(far - self.inside)
             self.inside = far
@@ -244,11 +241,15 @@ class March:
         """Next stretch within a crank angle, with the angle and energy after it, or None; and the angle tried."""
         direction, period = machine.direction, machine.period
         self._count()
-        if direction * (self.inside - 0.5 * period) > 0.5 * period - ANGLE_TOLERANCE:
-            self.shift += direction * period
-            self.inside = 0.0 if direction > 0.0 else period
-        base, kinks, guess = self._pieces(machine)
-        ahead = base.edges[:: int(direction)]
+        start = 0.0 if direction > 0.0 else period
+        turned, gone = divmod(direction * (self.inside - start) + ANGLE_TOLERANCE, period)
+        if turned > 0.0:
+            self.shift += direction * turned * period
+            self.inside = start + direction * (gone if gone > 2.0 * ANGLE_TOLERANCE else 0.0)
+        known = self._known(machine)
+        periods = known.periods_ahead(self.energy, reach) if self.inside == (0.0 if direction > 0.0 else period) else 1
+        edges, kinks = known.edges_ahead(periods)
+        ahead = edges[:: int(direction)]
         ahead = ahead[direction * (ahead - self.inside) > ANGLE_TOLERANCE]
         room = abs(ahead[0] - self.inside)
         reach = min(reach, self._within_time(machine), abs(ahead[-1] - self.inside) if self.energy else room)
@@ -256,18 +257,23 @@ class March:
         near = np.abs(ahead - self.inside - direction * reach)
         far = float(ahead[near.argmin()] if near.min() < ANGLE_TOLERANCE else self.inside + direction * reach)
         if self.energy == 0.0:
-            found = self._attempt(leave_rest, machine, self.inside, abs(far - self.inside), base.count)
+            found = self._attempt(leave_rest, machine, self.inside, abs(far - self.inside), known.count)
             return found and (found[0], far, found[1]), reach
+        if self._stops_within(machine, 0.5 * min(room, reach)):
+            found = self._attempt(come_to_rest, machine, self.inside, self.energy, room, known.count)
+            if found is not None:
+                return (found[0], self.inside + direction * found[1], 0.0), reach
         inner = ahead[direction * (far - ahead) > 0.0]
-        part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), base.count)
-        whole = part.edges.size == base.edges.size and reach == period
-        found = self._attempt(pass_part, machine, part, kinks, self.energy, guess if whole else None)
+        part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), known.count)
+        whole = part.edges.size == edges.size and far == ahead[-1]
+        guess = known.energy_ahead(part, self.energy) if whole else np.full(part.angle.shape, self.energy)
+        found = self._attempt(pass_part, machine, part, kinks, self.energy, guess)
         if found is not None:
             stretch, energy, solved = found
             if self.left < math.inf:
-                self.turned.append((solved[0], solved[2]))
+                self.turned.append((solved[0], solved[0].series(solved[2])))
             if whole:
-                self._keep(machine, *solved)
+                known.keep(*solved, abs(energy - self.energy) / periods)
             return (stretch, far, energy), reach
         stops = reach
         if isinstance(self.problem, StandstillError):
@@ -276,8 +282,14 @@ class March:
         before = before[before < stops]
         if before.size:  # the next attempt ends at the last edge before the standstill, or at half the angle
             return None, 2.0 * before[-1] if isinstance(self.problem, StandstillError) else reach
-        found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, base.count)
+        found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, known.count)
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
+
+    def _stops_within(self, machine, reach):
+        """Whether the torque just ahead takes the energy within a crank angle."""
+        place = self.inside + machine.direction * ANGLE_AHEAD
+        net = self._attempt(machine.torque_at, place, machine.direction * self.speed)
+        return net is not None and -machine.direction * net * reach > self.energy
 
     def _attempt(self, function, *parts):
         """Result of a function, or None where it has none or fails; `problem` is its error."""
@@ -298,20 +310,13 @@ class March:
                 crank_angle=self.inside + self.shift,
             )
 
-    def _pieces(self, machine):
-        """Pieces of the period, kinks of friction among their edges, and a function that guesses the energy."""
+    def _known(self, machine):
+        """`PastPeriods` of a machine."""
         if machine.direction not in self.known:
             speed = machine.direction * self.fastest
-            found = self._attempt(resolved, machine, speed)
-            self.known[machine.direction] = *(found or (plain_pieces(machine, speed), np.empty(0))), []
+            found = self._attempt(resolved, machine, speed) or (plain_pieces(machine, speed), np.empty(0))
+            self.known[machine.direction] = PastPeriods(machine, *found)
         return self.known[machine.direction]
-
-    def _keep(self, machine, pieces, kinks, series):
-        """Keep the pieces of a whole period for the next one, unless they have become many."""
-        base, _, before = self.known[machine.direction]
-        first = self.first.setdefault(machine.direction, base)
-        kept = pieces if pieces.edges.size <= first.edges.size + MAX_ADDED_EDGES else first
-        self.known[machine.direction] = kept, kinks, [*before[-1:], (pieces, series)]
 
     def _within_time(self, machine):
         """Crank angle within which the motion stays until its end time, about."""
@@ -343,17 +348,11 @@ class March:
         return self.passed + piece, float(found[0])
 
 
-def pass_part(driven, pieces, kinks, start, before):
+def pass_part(driven, pieces, kinks, start, guess):
     """Stretch over pieces from an energy at the start, the energy after it, and what to keep of it; or None.
 
-    `before` are the pieces and series of the energy of the last periods, the guess; else the energy at the start is.
+    `guess` is the energy at the points, about.
     """
-    guess = np.full(pieces.angle.shape, start)
-    if before:
-        guess, *older = (part.evaluate(series, pieces.angle) for part, series in before[::-1])
-        guess = guess + (guess - older[0] if older else 0.0)
-        guess = guess if guess.min() > 0.0 else np.full(guess.shape, start)
-
     most = 8 * pieces.edges.size + MAX_EDGES
 
     def again(finer, guess, near=None):
@@ -383,7 +382,7 @@ def pass_part(driven, pieces, kinks, start, before):
         np.abs(linear.speed[::way, ::way]),
         driven.direction * half * friction[::way, ::way],
     )
-    return stretch, far, (pieces, kinks, pieces.series(energy))
+    return stretch, far, (pieces, kinks, energy)
 
 
 def leave_rest(driven, angle, length, count):
@@ -394,7 +393,8 @@ def leave_rest(driven, angle, length, count):
 
 def come_to_rest(driven, angle, energy, room, count):
     """Stretch from a crank angle and energy to a standstill within `room`, and the angle to it; or None."""
-    net = driven.torque_at(angle, driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0]))
+    speed = driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0])
+    net = driven.torque_at(angle + driven.direction * ANGLE_AHEAD, speed)  # loads may jump here
     length = -energy / (driven.direction * net) if driven.direction * net < 0.0 else room
     found = _beside_rest(driven, angle, min(length, room), energy, count)
     return found and (found[0], found[1]) if found and found[1] <= room else None

@@ -6,9 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..cycle.kinks import kinks_and_jumps
 from ..cycle.load_functions import resolution_note
-from ..machine.friction import NO_FRICTION
 from ..machine.loads import TURN
 from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
@@ -18,7 +16,7 @@ from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
 from .motor import Motor
-from .one_dof import DrivenMachine
+from .one_dof import DrivenMachine, load_kinks
 
 TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -160,12 +158,10 @@ class Trajectory:
     @property
     def _kink_times(self):
         """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
-        free = replace_unchecked(self.scene, friction=NO_FRICTION).unsolved(np.zeros(1))
-        free = replace_unchecked(free, silent=True)
-        kinks, angle = kinks_and_jumps(free)[0], self._dense(self._ends)[0]
+        (kinks, _), angle, period = load_kinks(self.scene), self._dense(self._ends)[0], self.scene.period
         low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
-        turns = np.arange(np.floor(low.min() / free.period), np.floor(high.max() / free.period) + 1.0)
-        kinks = (kinks + free.period * turns[:, None]).ravel()
+        turns = np.arange(np.floor(low.min() / period), np.floor(high.max() / period) + 1.0)
+        kinks = (kinks + period * turns[:, None]).ravel()
         first, last = np.searchsorted(kinks, low + KINK_TOLERANCE), np.searchsorted(kinks, high - KINK_TOLERANCE)
         step = np.repeat(np.arange(low.size), np.maximum(last - first, 0))
         passed = kinks[first[step] + np.arange(step.size) - np.searchsorted(step, step)]

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.drive import resolution
 from kinetostatics.drive.one_dof import DrivenMachine
 from kinetostatics.drive.savings import running_table
 from kinetostatics.drive.stick_slip import integrate_motion, sense_from_rest
+from support.case_files import shipped
 from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 PENDULUM = ks.Scene(
@@ -237,3 +239,22 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
     motion = ks.drive.start(scene, SMALL, 3.0, until=0.5)
     assert motion.energy_drift < 1e-12 * motion.kinetic_energy[-1]
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_periods_solved_together_are_those_one_by_one(monkeypatch, way):
+    motion = ks.drive.coast(FRICTION_PUMP, 2.0, 0.3, way * 30.0, until=4.0)
+    monkeypatch.setattr(resolution, "MAX_PERIODS", 1)
+    alone = ks.drive.coast(FRICTION_PUMP, 2.0, 0.3, way * 30.0, until=4.0)
+    assert abs(motion.crank_angle[-1] - 0.3) > 10.0 * 2.0 * math.pi
+    assert motion.crank_angle[-1] == pytest.approx(alone.crank_angle[-1], rel=1e-13)
+    assert motion.speed[-1] == pytest.approx(alone.speed[-1], rel=1e-12)
+
+
+@pytest.mark.slow
+def test_forces_that_vanish_have_no_kinks():
+    """Nothing but rounding acts in the slot of a crank without mass or flywheel."""
+    scene = shipped("sawframe_2r63_friction").variants["cam-cosine-rolling"].scene
+    motion = ks.drive.coast(scene, 0.0, 0.0, 33.5, "standstill")
+    assert motion.time.size < 1000
+    assert motion.energy_drift < 1e-12 * motion.kinetic_energy.max()
