@@ -295,7 +295,8 @@ def _run_at_mean_speed(driven, scene):
     def solve(pieces, *_):
         return pieces, _under_constant_torque(driven, pieces, speed)
 
-    pieces, (energy, *_), _ = refine(driven, *solve(pieces), kinks, rows, unresolved, solve)
+    found = _under_constant_torque(driven, pieces, speed)
+    pieces, (energy, *_), _ = refine(driven, pieces, found, kinks, rows, unresolved, solve)
     return pieces, energy
 
 
