@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.loads import TURN, refusals
 from ..mechanics import assembly, energy_contact
+from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .kinks import ANGLE_TOLERANCE, FINE_SAMPLES, kinks_and_jumps
@@ -86,6 +87,8 @@ class Turn:
         pieces = Pieces.between(np.mod(np.concatenate([kinks, graded]), period)[None], period, MAX_WIDTH)
         angle = pieces.checked.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
+        if first.friction.acting:  # the angles of the solution may need fewer passes
+            first = solve_friction(first, checks_of)
         if problem := repeating_problem(solution):
             raise ParameterError(problem)
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))

@@ -11,7 +11,7 @@ import numpy as np
 from .piecewise import rule
 from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 
-MAX_OUTPUT_ERROR = 1e-8
+MAX_OUTPUT_ERROR = 1e-9
 """Largest error of an output relative to the largest value of its quantity."""
 TYPICAL_UNCERTAIN_PIECES = 8
 """Typical number of uncertain pieces that share the error of an integral."""

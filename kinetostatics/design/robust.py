@@ -18,6 +18,7 @@ from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks, spreads
+from ..numbers.brackets import GOLDEN_SECTION, find_minima
 from ..numbers.units import base_factor, factor
 from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_turn
 from ..solution.program import compile as compiled
@@ -135,9 +136,14 @@ ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 128
 SPEED = "crank_speed"
 MAX_CACHED_BLOCKS = 64
 """Blocks of samples whose curves of the reference are kept: a search asks for them again with each design."""
-GOLDEN_STEPS = 30
-"""Golden-section steps of the trimmed speed: to a millionth of the range."""
-GOLDEN_RATIO = (np.sqrt(5.0) - 1.0) / 2.0
+NEGLIGIBLE_WEIGHT = 1e-12
+"""Weight of a sample in the quantile, relative to the largest, below which its derivatives do not count."""
+SPEED_TOLERANCE = 1e-6
+"""Error of the square of a trimmed speed, relative to twice its range."""
+SHIFT = 2.0
+"""Added to shares, as tolerances of minima are relative to their arguments."""
+TRIMMED_ROUGHNESS = 1e-6
+"""Relative roughness of a trimmed quantile: the sign changes of a torque of little size lie between crank angles."""
 
 
 class SampledOutput:
@@ -160,6 +166,7 @@ class SampledOutput:
         self._set_output(output)
         self._reference_cache: dict = {}
         self.weights = harrell_davis_weights(spread.quantile, self.count)
+        self.roughness = TRIMMED_ROUGHNESS if spread.trim else 0.0
         if spread.trim:
             self._require_trim()
 
@@ -190,97 +197,122 @@ class SampledOutput:
 
     def __call__(self, values):
         """The quantile, and its derivatives (n,) by the numbers that vary."""
+        nothing = np.nan, np.full(values.size, np.nan)
         try:
-            found, slopes = self._values_and_derivatives(values)
+            design, changes = self._design(values)
+            found, own, numbers = self._evaluated(design)
+            order = np.argsort(found)
+            quantile = self.weights @ found[order]
+            if np.isnan(quantile):
+                return nothing
+            counted = self.weights > NEGLIGIBLE_WEIGHT * self.weights.max()
+            samples = order[counted]
+            slopes = self._derivatives(numbers, samples, changes)
         except KinetostaticsError:  # a machine within the spread that cannot be built
-            return np.nan, np.full(values.size, np.nan)
-        order = np.argsort(found)
-        return self.weights @ found[order], self.weights @ slopes[order]
+            return nothing
+        if self.output.ratio:
+            slopes *= -(found / own)[samples, None]
+        return quantile, self.weights[counted] @ slopes
 
     def outputs(self, values):
         """The output of each sample, (samples,)."""
-        return self._values_and_derivatives(values)[0]
+        return self._evaluated(self._design(values)[0])[0]
 
-    def _values_and_derivatives(self, values):
-        """The output of each sample, (samples,), and its derivatives (samples, n)."""
-        design, changes = self._design_numbers(values) if self._design_numbers else ({}, np.zeros((0, 0)))
-        padded, parts = np.zeros((len(self.paths), 1, changes.shape[1])), []
-        padded[: len(changes), 0] = changes
-        for start in range(0, self.count, SAMPLES_PER_BLOCK):
-            numbers, rises = self._numbers(design, slice(start, start + SAMPLES_PER_BLOCK))
-            parts.append(self._block_outputs(numbers, rises[:, :, None] * padded))
-        return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
+    def _design(self, values):
+        """The design's numbers by path, and their derivatives (paths, n)."""
+        return self._design_numbers(values) if self._design_numbers else ({}, np.zeros((0, 0)))
 
-    def _numbers(self, design, part):
-        """Numbers (samples, 1) of some samples by path, and their derivatives (paths, samples) by the design's own."""
-        numbers, rises = {}, []
+    def _evaluated(self, design):
+        """The output of each sample, the same without the reference, both (samples,), and its numbers (samples, 1)."""
+        starts = range(0, self.count, SAMPLES_PER_BLOCK)
+        blocks = [self._block(self._numbers(design, slice(start, start + SAMPLES_PER_BLOCK))) for start in starts]
+        found, own, parts = zip(*blocks, strict=True)
+        numbers = {path: np.concatenate([part[path] for part in parts]) for path in self.paths}
+        return np.concatenate(found), np.concatenate(own), numbers
+
+    def _numbers(self, design, samples):
+        """Numbers (samples, 1) of some samples by path."""
+        numbers = {}
         for path in self.paths:
             value = design.get(path, self._nominal[path])
-            deviation = self._deviations.get(path, np.zeros(self.count))[part]
-            share = path in self._relative_paths
-            rises.append(1.0 + deviation if share else np.ones(deviation.size))
-            numbers[path] = (value * (1.0 + deviation) if share else value + deviation)[:, None]
-        return numbers, np.array(rises)
+            deviation = self._deviations.get(path, np.zeros(self.count))[samples, None]
+            numbers[path] = value * (1.0 + deviation) if path in self._relative_paths else value + deviation
+        return numbers
 
-    def _block_outputs(self, numbers, changes):
-        """The output of some samples, (samples,), and its derivatives (samples, n)."""
+    def _block(self, numbers):
+        """The same of some samples, whose crank speed becomes the best within the trim."""
+        if self.spread.trim:
+            return self._at_best_speeds(numbers)
         if self._has_kinks:
-            curves: Any = list(self._piecewise_curves(numbers, changes))
-            above = self._reference_outputs(numbers)
+            found = self._on_pieces(scene_of(self.problem.source), numbers)
+            own = np.broadcast_to(found, len(next(iter(numbers.values()))))
         else:
-            if self.spread.trim:
-                *pair, above = self._best_speed_curves(numbers, changes)
-            else:
-                pair, above = self._curves(numbers, changes), self._reference_outputs(numbers)
-            curves = [measures.Curve(values, slopes, self.turns) for values, slopes in zip(*pair, strict=True)]
-        found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
-        for place, curve in enumerate(curves):
-            value, row = measures.reduced(self.output.reduction, curve)
-            if self.output.ratio:
-                value, row = above[place] / value, -above[place] / value**2 * row
-            found[place], rows[place] = value, row
-        return found, rows
+            own = self._reduced(self._values(numbers))
+        return self._reference_outputs(numbers) / own if self.output.ratio else own, own, numbers
+
+    def _on_pieces(self, scene, numbers):
+        """Outputs (1 or samples,) of a scene with kinks, without the reference, with other numbers."""
+        plain = (without_ratio(self.output),)
+        return PiecewiseTurns.of(scene.varied(numbers), plain, START_ANGLES * self.turns).estimated(plain)[0, 0]
+
+    def _derivatives(self, numbers, samples, changes):
+        """Derivatives (samples, n) of the outputs of some samples, without the reference."""
+        if not self._design_numbers:
+            return np.zeros((samples.size, 0))
+        rises = np.ones((len(changes), samples.size))
+        for place, path in enumerate(self._design_numbers.paths):
+            if path in self._relative_paths:
+                rises[place] += self._deviations[path][samples]
+        changes = rises[:, :, None] * changes[:, None]
+        numbers = {path: values[samples] for path, values in numbers.items()}
+        if self._has_kinks:
+            curves = self._piecewise_curves(numbers, changes)
+        else:
+            pairs = zip(*self._curves(numbers, changes), strict=True)
+            curves = (measures.Curve(values, slopes, self.turns) for values, slopes in pairs)
+        return np.array([measures.reduced(self.output.reduction, curve)[1] for curve in curves])
 
     def _piecewise_curves(self, numbers, changes):
         """Yield the curve of each of some samples, on pieces between its own kinks."""
         output = without_ratio(self.output)
         turns = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
-        for samples, pieces, known in turns.refined((output,)):
+        for samples, pieces, _ in turns.refined((output,)):
             own = samples[pieces.owner]
-            if self._design_numbers:
-                some = {path: values[own] for path, values in numbers.items()}
-                values, slopes = self._curves(some, changes[:, own], pieces.angle)
-            else:
-                (((_, squared), rows),) = known.items()
-                values = np.sqrt(rows[:, 1:-1]) if squared else rows[:, 1:-1]
-                slopes = np.zeros((len(values), 0, pieces.count))
+            some = {path: values[own] for path, values in numbers.items()}
+            values, slopes = self._curves(some, changes[:, own], pieces.angle)
             for sample in range(samples.size):
                 alone, mask = pieces.some(np.arange(samples.size) == sample)
                 yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), alone, bool(self._vector))
 
-    def _curves(self, numbers, changes, angle=None):
-        """Values (samples, N) and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N)."""
-        quantity, angle = self.output.quantity, self.angle if angle is None else angle
+    def _values(self, numbers):
+        """Values (samples, N), of vectors magnitudes, at the crank angles of all samples."""
+        values = self._components(numbers, self.angle)
+        return np.hypot(*values) if self._vector else values
+
+    def _components(self, numbers, angle):
         shape = (*self._vector, len(next(iter(numbers.values()))), angle.shape[-1])
-        values, slopes = np.broadcast_to(self.program(angle, numbers)[quantity], shape), np.zeros((0, *shape))
-        if self._design_numbers:
-            found = self.program.derivatives(angle, self._design_numbers.paths, numbers)[quantity]
-            by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
-            slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
+        return np.broadcast_to(self.program(angle, numbers)[self.output.quantity], shape)
+
+    def _curves(self, numbers, changes, angle=None):
+        """Values and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N).
+
+        `changes` (paths, samples, n) are the derivatives of the numbers.
+        """
+        angle = self.angle if angle is None else angle
+        values = self._components(numbers, angle)
+        found = self.program.derivatives(angle, self._design_numbers.paths, numbers)[self.output.quantity]
+        by_path = np.array([np.broadcast_to(part, values.shape) for part in found.values()])
+        slopes = np.einsum("psn,p...sa->n...sa", changes, by_path, optimize=True)
         if self._vector:
             values, slopes = measures.size(values, slopes)
         return values, np.moveaxis(slopes, 0, 1)
 
     def _reference_outputs(self, numbers):
-        """The reference's output for each sample, (samples,); None unless the output is a ratio."""
-        if not self.output.ratio:
-            return None
-        reference = scene_of(self.problem.reference).varied(self._shared_numbers(numbers))
-        plain = without_ratio(self.output)
-        if not has_kinks(unchecked_turn(reference, 1), plain.quantity):
-            return self._reduced(self._reference_curves(numbers))
-        found = PiecewiseTurns.of(reference, (plain,), START_ANGLES * self.turns).estimated((plain,))[0, 0]
-        return np.broadcast_to(found, len(next(iter(numbers.values()))))
+        """The reference's output, (1 or samples,)."""
+        reference, shared = scene_of(self.problem.reference), self._shared_numbers(numbers)
+        if has_kinks(unchecked_turn(reference.varied(shared), 1), self.output.quantity):
+            return self._on_pieces(reference, shared)
+        return self._reduced(self._reference_curves(numbers))
 
     def _reduced(self, curves):
         """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
@@ -302,25 +334,24 @@ class SampledOutput:
         known = scene_of(self.problem.reference).units
         return {path: numbers[path] for path in numbers if path in (*self.spread.spreads, SPEED) and path in known}
 
-    def _best_speed_curves(self, numbers, changes):
-        """Curves, their derivatives, and the reference's output, at the best speed of each sample within the trim."""
-        slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
-        (low, low_slopes), (high, high_slopes) = (self._curves(at, changes) for at in (slow, fast))
-        below, above = (self._reference_curves(at) if self.output.ratio else None for at in (slow, fast))
+    def _at_best_speeds(self, numbers):
+        """As `_block`, at the best speed of each sample within the trim; values are linear in the squared speed."""
+        squares = (1.0 - self.spread.trim) ** 2, (1.0 + self.spread.trim) ** 2
+        ends = [self._at_speed(numbers, np.sqrt(square)) for square in squares]
+        sides = [self._values, self._reference_curves][: 1 + self.output.ratio]
+        curves = [(low, high - low) for low, high in ([side(at) for at in ends] for side in sides)]
 
-        def outputs(share):
-            found = self._reduced(_interpolate(low, high, share[:, None]))
-            if self.output.ratio:
-                found = self._reduced(_interpolate(below, above, share[:, None])) / found
-            return self.sign * found
+        def outputs(share, some=slice(None)):
+            own, *above = (self._reduced(low[some] + share[:, None] * rise[some]) for low, rise in curves)
+            return above[0] / own if above else own, own
 
-        share = _golden_section(outputs, len(low))[:, None]
-        compared = self._reduced(_interpolate(below, above, share)) if self.output.ratio else None
-        return _interpolate(low, high, share), _interpolate(low_slopes, high_slopes, share[..., None]), compared
+        share = _best_shares(lambda *at: self.sign * outputs(*at)[0], len(numbers[SPEED]))
+        speeds = self._at_speed(numbers, np.sqrt(_between(*squares, share[:, None])))
+        return *outputs(share), speeds
 
     def _at_speed(self, numbers, share):
         """Numbers of samples with the crank speed at a multiple of the design's."""
-        return numbers | {SPEED: np.full_like(numbers[SPEED], self._nominal[SPEED] * share)}
+        return numbers | {SPEED: np.broadcast_to(self._nominal[SPEED] * share, numbers[SPEED].shape)}
 
     def _require_trim(self):
         """Refuse trim for outputs that are not linear in the squared speed; three speeds test it."""
@@ -332,12 +363,11 @@ class SampledOutput:
                 f"trim takes outputs without kinks, but loads, friction or a cam's law put some into {self.output}"
             )
         else:
-            numbers, _ = self._numbers({}, slice(0, 1))
-            changes = np.zeros((len(self.paths), 1, len(self.problem.names)))
+            numbers = self._numbers({}, slice(0, 1))
             squares = np.array([(1.0 - self.spread.trim) ** 2, 1.0, (1.0 + self.spread.trim) ** 2])
-            low, middle, high = (self._curves(self._at_speed(numbers, share), changes)[0] for share in np.sqrt(squares))
+            low, middle, high = (self._values(self._at_speed(numbers, share)) for share in np.sqrt(squares))
             share = (1.0 - squares[0]) / (squares[2] - squares[0])
-            if not np.allclose(middle, _interpolate(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
+            if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
                 problem = (
                     "trim takes outputs of constant parts and others that grow as the speed squared; "
                     f"{self.output} does not, as with friction or dampers"
@@ -414,21 +444,22 @@ def _fixed_scene_output(scene, reference, output, spread, sign, samples=None):
     return SampledOutput(bare, output, spread, sign, samples)
 
 
-def _interpolate(one, other, share):
-    """Values between those at two speeds, linear in the squared speed."""
-    return one * (1.0 - share) + other * share
+def _between(one, other, share):
+    """Values between those at two squared speeds."""
+    return one + share * (other - one)
 
 
-def _golden_section(function, count):
-    """Minimiser in [0, 1] of each of several functions, by golden section."""
-    low, high = np.zeros(count), np.ones(count)
-    inner, outer = high - GOLDEN_RATIO, low + GOLDEN_RATIO
-    at_inner, at_outer = function(inner), function(outer)
-    for _ in range(GOLDEN_STEPS):
-        left = at_inner < at_outer
-        high, low = np.where(left, outer, high), np.where(left, low, inner)
-        new = np.where(left, high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low))
-        value = function(new)
-        inner, outer = np.where(left, new, outer), np.where(left, inner, new)
-        at_inner, at_outer = np.where(left, value, at_outer), np.where(left, at_inner, value)
-    return np.where(at_inner < at_outer, inner, outer)
+def _best_shares(function, count):
+    """Minimiser in [0, 1] of each of several functions (K,) of arguments and their numbers, with one minimum there.
+
+    The functions are reflected at 0 and 1, so that a minimum there too lies inside a bracket.
+    """
+
+    def reflected(place, number):
+        return function(1.0 - np.abs(1.0 - np.abs(place - SHIFT)), number)
+
+    places = SHIFT + np.array([-GOLDEN_SECTION, 0.0, GOLDEN_SECTION, 1.0, 2.0 - GOLDEN_SECTION])
+    every = np.arange(count)
+    lowest = np.argmin([reflected(np.full(count, place), every) for place in places[1:-1]], axis=0)
+    found = find_minima(reflected, places[lowest + np.arange(3)[:, None]], SPEED_TOLERANCE)
+    return 1.0 - np.abs(1.0 - np.abs(found - SHIFT))

@@ -37,6 +37,11 @@ class Goal(NamedTuple):
     output: Any
     sign: float = 1.0
 
+    @property
+    def roughness(self):
+        """Relative change of the goal that says nothing."""
+        return getattr(self.output, "roughness", 0.0)
+
 
 class SearchEnd(NamedTuple):
     """End of a search: numbers that vary, least value of the goal, excess over the worst limit relative to its size."""
@@ -50,13 +55,13 @@ def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
     """Local optimum from a start."""
     start = np.clip(start, problem.low, problem.high)
     start = within_tables(problem, [limit for limit in limits if limit.span is not None], start)
-    best = _round(problem, goal, limits, start)
+    best, tolerance = _round(problem, goal, limits, start), max(GOAL_TOLERANCE, goal.roughness)
     for _ in range(rounds - 1):
         found = _round(problem, goal, limits, best.values, LATER_TOLERANCE)
         before, best = best, better(best, found)
         if best is before or best.missed > max(LIMIT_TOLERANCE, 0.9 * before.missed):
             break
-        if before.missed <= LIMIT_TOLERANCE and before.goal - best.goal <= GOAL_TOLERANCE * max(abs(best.goal), 1e-300):
+        if before.missed <= LIMIT_TOLERANCE and before.goal - best.goal <= tolerance * max(abs(best.goal), 1e-300):
             break
     return best
 
@@ -88,7 +93,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
         constraints=constraints,
         method="SLSQP",
         callback=problem.stepped,
-        options={"maxiter": MAX_STEPS, "ftol": change},
+        options={"maxiter": MAX_STEPS, "ftol": max(change, goal.roughness)},
     )
     values = restore_limits(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
     reached, share = turned.reached(values), 1.0

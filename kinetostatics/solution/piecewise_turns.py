@@ -21,7 +21,7 @@ from ..mechanics.quantities import component_sizes, quantity
 from ..numbers.parameter_tree import Leaves, flatten, unflatten
 from .scene import unchecked_solution
 
-POINTS = 10
+POINTS = 12
 """Points of a piece."""
 START_ANGLES = 192
 """Crank angles of a turn at the start; enough for most outputs of a turn split at its kinks."""

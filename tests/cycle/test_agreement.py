@@ -13,10 +13,7 @@ TORQUE = "balancing_torque"
 ENDS = ("smallest", "largest")
 MEANS = ("mean", "mean_absolute", "swing")
 AGREEMENT = 1e-9
-"""Of extremes and their like, relative to the largest value of the quantity."""
-AGREEMENTS = {"sweep": 1e-8, "tolerances": 1e-8, "flywheel": 1e-8}
-"""Parts that agree less: sweeps resolve outputs to that, a swing relative to the largest torque; the energy of a
-flywheel relative to itself, where an undeclared function jumps."""
+"""Relative to the largest value of the quantity; of the energy of a flywheel relative to itself."""
 
 
 def figures(pulsed, names, outputs, flywheel):
@@ -59,7 +56,7 @@ def disagreements(seed, flywheel=False, count=40_000):
     for part, output, number in figures(pulsed, names, list(true), flywheel):
         size = true[output] if part == "flywheel" else sizes[output.split()[1]]
         error = (number - true[output]) / size
-        if not abs(error) <= AGREEMENTS.get(part, AGREEMENT):
+        if not abs(error) <= AGREEMENT:
             wrong[part, output] = float(error)
     return wrong
 

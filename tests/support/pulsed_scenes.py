@@ -156,8 +156,8 @@ class Dense:
         between = edges[:-1] + np.linspace(0.0, 1.0, near.size)[:, None] * np.diff(edges)
         parts = [np.linspace(0.0, period, half, endpoint=False), between, edges[:, None] - near, edges[:, None] + near]
         self.angle = np.unique(np.mod(np.concatenate([part.ravel() for part in parts]), period))
-        self.solution, self.edges, self.period = solution, edges, period
-        self.at = solution.at(self.angle)
+        self.at = self.solution = solution.at(self.angle).check()  # with as many passes over friction as these need
+        self.edges, self.period = edges, period
 
     def largest(self, function):
         """Largest value of a function of a solution, closed in on."""
