@@ -178,9 +178,9 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--variant",
             "NAME",
-            "whose parameters vary (the first besides the reference, which is what ratios refer to)",
+            "whose parameters vary (the first besides the reference of the case)",
         ),
-        _option("--reference", "NAME", "what ratios refer to (the reference)"),
+        _option("--reference", "NAME", "what ratios refer to (the reference of the variant)"),
         _option("--sample", "N", "N designs of a Latin hypercube in place of a grid", _designs),
         _option("--angles", "N", "crank angles over the period, 12 at least (360)", _angles, default=360),
         _option("--workers", "N", "processes (this one, on all its cores)", _count),
