@@ -156,7 +156,7 @@ def principal_points(mechanism, loads=()):
     """
     checks.require("principal_points", checks.mechanism("mechanism", mechanism))
     links = mechanism.links.items()
-    springs = {name: 0.5 * mass for name, mass in spring_masses(loads).items()}
+    springs = {name: mass.shaking for name, mass in spring_masses(loads).items()}
     masses = [(name, link.mass) for name, link in links] + [*springs.items()]
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}
