@@ -96,8 +96,7 @@ class Subject:
 
     def reference_of(self, name):
         """The machine with which the one of this name is compared."""
-        named = None if self.case is None else self.case.reference_of(name)
-        return self.machines.get(named, self.reference)
+        return self.reference if self.case is None else self.machines.get(self.case.reference_of(name), self.reference)
 
     @property
     def comparisons(self):
