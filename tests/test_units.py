@@ -343,6 +343,7 @@ SLOW = {
     "plots.free_body": (ks.plots.free_body, {"angle": (40.0, "deg")}, {"solution": SOLVED, "link": "coupler"}),
     "plots.animation": (ks.plots.animation, {"interval": (40.0, "ms")}, {"solution": SOLVED}),
     "plots.hodograph": (ks.plots.hodograph, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
+    "plots.hodographs": (ks.plots.hodographs, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
     "plots.cam_curvature": (ks.plots.cam_curvature, {"roller_radius": (0.0625, "m")}, {"cams": CAM}),
     "plots.cam_pressure_angle": (ks.plots.cam_pressure_angle, {"largest": (0.5, "rad")}, {"cams": CAM}),
     "plots.cam_profile": (
@@ -435,7 +436,7 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device"),
+    *("precision", "device", "reaction"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",

@@ -109,7 +109,15 @@ class Case:
         return found
 
     def names_of(self, variant=None, reference=None):
-        """Names of the variant that varies, the first besides the reference unless told, and of its reference."""
+        """Names of the variant that varies, the first besides the reference unless told, and of its reference.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> case = ks.load_case("sawframe_2r63")
+        >>> case.names_of(), case.names_of("upright-cosine")
+        (('cam-circle', 'plain'), ('upright-cosine', 'upright-plain'))
+        """
         against = reference or self.reference
         variant = variant or next((name for name in self.variants if name != against), against)
         return variant, reference or self.reference_of(variant)

@@ -79,7 +79,7 @@ class Comparison:
         return _ratio(*self.mean_torques)
 
     def peak_reactions(self, joint):
-        """Largest reaction at a joint in reference and balanced mechanism, N."""
+        """Largest reaction at a joint, or other force, such as "ground cam", in reference and balanced mechanism, N."""
         return tuple(extremes(solution, joint).range[1] for solution in self._both)
 
     def peak_reaction_ratio(self, joint):

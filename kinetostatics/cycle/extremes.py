@@ -352,6 +352,8 @@ class ExtremesRow(NamedTuple):
 def extremes_frame(solution):
     """Smallest and largest true extremum of every quantity over the period, with its crank angle, a pandas DataFrame.
 
+    Energies are left out, and forces on the frame, which `Solution.ground` has in a table of its own.
+
     Values within their proven rounding error, or small beside the largest term of their kind, are 0; so are angles
     within `PLACED` of 0. ``attrs["resolution"]`` tells the resolution of load functions without `kinks`, if there are
     any.
@@ -381,7 +383,7 @@ def extremes_by_name(solution):
     found = {
         name: extrema(solution, name)
         for name, quantity in quantities_of.items()
-        if quantity.kind not in ("check", "energy")
+        if quantity.kind not in ("check", "energy", "ground")
         and not (quantity.kind == "rate" and solution.placement.links[quantity.owner].ratio_slope is None)
     }
     if text := warning(solution, found.values()):

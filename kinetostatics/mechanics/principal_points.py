@@ -17,7 +17,7 @@ from typing import Any
 from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..machine.links import acceleration_of, arm, first_at, present, second_at
-from ..machine.loads import spring_masses
+from ..machine.loads import Load, spring_masses
 from ..numbers import checks
 from ..numbers.planar import add_vectors, plus, product, scale_vector
 
@@ -130,7 +130,7 @@ def principal_points(mechanism, loads=()):
     Parameters
     ----------
     mechanism : Mechanism
-    loads : sequence of loads
+    loads : sequence of loads, or one
         Of the springs among them half of the mass moves with their slider: it has their momentum.
 
     Returns
@@ -142,7 +142,7 @@ def principal_points(mechanism, loads=()):
     Raises
     ------
     ParameterError
-        The argument is not a mechanism.
+        The first argument is not a mechanism, or the loads are no loads.
 
     Examples
     --------
@@ -154,7 +154,13 @@ def principal_points(mechanism, loads=()):
     >>> bool(np.allclose(points.shaking_force(s), s.shaking_force))
     True
     """
-    checks.require("principal_points", checks.mechanism("mechanism", mechanism))
+    loads = loads if isinstance(loads, list | tuple) else (loads,)
+    strange = (item for item in loads if not isinstance(item, Load) and not hasattr(item, "push"))
+    checks.require(
+        "principal_points",
+        checks.mechanism("mechanism", mechanism),
+        *(f"loads must be loads, as of a scene, got {checks.shown(item)}" for item in strange),
+    )
     links = mechanism.links.items()
     springs = {name: mass.shaking for name, mass in spring_masses(loads).items()}
     masses = [(name, link.mass) for name, link in links] + [*springs.items()]

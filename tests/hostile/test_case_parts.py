@@ -292,7 +292,8 @@ WRONG_DESIGNS = {
     "no aim": (f"{INTRO}{VARY}", "design.one needs either minimise or maximise"),
     "variant not there": (
         f'[design.one]\nkind = "optimum"\nvariant = "cam-circl"\n{VARY}{AIM}',
-        "design.one.variant is 'cam-circl', allowed: 'plain', 'cam-circle', 'cam-cosine'; did you mean 'cam-circle'?",
+        "design.one.variant is 'cam-circl', allowed: 'plain', 'cam-circle', 'cam-cosine', 'upright-plain', "
+        "'upright-circle', 'upright-cosine', 'upright-optimal'; did you mean 'cam-circle'?",
     ),
     "reference not there": (f'{INTRO}{VARY}{AIM}reference = "plane"\n', "design.one.reference is 'plane', allowed"),
     "variant is itself": (

@@ -185,6 +185,7 @@ def test_a_joint_may_not_be_called_ground():
         ks.Mechanism("bars", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1), pivot_name="ground"),))
 
 
+@pytest.mark.slow
 def test_the_table_has_true_extremes_of_forces_and_couples():
     s = shipped("sawframe_2r63").variants["cam-circle"].scene.solve(12)
     table = s.ground.table()
@@ -196,6 +197,7 @@ def test_the_table_has_true_extremes_of_forces_and_couples():
     assert np.isnan(table.loc["spring", "couple [N m]"])
 
 
+@pytest.mark.slow
 def test_forces_on_the_frame_are_quantities_as_others():
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     scene = shipped("sawframe_2r63").variants["cam-circle"].scene

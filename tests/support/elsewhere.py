@@ -20,6 +20,7 @@ DIAGRAM = ks.Table([0.15, 0.21, 0.25], [-900.0, -400.0, -100.0], over="travel", 
 def diverse():
     """Solutions of every shape, with tables and friction, by name."""
     pumped = ks.Scene(PUMP, 100.0, loads=[ks.ProcessForce(DIAGRAM), ks.Gravity()])
+    springs = ks.GasSpring(1e-3, 3e-4, 3e5, at=0.2), ks.Spring(1e3, 0.2, mass=0.001)
     rubbed = ks.Scene(PUMP, 100.0, friction={"O": ks.PinFriction(0.1, 0.01)})
     return {
         "plain": solve(SCENES["plain"], ANGLES),
@@ -29,6 +30,7 @@ def diverse():
         "table over travel": pumped.solve(ANGLES),
         "designs under a table": pumped.varied({"slider.mass": np.array([[1.0], [2.0]])}).solve(ANGLES),
         "friction": rubbed.solve(ANGLES),
+        "gas spring and spring with mass": ks.Scene(PUMP, 100.0, loads=[*springs, ks.Gravity()]).solve(ANGLES),
         "speeds": ks.Scene(PUMP, np.linspace(90.0, 110.0, ANGLES.size)).solve(ANGLES),
     }
 

@@ -89,3 +89,13 @@ def test_what_is_refused(saw, call, words):
     with pytest.raises(ks.KinetostaticsError) as caught:
         call(saw["cam-circle"])
     assert words in str(caught.value)
+
+
+@pytest.mark.slow
+def test_a_report_shows_them_all(tmp_path):
+    scenes = {name: shipped("sawframe_2r63").variants[name].scene for name in ("plain", "cam-circle")}
+    page = ks.report(scenes, tmp_path / "saw.html").read_text(encoding="utf-8")
+    figures = [name.split('"')[0] for name in page.split('data-figure="')[1:]]
+    shown = [name for name in figures if name.startswith("ground")]
+    assert shown == ["ground", "ground O", "ground guide", "ground cam", "ground spring"]
+    assert '<option value="ground spring">force on the frame, spring</option>' in page

@@ -18,7 +18,7 @@ import numpy as np
 MIN_RATIO = 5.0
 """Surge ratio below which a spring that stretches evenly is too far from one with waves.
 
-There the stiffness of the end, c - m s^2 / 3 without waves, is off by c z^4 / 45 and more, 0.37 % of c."""
+There the stiffness of the end, c - m s^2 / 3 without waves, is off by c z^4 / 45 and more, 0.36 % of c."""
 HARMONIC_SHARE = 0.05
 """Share of the largest acceleration of a harmonic from which on a harmonic of the slider's travel counts."""
 SAMPLES = 256

@@ -96,7 +96,9 @@ class Subject:
 
     def reference_of(self, name):
         """The machine with which the one of this name is compared."""
-        return self.reference if self.case is None else self.machines.get(self.case.reference_of(name), self.reference)
+        if self.case is None:
+            return self.reference
+        return self.machines.get(self.case.reference_of(name), self.reference)
 
     @property
     def comparisons(self):

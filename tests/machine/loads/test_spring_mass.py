@@ -105,6 +105,9 @@ def test_half_of_the_mass_shakes_the_frame():
     assert points.mass == 2.0 + 1.0 + 4.0 + 1.5
     assert far(points.shaking_force(s), heavier.shaking_force) < 1e-14
     assert ks.principal_points(s.mechanism).mass == 7.0
+    assert ks.principal_points(s.mechanism, s.loads[0]).mass == 8.5
+    with pytest.raises(ks.ParameterError, match="principal_points: loads must be loads, as of a scene, got <Solution"):
+        ks.principal_points(s.mechanism, s)
 
 
 @every("gravity", [0.0, 9.81])
