@@ -1,9 +1,11 @@
 """Places where a machine and its frame push each other: pairs of links with the frame, loads, and the motor.
 
 A group declares its pairs, a load by `rests_on_frame` that the frame takes a force or couple of it. A pair is called as
-its reaction, a load as in paths of parameters ("spring", "spring2"), the torque that keeps the motion "motor".
+its reaction, a load as in paths of parameters, where all loads of its kind count ("spring", "spring2"), and the torque
+that keeps the motion "motor".
 """
 
+from collections import Counter
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -73,11 +75,16 @@ def places(scene) -> dict[str, Place]:
     """Places by name of a scene, or another object with a mechanism."""
     mechanism = scene.mechanism
     found = {name: Place(pair) for name, pair in pairs_of(mechanism).items() if _is_on_frame(name, pair)}
+    counts: Counter[str] = Counter()
     for number, item in enumerate(getattr(scene, "loads", ())):
-        if hasattr(item, "rests_on_frame") and item.rests_on_frame(mechanism):
-            kind = item.PATH or type(item).__name__
-            names = (f"{kind}{count if count > 1 else ''}" for count in range(1, len(found) + 2))
-            found[next(name for name in names if name not in found)] = Place(None, number, item.UNIT != "N m")
+        if not hasattr(item, "rests_on_frame"):
+            continue
+        kind = item.PATH or type(item).__name__
+        counts[kind] += 1
+        while (name := f"{kind}{counts[kind]}" if counts[kind] > 1 else kind) in found:
+            counts[kind] += 1
+        if item.rests_on_frame(mechanism):
+            found[name] = Place(None, number, item.UNIT != "N m")
     found[MOTOR] = Place(pushes=False)
     return found
 
