@@ -149,8 +149,10 @@ class Case:
         >>> table.loc["mean |balancing torque|", "published"]
         '6.77 (ratio)'
         """
-        table = self.compare(self.reference_of(balanced) if reference is None else reference, balanced).frame()
-        return self.with_published(table) if self.reference_of(balanced) == self.reference else table
+        own = self.reference_of(balanced)
+        reference = own if reference is None else reference
+        table = self.compare(reference, balanced).frame()
+        return self.with_published(table) if own == reference == self.reference else table
 
     def with_published(self, table):
         """A table of `Comparison.frame` with a last column of published figures, if there are any.

@@ -178,7 +178,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--variant",
             "NAME",
-            "whose parameters vary (the first besides the reference, which is what ratios refer to)",
+            "whose parameters vary (the first besides the reference of the case)",
         ),
         _option("--reference", "NAME", "what ratios refer to (the variant's reference)"),
         _option("--sample", "N", "N designs of a Latin hypercube in place of a grid", _designs),

@@ -66,7 +66,7 @@ def sweep(options):
         return {**sides, "failed": int((reasons != "").sum()), "designs": found, "files": list(written)}
 
     def words():
-        print_folded(f"{case.title}: {_arguments(names, wanted, options)}\n")
+        print_folded(f"{case.title}: {_arguments(case, names, wanted, options)}\n")
         _print_sweep(found, wanted, varied)
         print(*written.values(), sep="\n", end="\n" * bool(written))
 
@@ -82,10 +82,10 @@ def _labels(wanted, varied):
     }
 
 
-def _arguments(names, wanted, options):
+def _arguments(case, names, wanted, options):
     """Words on the varied variant and the reference of ratios."""
-    varied, reference = names
-    why = "the reference" if varied == reference else f"the first besides the reference {reference}"
+    (varied, reference), besides = names, options.reference or case.reference
+    why = "the reference" if varied == besides else f"the first besides the reference {besides}"
     against = f"; ratios refer to {reference}" if any(item.ratio for item in wanted) else ""
     return variant_words(varied, options, why) + against
 

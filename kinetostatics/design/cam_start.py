@@ -146,7 +146,7 @@ def starting_machine(given, options) -> Start:
     rate, springs = group.slider.mass * given.crank_speed * given.crank_speed, spring_masses(given.loads)
     spring = Spring(rate, mean)
     if springs:
-        mass = springs["slider"]
+        mass = springs["slider"].whole
         spring = Spring.balancing(group.slider.mass, given.crank_speed, mean, spring_mass=mass)
         rate = spring.stiffness
     replaced = Spring if options.gravity else (Spring, Gravity)

@@ -40,7 +40,6 @@ from ..numbers.planar import (
     number_or_zero,
     plus,
     product,
-    quotient,
     scale_vector,
     subtract_vectors,
 )
@@ -111,7 +110,7 @@ class Dynamics(Motion):
         for slider in {item.on: None for item in self.loads if _is_spring(item)}:
             found = self._total_push(slider)
             if found is not None:
-                weight = scale_vector(self._weighing_mass(slider), self.gravity)
+                weight = scale_vector(self._slider_masses(slider)[1], self.gravity)
                 applied = (wrench.force for name, wrench in self.wrenches if name == slider)
                 wrench = Wrench(reduce(add_vectors, applied, weight), self.link_loads[slider].moment)
                 loads, pushes = loads | {slider: wrench}, pushes | {slider: found}
@@ -119,8 +118,7 @@ class Dynamics(Motion):
 
     def _total_push(self, slider):
         """Force along the guide of a slider with its inertia, N; None if a departure or the mass is not known."""
-        springs_mass, travel = spring_masses(self.loads).get(slider), self.placement.travels[slider]
-        mass = plus(self.mechanism.links[slider].body.mass, quotient(springs_mass, 3.0))
+        mass, travel = self._slider_masses(slider)[0], self.placement.travels[slider]
         if mass is None:
             return None
         square, alpha = self.accelerating
@@ -146,9 +144,10 @@ class Dynamics(Motion):
         others = (slider_push(item, self) for item in items if not _is_spring(item))
         return reduce(plus, others, force)
 
-    def _weighing_mass(self, slider):
-        """Mass whose weight acts on a slider: its own and half of that of its springs, kg."""
-        return plus(self.mechanism.links[slider].body.mass, product(0.5, spring_masses(self.loads).get(slider)))
+    def _slider_masses(self, slider):
+        """Masses of a slider with its springs, kg: that in its equation of motion, and that whose weight it takes."""
+        own, springs = self.mechanism.links[slider].body.mass, spring_masses(self.loads).get(slider)
+        return (own, own) if springs is None else (plus(own, springs.moving), plus(own, springs.shaking))
 
     def departure(self, item):
         """Departure s'' + e of a slider from simple harmonic motion, e the elongation of a spring on it, m; or None."""
@@ -267,7 +266,7 @@ class Dynamics(Motion):
         ]
         for name, mass in spring_masses(self.loads).items():
             joint = self.placement.links[name].joint
-            force = scale_vector(-0.5 * mass, acceleration_of(joint.first, joint.second, *self.accelerating))
+            force = scale_vector(-mass.shaking, acceleration_of(joint.first, joint.second, *self.accelerating))
             moments.append(moment(joint.position, force))
         return self._scalar(reduce(plus, moments))
 
@@ -314,9 +313,8 @@ class Dynamics(Motion):
 
     def _spring_load(self, slider, mass):
         joint, square, alpha = self.placement.links[slider].joint, *self.accelerating
-        moving = mass / 3.0
-        inertia = acceleration_of(joint.first, joint.second, moving * square, product(moving, alpha))
-        return Wrench(subtract_vectors(scale_vector(0.5 * mass, self.gravity), inertia), None)
+        inertia = acceleration_of(joint.first, joint.second, mass.moving * square, product(mass.moving, alpha))
+        return Wrench(subtract_vectors(scale_vector(mass.shaking, self.gravity), inertia), None)
 
     @cached_property
     def link_loads(self):

@@ -46,9 +46,9 @@ def reduced_inertia_slope(motion):
 
 
 def _moving_springs(motion):
-    """Pairs of the mass of springs that moves with their slider, a third, and the slider's coordinate."""
+    """Pairs of the mass of springs that moves with their slider, and the slider's coordinate."""
     travels = motion.placement.travels
-    return [(mass / 3.0, travels[name]) for name, mass in spring_masses(motion.loads).items()]
+    return [(mass.moving, travels[name]) for name, mass in spring_masses(motion.loads).items()]
 
 
 def kinetic_energy(motion):
@@ -78,7 +78,7 @@ def load_torque(motion):
         for name, link in motion.mechanism.links.items()
     ]
     for name, mass in spring_masses(motion.loads).items():
-        weights.append(product(0.5 * mass, work(motion.gravity, links[name].joint.first)))
+        weights.append(product(mass.shaking, work(motion.gravity, links[name].joint.first)))
     return minus(None, plus(_sum(weights), motion.load_work))
 
 

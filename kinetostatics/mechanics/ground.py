@@ -1,8 +1,6 @@
 """Forces of the machine on its frame, at every place where the two push each other.
 
-    turning pair     opposite of its reaction at the joint; friction of the pin as a couple
-    sliding pair     opposite of its reaction, friction included, at the joint; couple of the guide
-    rolling pair     along the common normal, which passes through the roller's centre; friction along the curve
+    pairs            opposite of their force on a link, with its couple: `pair_forces`
     loads            feet of springs and dampers, fixed points, couples, process forces that the frame takes
     "motor"          opposite of the balancing torque, a couple
 
@@ -13,30 +11,16 @@ links,
 
 I is the shaking force. It comes from the motion of the masses, the sum on the left from the reactions, so each tests
 the other.
-
-A roller touches its curve on the side that the sign of the force says, at its radius from the centre. Where the radius
-is not known the centre stands for the contact; without friction the force passes through both.
 """
 
 from functools import reduce
 
 from ..errors import QuantityError
-from ..machine.links import Rolling, Sliding
-from ..machine.supports import Support, joint_of, places
+from ..machine.supports import Support, places
 from ..numbers import checks
-from ..numbers.arithmetic import sign
-from ..numbers.planar import (
-    add_vectors,
-    left,
-    length,
-    minus,
-    moment,
-    plus,
-    product,
-    scale_vector,
-    subtract_vectors,
-)
+from ..numbers.planar import add_vectors, length, minus, moment, plus, scale_vector
 from .load_values import evaluate_load
+from .pair_forces import pair_forces
 
 
 def support(state, name) -> Support:
@@ -55,30 +39,7 @@ def support(state, name) -> Support:
         return evaluate_load(state.loads[number], state).support(state)
     if pair is None:
         return Support(None, None, minus(None, state.balancing_torque))
-    if isinstance(pair, Rolling):
-        return _contact(state, name, pair)
-    couple = state.scalar(pair.couple) if isinstance(pair, Sliding) else _friction(state, name)
-    point = state.placement.joints[joint_of(pair)].position
-    return Support(subtract_vectors(None, state.reaction(name)), point, minus(None, couple))
-
-
-def _friction(state, name):
-    """Friction of a pair on its moving link; None without."""
-    return state.friction_at(name) if name in state.friction.acting else None
-
-
-def _contact(state, name, pair):
-    """Force of a roller on the curve that it runs on.
-
-    The roller's pin friction turns it against a force along the curve, so both pass through the contact.
-    """
-    joint, friction = state.placement.joints[pair.joint], state.friction.acting.get(name)
-    along = scale_vector(1.0 / length(joint.first), joint.first)
-    outward, pressed = scale_vector(-1.0, left(along)), state.scalar(pair.force)
-    force = subtract_vectors(scale_vector(pressed, outward), scale_vector(_friction(state, name), along))
-    radius = state.mechanism.rollers.get(pair.joint) if friction is None else friction.roller_radius
-    to_contact = scale_vector(product(radius, sign(pressed)), outward)
-    return Support(force, add_vectors(joint.position, to_contact))
+    return pair_forces(state, name, pair)[name].opposite()
 
 
 def undeclared(dynamics):
@@ -92,8 +53,8 @@ def undeclared(dynamics):
         acting.append((links[name].joint.position, scale_vector(push, guides[name].direction), None))
     for name, place in places(dynamics).items():
         if place.load is None:
-            force, point, couple = support(dynamics, name)
-            acting.append((point, subtract_vectors(None, force), minus(None, couple)))
+            force, point, couple = support(dynamics, name).opposite()
+            acting.append((point, force, couple))
     force = dynamics.as_vector(reduce(add_vectors, (force for _, force, _ in acting), None))
     turning = reduce(plus, (plus(moment(point, force), couple) for point, force, couple in acting), None)
     return dynamics.largest(length(force)), dynamics.largest(turning)

@@ -162,7 +162,7 @@ def principal_points(mechanism, loads=()):
         *(f"loads must be loads, as of a scene, got {checks.shown(item)}" for item in strange),
     )
     links = mechanism.links.items()
-    springs = {name: 0.5 * mass for name, mass in spring_masses(loads).items()}
+    springs = {name: mass.shaking for name, mass in spring_masses(loads).items()}
     masses = [(name, link.mass) for name, link in links] + [*springs.items()]
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}

@@ -1,7 +1,7 @@
 """Elementary functions of any number: NumPy, JAX and dask arrays, `arb` enclosures, recorded numbers.
 
 The kernels take sin, exp, sqrt, clamped roots and compensated sums from here alone, so one source serves every engine.
- A number of an engine brings its own methods (`forgiving_root`, `kept_off_zero`, `total_with` ...).
+A number of an engine brings its own methods (`forgiving_root`, `kept_off_zero`, `total_with` ...).
 
 `compensated_sum` is SumK with K = 3 (Ogita, Rump and Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26,
 2005) on Knuth's `two_sum`; `two_square` splits its argument as Veltkamp and Dekker do.

@@ -249,7 +249,8 @@ def machines_without(solution):
     for name, weight in weights.items():
         found[f"weight of {name}"] = {"loads": (*solution.loads, replace(weight, value=-weight.value))}
     for title, item in _titled_loads(solution):
-        found[title] = {"loads": tuple(other for other in solution.loads if other is not item)}
+        place = next(place for place, other in enumerate(solution.loads) if other is item)  # one of several alike
+        found[title] = {"loads": (*solution.loads[:place], *solution.loads[place + 1 :])}
     for joint in solution.friction.acting:
         rest = {name: pair for name, pair in solution.friction.items() if name != joint}
         found[f"friction {joint}"] = {"friction": frictions_by_joint(rest)}

@@ -119,11 +119,21 @@ def test_compare_tells_programs_the_reference(path, capsys):
     assert {row.split(",")[2] for row in rows} == {"standing"}
 
 
+def test_a_sweep_names_the_reference_of_the_case_and_that_of_ratios(tmp_path, capsys):
+    own = UPRIGHT.replace("[variants.short]", '[variants.short]\nreference = "standing"')
+    path = case_file(tmp_path, PLAIN + own)
+    assert main(["sweep", str(path), "--vary", "crank_length=200..201 mm:2", "--angles", "12", "--output", RATIO]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "variant short, the first besides the reference plain" in told
+    assert "ratios refer to standing" in told
+
+
 def test_published_figures_are_of_the_reference_of_the_case(tmp_path, capsys):
     printed = '[published.ratio]\n"mean |balancing torque|" = "6.77"\n'
     path = case_file(tmp_path, PLAIN + UPRIGHT + printed)
     assert "published" in ks.load_case(path).comparison_table("short")
     assert "published" not in ks.load_case(path).comparison_table("standing-short")
+    assert "published" not in ks.load_case(path).comparison_table("short", "standing")
     assert main(["compare", str(path)]) == 0
     assert capsys.readouterr().out.count("published") == 1
 

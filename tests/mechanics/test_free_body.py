@@ -90,6 +90,20 @@ def test_forces_on_the_slider_of_a_saw():
     assert crank["balancing torque"].kind == "drive"
 
 
+@every("friction", [{}, {"cam": ks.RollerFriction(0.05, 0.02, 0.05)}])
+def test_a_roller_and_the_frame_push_each_other_at_their_contact(friction):
+    cam, roller = ks.cams.Circle(0.3, (-0.0219, 0.004)), ks.Roller(0.05, 0.04, 210e9, 0.3)
+    saw = ks.cam_crank_slider(cam, 2.0219, slider=ks.Link(600.0), block=ks.Link(30.0), roller=roller)
+    s = ks.solve(saw, ANGLES, crank_speed=33.5, friction=friction)
+    found = {item.name: item for item in free_body(s.dynamics, "block")}["cam"]
+    force, point, couple = s.ground["cam"]
+    np.testing.assert_allclose(found.force, -force, rtol=0.0, atol=CLOSED * np.abs(force).max())
+    np.testing.assert_allclose(found.point, point, rtol=0.0, atol=CLOSED)
+    assert not found.couple.any()
+    assert not couple.any()
+    assert np.hypot(*(point - s.position("A"))) == pytest.approx(0.05)
+
+
 def test_loads_act_where_they_are_given():
     bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
     loads = [

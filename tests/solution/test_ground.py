@@ -44,6 +44,10 @@ PLACES = [
     (lambda: bars(ks.TorsionDamper(5.0, on="crank", against="frame")), ["O", "O2", "torsion_damper", "motor"]),
     (lambda: bars(ks.PointForce(5.0, between=("A", "B")), ks.Force(7.0, at=(0.1, 0.0))), ["O", "O2", "motor"]),
     (
+        lambda: saw(loads=[ks.ProcessForce(5.0), ks.ProcessForce(7.0, reaction="frame"), ks.Spring(9.0, 1.0)]),
+        ["O", "cam", "guide", "process_force2", "spring", "motor"],
+    ),
+    (
         lambda: ks.solve(V_TWIN, ANGLES, crank_speed=9.0, loads=ks.Spring(10.0, 0.1, "slider2")),
         ["O", "guide", "guide2", "spring", "motor"],
     ),

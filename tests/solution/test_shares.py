@@ -163,6 +163,14 @@ def test_with_friction_rows_are_effects_of_leaving_out():
         assert sampled > 0.99 * found[source].peak
 
 
+def test_a_load_given_twice_is_left_out_once():
+    spring = ks.Spring(5e5, 2.0)
+    s = saw(spring, spring, friction=RUBBING)
+    without = saw(spring, friction=RUBBING).reaction("O")
+    for source in ("Spring on 'slider'", "Spring on 'slider' #2"):
+        assert machines_without(s)[source].at(s.crank_angle).reaction("O") == pytest.approx(without, rel=1e-9)
+
+
 def test_leaving_out_inertia_keeps_weight():
     s = saw(friction=RUBBING)
     heavy = ks.Force(600 * 9.81, at=("slider", 0.0, 0.0), direction=-np.pi / 2)

@@ -60,7 +60,7 @@ class Gravity(Load):
         links = motion.placement.links
         parts = [self._link_potential(links[name], link.body) for name, link in motion.mechanism.links.items()]
         for name, mass in spring_masses(motion.loads).items():
-            parts.append(product(0.5 * mass, -dot(self.vector, links[name].joint.position)))
+            parts.append(product(mass.shaking, -dot(self.vector, links[name].joint.position)))
         return reduce(plus, parts)
 
     def _link_potential(self, motion, body):

@@ -161,8 +161,28 @@ class ForceRule(checks.OrFunction):
         return super().check(value, field)
 
 
+class PlacedLoad(Load):
+    """A load of forces at points."""
+
+    def forces(self, motion) -> Any:
+        """Pairs of a point and the force (x, y) on it, N."""
+        raise NotImplementedError
+
+    def wrenches(self, motion):
+        """Wrench on the link of each point."""
+        for place, force in self.forces(motion):
+            yield wrench_at(motion.placement, point_on_link(motion.mechanism, place), force)
+
+    def support(self, motion):
+        """Its force at its fixed point."""
+        for place, force in self.forces(motion):
+            if point_on_link(motion.mechanism, place).link == FRAME:
+                return Support(force, motion.spot(place).position)
+        return Support(None, None)
+
+
 @dataclass(frozen=True, eq=False)
-class Force(Load):
+class Force(PlacedLoad):
     """Force at a point, in a fixed direction or in a direction that turns with a link.
 
     Parameters
@@ -216,11 +236,10 @@ class Force(Load):
         if self.along is not None:
             yield checks.choice("Force: along", self.along, tuple(mechanism.links))
 
-    def wrenches(self, motion):
-        """Wrench on the link of its point."""
+    def forces(self, motion):
+        """Its force at its point."""
         axis = self._axis(motion)
-        force = (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
-        yield wrench_at(motion.placement, point_on_link(motion.mechanism, self.at), force)
+        yield self.at, (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
 
     def rests_on_frame(self, mechanism):
         """False: at a fixed point it acts on the frame from outside, and is no force of the machine."""
@@ -238,7 +257,7 @@ class Force(Load):
         yield Symbol("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
 
 
-class PointLoad(Load):
+class PointLoad(PlacedLoad):
     """A load along the line of two points `between`."""
 
     between: Any
@@ -264,23 +283,14 @@ class PointLoad(Load):
                 of = "fixed to the frame" if link == FRAME else f"of the {link}"
                 yield f"{self.title}: both points are {of}, so it loads nothing; give a point of another link"
 
-    def wrenches(self, motion):
-        """Opposite forces on the links of both points."""
+    def forces(self, motion):
+        """Opposite forces at both points."""
         force = self.pull(motion)
-        for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
-            yield wrench_at(motion.placement, point_on_link(motion.mechanism, place), part)
+        return zip(self.between, (force, subtract_vectors(None, force)), strict=True)
 
     def rests_on_frame(self, mechanism):
         """Whether one of its points is fixed."""
         return any(point_on_link(mechanism, place).link == FRAME for place in self.between)
-
-    def support(self, motion):
-        """Its force at the fixed point."""
-        force = self.pull(motion)
-        for place, part in zip(self.between, (force, subtract_vectors(None, force)), strict=True):
-            if point_on_link(motion.mechanism, place).link == FRAME:
-                return Support(part, motion.spot(place).position)
-        return Support(None, None)
 
     def signs(self, motion):
         """Symbol between both points."""

@@ -18,7 +18,7 @@ beginning.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -244,14 +244,22 @@ class Spring(SliderLoad):
         yield Symbol("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
 
 
-def spring_masses(loads: Iterable[Any]) -> dict[str, Any]:
-    """Mass of all springs by slider, kg; without sliders whose springs have none."""
+class SpringMass(NamedTuple):
+    """Mass of the springs on a slider, kg: a third moves with it, half shakes the frame and weighs on the slider."""
+
+    whole: Any
+    moving: Any
+    shaking: Any
+
+
+def spring_masses(loads: Iterable[Any]) -> dict[str, SpringMass]:
+    """Mass of all springs by slider; without sliders whose springs have none."""
     found: dict[str, Any] = {}
     for item in loads:
         mass = present(item.mass) if isinstance(item, Spring) else None
         if mass is not None:
             found[item.on] = plus(found.get(item.on), mass)
-    return found
+    return {slider: SpringMass(mass, mass / 3.0, 0.5 * mass) for slider, mass in found.items()}
 
 
 @dataclass(frozen=True, eq=False)

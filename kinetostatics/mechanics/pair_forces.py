@@ -1,0 +1,85 @@
+"""Force and couple of each pair of links, friction included, and the point where the force acts.
+
+    turning pair     reaction at the joint; friction of the pin as a couple
+    sliding pair     force along the left normal of its direction, friction along it, and a couple, at a joint
+    cam              force along the left normal of its curve, friction along the curve, at the contact
+
+They act on the `link` of the pair, and the other way round on the link against it: a force on the frame is the opposite
+of that of its pair. The pin friction of a roller turns it against a force along the curve, so both forces of a cam pass
+through the contact. A roller touches its curve on the side that the sign of the force says, at its radius from the
+centre; where the radius is not known the centre stands for the contact.
+"""
+
+from ..machine.group import FRAME
+from ..machine.links import CamDriven, Turning
+from ..machine.supports import Support
+from ..numbers.arithmetic import sign
+from ..numbers.planar import (
+    add_vectors,
+    dot,
+    left,
+    length,
+    minus,
+    product,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+)
+
+
+def pair_forces(state, name, joining) -> dict[str, Support]:
+    """Forces of a pair on its link, from a `Dynamics` or solution and a pair of `machine.supports.pairs_of`.
+
+    By name: one, or two of a slide whose couple and friction count at different joints.
+    """
+    pair = joining.pair
+    if isinstance(pair, CamDriven):
+        return {name: _of_cam(state, name, pair)}
+    if isinstance(pair, Turning):
+        point = state.placement.joints[pair.joint].position
+        return {name: Support(state.reaction(name), point, _friction(state, name))}
+    return _of_slide(state, name, joining)
+
+
+def _friction(state, name):
+    """Friction of a pair on its link; None without."""
+    return state.friction_at(name) if name in state.friction.acting else None
+
+
+def _of_slide(state, name, joining):
+    """Forces of a straight pair; its couple is about the joint that the pair names. Of a guide the reaction is all."""
+    pair, joints = joining.pair, state.placement.joints
+    couple, about = state.scalar(pair.couple), joints[pair.about or pair.joint].position
+    if name in joining.part.outputs:
+        return {name: Support(state.reaction(name), about, couple)}
+    direction = joining.part.sliding(name, state.placement).direction
+    direction = (1.0, 0.0) if direction is None else direction
+    across = scale_vector(state.scalar(pair.force), left(direction))
+    along = scale_vector(_friction(state, name), direction)
+    if along is None or pair.about in ("", pair.joint):
+        return {name: Support(add_vectors(across, along), about, couple)}
+    return {name: Support(across, about, couple), f"friction {name}": Support(along, joints[pair.joint].position)}
+
+
+def _of_cam(state, name, led):
+    """Force of a cam on a roller or flat face."""
+    placement = state.placement
+    joint, turning = placement.joints[led.joint], None
+    position, first = joint.position, joint.first
+    if led.body != FRAME:
+        body = placement.links[led.body]
+        turning = body.ratio
+        carried = scale_vector(turning, left(subtract_vectors(position, body.joint.position)))
+        first = subtract_vectors(first, add_vectors(body.joint.first, carried))
+    force, first = state.scalar(led.force), vector_or_zero(first)
+    if led.flat:
+        link = placement.links[led.link]
+        away = dot(first, link.direction) / minus(turning, link.ratio)
+        to_contact = scale_vector(-away, left(link.direction))
+        return Support(scale_vector(force, link.direction), add_vectors(position, to_contact))
+    tangent = scale_vector(1.0 / length(first), first)
+    friction = state.friction.acting.get(name)
+    radius = state.mechanism.rollers.get(led.joint) if friction is None else friction.roller_radius
+    to_contact = scale_vector(product(radius, -sign(force)), left(tangent))
+    total = add_vectors(scale_vector(force, left(tangent)), scale_vector(_friction(state, name), tangent))
+    return Support(total, add_vectors(position, to_contact))
