@@ -505,8 +505,8 @@ def _values(path, kept, now, context):
     else:
         allowed = ULPS * np.spacing(np.maximum(np.abs(kept), FLOOR * scale))
         told = f"{ULPS} ulp, or of {FLOOR:g} of {scale:.4g}"
-    if context.other_arithmetic:
-        share = context.share(path, OTHER_PROCESSOR)
+    share = context.share(path, OTHER_PROCESSOR if context.other_arithmetic else 0.0)
+    if share:
         allowed, told = np.maximum(allowed, share * scale), f"{share:g} of {scale:.4g}"
     period = context.kept[f"{path.split(SEP)[0]}/scales/period"]
     yield from _within(path, kept, now, allowed, told, period)
