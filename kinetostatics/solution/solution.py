@@ -584,10 +584,7 @@ class Solution(Certainty, Motion):
         return self._found(joint + ending) if joint in self.friction else self._scalar(None)
 
     def _found(self, name):
-        """A quantity by its name in the table, or "closure", by the engine; another member of `dynamics` as it is.
-
-        Quantities of friction are in the table of scenes with friction alone.
-        """
+        """A quantity of the scene by name, or "closure", by the engine; another member of `dynamics` as it is."""
         if name not in self._values:
             own = of_mechanism(self.mechanism)  # sooner known than those of the scene
             if name != "closure" and name not in own and name not in of_scene(self):
