@@ -86,7 +86,7 @@ class Solution(Certainty, Motion):
         Engine that computes it; whether it warns no more.
     resolution : float
         Step of crank angles at which load functions without `kinks` are sampled, rad.
-    shape, period, crank_sense, closed, closure
+    shape, period, crank_sense, closed, closure, gravity
     reactions, scalars
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
