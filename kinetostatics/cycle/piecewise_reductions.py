@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .piecewise import rule
+from .piecewise import rolled, rule
 from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 
 MAX_OUTPUT_ERROR = 1e-9
@@ -41,19 +41,22 @@ def averaged(pieces, output, values, vector=False):
 
 
 def _weights_of_magnitudes(pieces, values):
-    """Weights (pieces, points) of values in the integrals of their magnitudes."""
+    """Weights (pieces, points) of values in the integrals of their magnitudes.
+
+    Between two zeros the sign is that of the integral: a value at the start of a piece may be 0 or rounding.
+    """
     found = np.where(values < 0.0, -1.0, 1.0) * rule(pieces.count).weights
     series = pieces.series(values)
     changing = np.flatnonzero(np.abs(series[0]) < np.abs(series[1:]).sum(axis=0))
     place, piece = pieces.zeros(values[changing])
+    place, piece = np.append(place, np.ones(changing.size)), np.append(changing[piece], changing)
     order = np.lexsort((place, piece))
-    place, piece = place[order], changing[piece[order]]
-    own, firsts, counts = np.unique(piece, return_index=True, return_counts=True)
-    number = np.arange(piece.size) - np.repeat(firsts, counts)
-    starts = np.sign(((-1.0) ** np.arange(pieces.count)) @ series[:, own])
-    found[own] = (starts * (-1.0) ** counts)[:, None] * rule(pieces.count).weights
-    turned = 2.0 * np.repeat(starts, counts) * (-1.0) ** number
-    np.add.at(found, piece, turned[:, None] * pieces.weights_up_to(place))
+    place, piece = place[order], piece[order]
+    up_to = pieces.weights_up_to(place)
+    between = up_to - np.where(np.diff(piece, prepend=-1) == 0, 1.0, 0.0)[:, None] * rolled(up_to.T, 1).T
+    signs_between = np.sign((between * values[piece]).sum(axis=1))
+    found[changing] = 0.0
+    np.add.at(found, piece, signs_between[:, None] * between)
     return pieces.half * found
 
 

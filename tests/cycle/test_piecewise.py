@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.cycle.kinks import design_kinks, has_kinks, sign_changes
 from kinetostatics.cycle.piecewise import MAX_UNRESOLVED, Pieces
-from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, estimated, resolved, row_of
+from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, averaged, estimated, resolved, row_of
 from kinetostatics.cycle.reductions import parsed
 from support.every import every
 
@@ -113,6 +113,16 @@ def test_pieces_without_a_polynomial_are_reported():
         pulse = lambda angle, _, place=place: np.where(np.abs(angle - place) < 0.05, 1.0, 0.0)  # noqa: E731
         for text in ("largest O", "range O", "mean O"):
             assert on_pieces(parsed(text), pulse, np.array([[1.0]]))[1].all(), (place, text)
+
+
+@every("count", [8, 11, 12, 16])
+def test_size_of_a_function_that_is_zero_at_the_ends_of_pieces_is_right(count):
+    for number in range(2, 24):  # rounding gives the value at an end either sign, or 0
+        pieces = Pieces(np.linspace(0.0, TURN, number + 1), count)
+        place, factor = (pieces.angle - pieces.middle[:, None]) / pieces.half, np.cbrt(np.arange(1.0, number + 1.0))
+        values = factor[:, None] * (1.0 - place**2) * (place + 0.3)
+        size = averaged(pieces, parsed("mean_absolute O"), values)[0]
+        assert size == pytest.approx(factor.mean() * 0.58865 / 2.0, rel=1e-12)
 
 
 def test_nan_in_one_design_spoils_no_other():
