@@ -308,7 +308,9 @@ def _resolved(turn, quantity, good, floor, scale, pulsed):
 
 def _require_repeating(turn, function, size):
     """Refuse a function that grows by the same amount in each period, as the angle of a link that turns fully."""
-    first, second = (np.asarray(function(turn.at.at(turn.period * (PROBE_PLACES + turns)))) for turns in (0.0, 1.0))
+    first, second = (
+        np.asarray(function(turn.at.moved_to(turn.period * (PROBE_PLACES + turns)))) for turns in (0.0, 1.0)
+    )
     growth = float(np.mean(second - first))
     if abs(growth) > GROWTH_TOLERANCE * size and np.all(
         np.abs(second - first - growth) < GROWTH_TOLERANCE * abs(growth)
@@ -324,7 +326,7 @@ def _size_and_rounding(turn, quantity, samples, good, position):
     calm = good & (turn.condition < MAX_ORDINARY_CONDITION)
     calm = calm if calm.any() else good
     size = float(np.max(np.abs(samples[calm]), initial=0.0))
-    terms = largest_term(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
+    terms = largest_term(turn.at if calm.all() else turn.at.moved_to(turn.angle[calm]), quantity) if calm.any() else 0.0
     floor = np.full(samples.shape, FLOOR * max(terms, size))
     if calm.all():
         return size, floor

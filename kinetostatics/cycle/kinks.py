@@ -114,7 +114,7 @@ def _period_starts(part, solution):
 
 def _friction_sign_changes(solution, samples):
     count = samples * round(solution.period / TURN)
-    return sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, count)
+    return sign_changes(lambda angle: solution.unsolved_at(angle).dynamics.friction_signs, solution.period, count)
 
 
 def sign_changes(function, period, samples):

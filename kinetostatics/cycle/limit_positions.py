@@ -12,7 +12,6 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.loads import TURN, refusals
 from ..mechanics import assembly, energy_contact
-from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .kinks import ANGLE_TOLERANCE, FINE_SAMPLES, kinks_and_jumps
@@ -87,8 +86,6 @@ class Turn:
         pieces = Pieces.between(np.mod(np.concatenate([kinks, graded]), period)[None], period, MAX_WIDTH)
         angle = pieces.checked.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
-        if first.friction.acting:  # the angles of the solution may need fewer passes
-            first = solve_friction(first, checks_of)
         if problem := repeating_problem(solution):
             raise ParameterError(problem)
         checks.require("extremes", *refusals(first), *energy_contact.refusals(first))
@@ -106,7 +103,7 @@ class Turn:
     @cached_property
     def even(self):
         """The solution at even crank angles, at which friction is looked at."""
-        return self.at.at(np.linspace(0.0, self.period, round(FINE_SAMPLES * self.period / TURN), endpoint=False))
+        return self.at.moved_to(np.linspace(0.0, self.period, round(FINE_SAMPLES * self.period / TURN), endpoint=False))
 
     @property
     def beside_kinks(self):
@@ -174,7 +171,7 @@ class Turn:
         """
         angle, distance = float(angle % self.period), LIMIT_DISTANCES
         if (angle, side) not in self._beside_limits:
-            self._beside_limits[angle, side] = self.at.at(np.mod(angle + side * distance, self.period))
+            self._beside_limits[angle, side] = self.at.moved_to(np.mod(angle + side * distance, self.period))
         near = self._beside_limits[angle, side]
         values = np.asarray(function(near), dtype=float)
         with np.errstate(invalid="ignore"):

@@ -256,7 +256,7 @@ def undeclared_jumps(function, places, step):
 def _values_of(item, solution, angle):
     """Values of a load function at crank angles, (designs, N)."""
     blocks = np.array_split(angle, 1 + angle.size * math.prod(solution.shape[:-1]) // BLOCK_VALUES)
-    values = [np.atleast_2d(user_value(item, solution.at(some))) + 0.0 * some for some in blocks]
+    values = [np.atleast_2d(user_value(item, solution.unsolved_at(some))) + 0.0 * some for some in blocks]
     return np.concatenate(values, axis=-1)
 
 
@@ -269,7 +269,7 @@ def repeating_problem(solution):
         angle = np.linspace(0.0, period, round(REPEAT_SAMPLES * period / TURN), endpoint=False) + 1e-3
 
         def push(turns, item=item, angle=angle, period=period):
-            return np.broadcast_to(user_value(item, solution.at(angle + turns * period)), angle.shape)
+            return np.broadcast_to(user_value(item, solution.unsolved_at(angle + turns * period)), angle.shape)
 
         first, other = push(0), push(1)
         if _repeats(first, other):

@@ -171,7 +171,7 @@ def losses(solution) -> Losses:
         A load is so uneven that fewer digits of the powers are right.
     """
     turn = closed_turn(solution, "losses")
-    at = turn.at.at(turn.angle[turn.usable])
+    at = turn.at.moved_to(turn.angle[turn.usable])
     if not np.all(np.asarray(at.crank_speed)):
         raise ParameterError("losses: the crank stands still, so no power flows; give a crank_speed")
     own = [item for item in solution.loads if not hasattr(item, "potential")]
@@ -183,7 +183,7 @@ def losses(solution) -> Losses:
     powers = [*lost.values(), *(partial(_taken, item) for item in loads.values())]
 
     def by_angle(angle):
-        there = turn.at.at(turn.clear(angle))
+        there = turn.at.moved_to(turn.clear(angle))
         speed = np.broadcast_to(np.abs(there.crank_speed), angle.shape)
         drive = there.crank_speed * there.balancing_torque
         return np.array([np.ones(angle.shape), drive, *(power(there) for power in powers)]) / speed

@@ -88,7 +88,7 @@ def mean_absolute_torque_errors(solution):
         return MeanErrors(np.inf, np.inf)
     mean, error, _, pieces = _mean_of_absolute_torque(turn)
 
-    bounds = turn.at.at(turn.clear(pieces.angle.ravel())).error_bound("balancing_torque")
+    bounds = turn.at.moved_to(turn.clear(pieces.angle.ravel())).error_bound("balancing_torque")
     bound = math.fsum(pieces.whole(bounds.reshape(pieces.angle.shape))) / turn.period  # also of the magnitude
     return MeanErrors(SAFE * (bound + (pieces.count + ROUNDINGS) * UNIT_ROUNDOFF * mean), error)
 
@@ -97,9 +97,9 @@ def _mean_of_absolute_torque(turn):
     """Mean, estimate of its error, rounding of the values, and pieces of the sum."""
 
     def torque(angle):
-        return turn.at.at(turn.clear(angle)).balancing_torque[None]
+        return turn.at.moved_to(turn.clear(angle)).balancing_torque[None]
 
-    floor = TERM_ROUNDING * turn.at.at(turn.angle[turn.usable]).largest_torque_term
+    floor = TERM_ROUNDING * turn.at.moved_to(turn.angle[turn.usable]).largest_torque_term
     _, (error,), pieces, values = means(torque, turn, floor)
     place, piece = pieces.zeros(values[0, :, 1:-1])
     parts = Pieces(np.union1d(pieces.edges, pieces.angle_at(piece, place)), pieces.count)
@@ -118,9 +118,9 @@ def energy_per_turn(solution):
         The solution is a batch of designs, or does not close all round.
     """
     turn = closed_turn(solution, "energy per turn")
-    at = turn.at.at(turn.angle[turn.usable])
+    at = turn.at.moved_to(turn.angle[turn.usable])
     floor = TERM_ROUNDING * at.largest_torque_term
-    (mean,), *_ = means(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque[None], turn, floor)
+    (mean,), *_ = means(lambda angle: turn.at.moved_to(turn.clear(angle)).balancing_torque[None], turn, floor)
     return TURN * float(mean) * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)
 
 

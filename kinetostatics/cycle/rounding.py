@@ -74,7 +74,8 @@ class BoundedExtremes:
             return {}
         angle = np.unique(np.concatenate([item.angle for item in found.values()]))
         jumps = np.flatnonzero((np.abs(angle[:, None] - self.solution.sampled.kinks) < AT_JUMP).any(axis=1))
-        at = self.solution.at(np.concatenate([angle, angle[jumps] - BOUND_OFFSET, angle[jumps] + BOUND_OFFSET]))
+        beside = np.concatenate([angle[jumps] - BOUND_OFFSET, angle[jumps] + BOUND_OFFSET])
+        at = self.solution.sampled.at.moved_to(np.append(angle, beside))
         engine = NUMPY if getattr(at.engine, "compiled", False) else at.engine  # no loop is compiled for a table
         try:
             values, errors = engine.with_bounds(at.dynamics, tuple(found))

@@ -152,7 +152,7 @@ def _means(solution, function):
     """Means over the period of functions of a solution, (functions,)."""
     turn = closed_turn(solution, "contact")
     floor = TERM_ROUNDING * np.abs(function(turn.at)).max(axis=1)
-    return means(lambda angle: function(turn.at.at(angle)), turn, floor)[0]
+    return means(lambda angle: function(turn.at.moved_to(angle)), turn, floor)[0]
 
 
 def pressure_from_hardness(brinell):

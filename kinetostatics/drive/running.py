@@ -22,7 +22,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
-from ..solution.parameters import crank_angles, hint_at_angles
+from ..solution.parameters import crank_angles
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from .energy_flow import energy_flow, zero_if_rounding
@@ -47,13 +47,12 @@ class RunningSolution(Solution):
             f", mean speed {self.running.mean_speed:.9g} rad/s>"
         )
 
-    def at(self, crank_angle):
-        """The same machine in the same running at other crank angles."""
-        hint_at_angles(self.mechanism.name, crank_angle)
+    def unsolved_at(self, crank_angle):
+        """The same machine in the same running, with the passes over friction that it has."""
         return self.moved_to(crank_angles(crank_angle))
 
     def moved_to(self, angle):
-        """The same without a hint at angles that look like degrees."""
+        """As `unsolved_at` for an array of crank angles."""
         motion = self.running.motion(angle)
         speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
         return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)

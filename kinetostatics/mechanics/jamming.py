@@ -96,6 +96,8 @@ def jammed_angles(solution):
 
 def warn_if_not_converged(item, margin, residual, stacklevel):
     """Warn where friction of a solution, or of a program's state, has not converged."""
+    if not _is_plain(margin):
+        return
     with np.errstate(invalid="ignore"):
         lost = (margin > 0) & ~converged(margin, residual)
     if lost.any():

@@ -11,7 +11,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ..engines.program import plausibility_test
-from ..errors import HintWarning
+from ..errors import HintWarning, ParameterError
 from ..machine import plausibility
 from ..machine.loads import value_of
 from ..machine.mechanism import Mechanism
@@ -79,6 +79,16 @@ def tables_over_angles(item):
     return [
         name for name, value in (*drive, *loads) if np.ndim(value) and np.shape(value)[-1] > 1 and not callable(value)
     ]
+
+
+def require_known_between_angles(item):
+    """Refuse drives and loads that are tables over the crank angles given."""
+    varying = tables_over_angles(item)
+    if varying:
+        raise ParameterError(
+            f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
+            "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
+        )
 
 
 def drive_and_loads_text(item):

@@ -177,7 +177,8 @@ def shares(solution, name) -> Shares:
     """Shares of the sources of one quantity; see `Solution.shares`."""
     name, quantity = _linear_quantity(solution, name)
     turn = closed_turn(solution, "shares")
-    whole = replace(solution, engine=NUMPY if getattr(solution.engine, "compiled", False) else solution.engine)
+    engine = NUMPY if getattr(solution.engine, "compiled", False) else solution.engine
+    whole = replace(solution, engine=engine, friction=turn.at.friction)
     superposed = not solution.friction.acting
     find, other_machines = (_alone, sources_alone) if superposed else (_left_out, machines_without)
     others = other_machines(whole)
@@ -189,7 +190,7 @@ def shares(solution, name) -> Shares:
     total = parts[0]
     if total.peak == 0.0:
         raise ParameterError(f"shares: {name} is 0 all over the period, so no source has a share in it")
-    at = whole.at(turn.clear(np.array([0.0 if np.isnan(total.angle) else total.angle])))
+    at = whole.moved_to(turn.clear(np.array([0.0 if np.isnan(total.angle) else total.angle])))
     values = np.array([part.read(at) for part in parts])[..., 0]  # (parts, 1 or 2)
     along = values[0] / np.hypot(*values[0]) if quantity.vector else np.ones(1)
     noise = FLOOR * max(abs(part.peak) for part in parts)
@@ -284,7 +285,7 @@ def _require_massless_links(machines, name):
     """Refuse groups of the user's own that cannot resolve a link without mass, whose force is None."""
     for source, machine in machines.items():
         try:
-            components(machine.at(np.zeros(1)), name)
+            components(machine.moved_to(np.zeros(1)), name)
         except (TypeError, AttributeError) as error:
             raise ParameterError(
                 f"shares: a group of your own fails where nothing but {source} acts ({error}); what is zero comes to "
@@ -294,8 +295,7 @@ def _require_massless_links(machines, name):
 
 def _with_friction_solved(solution):
     """The solution with enough passes over its friction; an error where it jams."""
-    even = solution.at(np.linspace(0.0, solution.period, FRICTION_ANGLES, endpoint=False))
-    solved = jamming.solve_friction(even, jamming.checks_of)
+    solved = solution.at(np.linspace(0.0, solution.period, FRICTION_ANGLES, endpoint=False))
     jamming.require_free(solved, "shares")
     return solved
 
@@ -314,14 +314,14 @@ class Part(NamedTuple):
 
 def _alone(whole, name, source, other):
     """`Part` of a source by the machine with this source alone."""
-    return Part(source, lambda at: components(other.at(at.crank_angle), name), *_peak(other, name))
+    return Part(source, lambda at: components(other.moved_to(at.crank_angle), name), *_peak(other, name))
 
 
 def _left_out(whole, name, source, other):
     """`Part` of a source by the machine without it."""
 
     def effect(at):
-        return np.subtract(components(at, name), components(other.at(at.crank_angle), name))
+        return np.subtract(components(at, name), components(other.moved_to(at.crank_angle), name))
 
     def size(at):
         found = effect(at)
@@ -355,7 +355,7 @@ def _root_mean_squares(turn, whole, parts):
     """Root mean square of each part over the crank angle, (parts,)."""
 
     def squares(angle):
-        at = whole.at(turn.clear(angle))
+        at = whole.moved_to(turn.clear(angle))
         return np.array([np.square(part.read(at)).sum(axis=0) for part in parts])
 
     largest = np.array([part.peak**2 for part in parts])

@@ -16,7 +16,7 @@ import numpy as np
 from ..cycle.limit_positions import Turn
 from ..cycle.load_functions import FUNCTION_STEP
 from ..engines.engines import NUMPY
-from ..errors import ConditionWarning, ParameterError
+from ..errors import ConditionWarning
 from ..machine.group import GROUND
 from ..machine.links import Turning
 from ..machine.loads import period_of, refusals
@@ -36,8 +36,8 @@ from .parameters import (
     crank_angles,
     drive_and_loads_text,
     hint_at_angles,
+    require_known_between_angles,
     scene_plausibility_test,
-    tables_over_angles,
 )
 
 MAX_VALUES_TOGETHER = 100_000
@@ -121,8 +121,8 @@ class Solution(Certainty, Motion):
 
     For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
     `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
-    `places`, `PATHS`, `RULES`, `moved_to`, `first_look`, `with_doubt`, `proportion`, `farthest`, `loads_are_given`,
-    `is_given` and `check`.
+    `places`, `PATHS`, `RULES`, `unsolved_at`, `moved_to`, `first_look`, `with_doubt`, `proportion`, `farthest`,
+    `loads_are_given`, `is_given` and `check`.
 
     Examples
     --------
@@ -199,18 +199,20 @@ class Solution(Certainty, Motion):
         >>> print(f"{s.at(0.5).balancing_torque:.1f} N m")
         37051.3 N m
         """
-        varying = tables_over_angles(self)
-        if varying:
-            raise ParameterError(
-                f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
-                "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
-            )
-        angle = crank_angles(crank_angle)
+        moved = self.unsolved_at(crank_angle)
         hint_at_angles(self.mechanism.name, crank_angle)
-        return self.moved_to(angle)
+        if self.friction.acting:
+            moved = jamming.solve_friction(moved, jamming.checks_of)
+            jamming.warn_if_not_converged(moved, *jamming.checks_of(moved), stacklevel=3)
+        return moved
+
+    def unsolved_at(self, crank_angle):
+        """The same with the passes over friction that it has; other crank angles may need more."""
+        require_known_between_angles(self)
+        return self.moved_to(crank_angles(crank_angle))
 
     def moved_to(self, angle):
-        """The same at an array of crank angles, without any check; the structure is not read again."""
+        """As `unsolved_at` for an array of crank angles, without any check; the structure is not read again."""
         moved = replace_unchecked(self, crank_angle=read_only(angle))
         vars(moved).update(apart=self.apart, kind=self.kind)
         return moved

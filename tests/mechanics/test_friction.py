@@ -20,6 +20,7 @@ from kinetostatics.mechanics.friction import (
 )
 from support.every import every, quick
 from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
+from support.pulsed_scenes import PulsedScene
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)
@@ -459,6 +460,22 @@ def test_passes_grow_until_friction_is_found(margin, residuals, passes):
     assert jamming.solve_friction(scene, evaluate).friction.passes == passes[-1]
     assert tuple(taken) == passes
     assert jamming.solve_friction(scene).friction.passes == 6  # nobody looks at it afterwards
+
+
+def test_other_crank_angles_get_the_passes_that_they_need():
+    scene, angles = PulsedScene(125).scene, np.linspace(0.0, 2 * np.pi, 1000)
+    start, whole = scene.solve(1), scene.solve(angles)
+    assert (start.friction.passes, whole.friction.passes) == (3, 6)
+    assert np.array_equal(start.at(angles).balancing_torque, whole.balancing_torque)
+    assert start.unsolved_at(angles).friction.passes == 3  # for motion alone
+
+
+def test_friction_that_does_not_converge_at_other_crank_angles_is_said(monkeypatch):
+    s = ks.Scene(PUMP, 3.0, loads=ks.Gravity(), friction={"A": ks.PinFriction(0.1, 0.01)}).solve(1)
+    monkeypatch.setattr(jamming, "MAX_CHANGE", -1.0)
+    with pytest.warns(ks.ConditionWarning, match="not found to rounding") as found:
+        s.at(TURN)
+    assert found[0].filename == __file__
 
 
 def states(kappa, free):
