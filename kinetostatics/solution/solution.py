@@ -203,7 +203,8 @@ class Solution(Certainty, Motion):
         hint_at_angles(self.mechanism.name, crank_angle)
         if self.friction.acting:
             moved = jamming.solve_friction(moved, jamming.checks_of)
-            jamming.warn_if_not_converged(moved, *jamming.checks_of(moved), stacklevel=3)
+            margin, residual = jamming.checks_of(moved)
+            jamming.warn_if_not_converged(moved, margin, residual, stacklevel=3)
         return moved
 
     def unsolved_at(self, crank_angle):
