@@ -406,8 +406,8 @@ class Solution(Certainty, Motion):
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
 
-        The share of a source is its own value at the crank angle where the total is largest, for a vector its projection
-        on the total. Shares add up to the peak. Beside them stand peak and root mean square of each source alone. With
+        The share of a source is its value at the crank angle where the total is largest, for a vector its projection on
+        the total. Shares add up to the peak. Beside them stand peak and root mean square of each source alone. With
         friction a row is the effect of leaving out its source; friction of each joint is a source, too. For one design,
         over its whole period.
 
