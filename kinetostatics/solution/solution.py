@@ -408,8 +408,7 @@ class Solution(Certainty, Motion):
 
         The share of a source is its value at the crank angle where the total is largest, for a vector its projection on
         the total. Shares add up to the peak. Beside them stand peak and root mean square of each source alone. With
-        friction a row is the effect of leaving out its source; friction of each joint is a source, too. For one design,
-        over its whole period.
+        friction a row is the effect of leaving out its source, friction of a joint among them. For one design.
 
         Parameters
         ----------
