@@ -121,7 +121,7 @@ def page_of(name, members):
     if kind == "data":
         text = docstring(name).replace("\n", "\n   ")
         return f"{title}\n{'=' * len(title)}\n\n.. py:data:: {full(name)}\n\n   {text}\n"
-    shown = f"   :members: {told(name)}\n   :inherited-members: object\n" if members else ""
+    shown = f"   :members: {told(name)}\n   :inherited-members: object, Mapping\n" if members else ""
     return f"{title}\n{'=' * len(title)}\n\n.. auto{kind}:: {full(name)}\n{shown}"
 
 

@@ -91,9 +91,9 @@ class Case:
 
     @property
     def comparisons(self):
-        """Names of the variants compared with each reference, a dict of lists, the reference of the case first.
+        """Names of the variants by their reference, a dict of lists; the case's reference comes first.
 
-        A variant that is its own reference has a list, too.
+        A reference that nothing else is compared with has an empty list.
 
         Examples
         --------

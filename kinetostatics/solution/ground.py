@@ -28,16 +28,16 @@ class Ground(Mapping):
     - fixed pivots, "O", "O2" ...: the opposite of the reaction; friction of the pin is a couple.
     - guides, "guide", "guide2" ...: the opposite of the reaction, friction included, and of the guide moment, at the
       slider pin.
-    - "cam": along the common normal. The point is the contact, on the side that the force says, where the roller has a
-      radius (`Roller` or `RollerFriction`), else the roller's centre A, through which the normal passes.
-    - loads as in parameter paths, "spring", "spring2", "point_damper", "torsion_spring" ...: the foot of a spring along
-      a guide, at the coordinate where it is free; the fixed point of a load between two points; the opposite couple of
-      a torque against the frame; a `ProcessForce` with ``reaction="frame"``, at the slider pin.
+    - "cam": along the common normal. The point is the contact if the roller has a radius (`Roller`, `RollerFriction`),
+      on the flank that the sign of the force gives; else the roller's centre A, through which the normal passes.
+    - loads, named as in parameter paths, "spring", "spring2", "point_damper", "torsion_spring" ...: the foot of a
+      spring along a guide, at the coordinate where it is free; the fixed point of a load between two points; the
+      opposite couple of a torque against the frame; a `ProcessForce` with ``reaction="frame"``, at the slider pin.
     - "motor": the opposite of the balancing torque, a couple.
 
-    By d'Alembert's principle `resultant` is shaking force plus weights plus outside forces on the links: `Force` and
-    `ProcessForce` with ``reaction="outside"``. A `Force` at a fixed point acts on the frame from outside and is left
-    out. A load without the base class `Load` counts as one from outside.
+    By d'Alembert's principle `resultant` is the sum of shaking force, weights and outside forces on the links (`Force`,
+    and `ProcessForce` with ``reaction="outside"``). A `Force` at a fixed point acts on the frame from outside and is
+    left out. A load without the base class `Load` counts as one from outside.
 
     Attributes
     ----------

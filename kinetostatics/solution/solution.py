@@ -409,9 +409,9 @@ class Solution(Certainty, Motion):
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
 
-        A share is what the source alone causes where the total is largest, of a vector its projection on the total; the
-        shares add up to the peak. Beside it stand peak and root mean square of the source alone. With friction a row is
-        the effect of leaving out its source, friction of each joint among them. Of one design, over its whole period.
+        The share of a source is its value at the crank angle where the total is largest, for a vector its projection on
+        the total. Shares add up to the peak. Beside them stand peak and root mean square of each source alone. With
+        friction a row is the effect of leaving out its source, friction of a joint among them. For one design.
 
         Parameters
         ----------

@@ -43,6 +43,10 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
     {"marker": MASS_CENTRE_PATH, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
+GRAVITY_PLACE, GRAVITY_LENGTH = (0.93, 0.12), 30.0
+"""Tip of the arrow of gravity, shares of the axes, and its length, typographic points."""
+DOWNWARDS = np.cos(np.radians(1.0))
+"""Cosine of the angle from -y up to which gravity needs no arrow."""
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes in counterweights."""
 LINES: dict[str, dict[str, Any]] = {
@@ -114,7 +118,8 @@ def mass_centres(solutions, angle=60, ax=None):
 def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
-    Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the force or torque
+    Loads, counterweights, joint names and mass centres are drawn in the first pose. An arrow "g" in the corner shows
+    the direction of weight that does not act along -y. Arrows of loads point as the force or torque
     acts there; where it is zero or unknown, as at its largest magnitude; for functions, as a positive one.
 
     Parameters
@@ -165,8 +170,21 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
         label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
     _draw_own(ax, [(stroke, owners) for stroke, owners in owned if len(owners) < len(named)])
+    _draw_gravity(ax, solution.dynamics.gravity)
     set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
+
+
+def _draw_gravity(ax, gravity):
+    """Draw an arrow along gravity in the lower right corner, unless it acts along -y or is zero."""
+    along = np.zeros(2) if gravity is None else np.ravel(gravity)
+    size = np.hypot(*along)
+    if size == 0.0 or along[1] < -DOWNWARDS * size:
+        return
+    frame = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    style = {"ha": "center", "va": "center", "fontsize": "small", "color": INK}
+    arrow = {"arrowstyle": "-|>", "color": INK}
+    ax.annotate("g", GRAVITY_PLACE, -GRAVITY_LENGTH * along / size, **frame, **style, arrowprops=arrow)
 
 
 def _draw_own(ax, strokes):

@@ -94,6 +94,8 @@ PRESSING = 0.5
 MIN_DRAWN = 1e-9
 """Force, relative to the largest, below which there is no arrow."""
 SCALE_SHARES = (1.0, 2.0, 5.0)
+LABEL_MARGIN = 0.28
+"""Margin left and right of the arrows for their values, relative to the width of the drawing."""
 
 
 def free_body(solution, link, angle, ax=None):
@@ -153,7 +155,7 @@ def free_body(solution, link, angle, ax=None):
         handles=handles, frameon=False, fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=5
     )
     set_equal_scales(ax)
-    ax.margins(0.15)
+    ax.margins(x=LABEL_MARGIN, y=0.15)
     return ax
 
 

@@ -229,6 +229,22 @@ def shape(mechanism):
     return Shape(ks.solve(mechanism, TURN, crank_speed=0.0).dynamics)
 
 
+@pytest.mark.parametrize(
+    ("loads", "tail"),
+    [
+        ([], []),
+        ([ks.Gravity()], []),
+        ([ks.Gravity(direction=np.pi)], [[1, 0]]),
+        ([ks.Gravity(direction=0.0)], [[-1, 0]]),
+    ],
+)
+def test_weight_that_does_not_act_down_has_an_arrow(loads, tail):
+    _, ax = plt.subplots()
+    drawn(SAW, ax, loads)
+    arrows = [text for text in ax.texts if text.get_text() == "g"]
+    assert_allclose([text.get_position() for text in arrows], drawings.GRAVITY_LENGTH * np.array(tail), atol=1e-9)
+
+
 def test_size_is_the_largest_extent():
     small, large = (shape(ks.crank_slider(0.1 * size, 0.4 * size)) for size in (1.0, 3.0))
     assert small.size == pytest.approx(0.6, rel=1e-9)

@@ -55,7 +55,7 @@ class GasSpring(SliderLoad):
     at : float or array
         Coordinate of the slider along its guide (B . guide direction) at which volume and pressure are given, m.
     side : +1 or -1
-        Direction in which the gas pushes the slider: +1 along the guide, -1 against it. Moving that way expands it.
+        Direction in which the gas pushes the slider: +1 along the guide, -1 against it. It expands in that direction.
     exponent : float or array
         Polytropic exponent n: 1 isothermal, 1.4 adiabatic for air; from 1 to 3.
     ambient : float or array
@@ -72,12 +72,12 @@ class GasSpring(SliderLoad):
     Warns
     -----
     HintWarning
-        The pressure is below the ambient pressure, as a gauge pressure may be, or looks like bar.
+        The pressure is below the ambient pressure (is it a gauge pressure?), or looks like bar.
 
     Notes
     -----
     The force is (pressure - ambient) times the area. Potential energy, J, 0 at `at`:
-    ``p0 V0 / (n - 1) * ((V0 / V)**(n - 1) - 1) + ambient * (V - V0)``; the gas takes no heat that it does not return.
+    ``p0 V0 / (n - 1) * ((V0 / V)**(n - 1) - 1) + ambient * (V - V0)``; the gas does no net work over a turn.
 
     Examples
     --------

@@ -91,9 +91,9 @@ class Spring(SliderLoad):
         N/m3, factor of the cube of the elongation in the force; negative for a softening spring.
     mass : float or array
         kg, of all springs together. Each is uniform, has its foot on the frame, and stretches evenly, also with a
-        cubic term; that neglects waves, as a hint tells where they count (`ks.design.spring_surge`). A third of the
-        mass moves with the slider in energies, reduced inertia, reactions and torque, half of it in the shaking
-        force. Half of its weight acts on the slider, the other half on the foot.
+        cubic term. Waves in the coils are neglected; a `HintWarning` says where they count
+        (`ks.design.spring_surge`). A third of the mass moves with the slider in energies, reduced inertia, reactions
+        and torque; half of it counts in the shaking force. Half of its weight acts on the slider, half on the foot.
 
     Raises
     ------
@@ -140,8 +140,8 @@ class Spring(SliderLoad):
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
         A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included: that is
-        z tan z = m / M, which has one root below pi / 2 for every m and M. A scene leaves the waves out, so that its
-        end is stiffer there by c z^4 / 45 and more.
+        z tan z = m / M, which has one root below pi / 2 for every m and M. A scene neglects the waves, so in
+        it the end of the spring is stiffer by c z^4 / 45 and more.
 
         Parameters
         ----------
