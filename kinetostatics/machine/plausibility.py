@@ -97,14 +97,18 @@ def _surge_hints(mechanism, spring, crank_speed):
     if found is None or not np.any(crank_speed):
         return
     order, position = found
-    natural = surge.surge_frequency(np.maximum(spring.mean_rate(position), 0.0), np.maximum(spring.mass, MIN_MASS))
-    slowest, driven = float(np.min(natural)), order * _most(abs(crank_speed))
-    if slowest < surge.MIN_RATIO * driven:
+    rate, mass, speed = np.maximum(spring.mean_rate(position), 0.0), np.asarray(spring.mass), np.abs(crank_speed)
+    natural = surge.surge_frequency(rate, np.maximum(mass, MIN_MASS))
+    natural, mass, driven = np.broadcast_arrays(natural, mass, order * speed)
+    ratio = np.full(natural.shape, np.inf)
+    np.divide(natural, driven, out=ratio, where=(mass > 0.0) & (driven > 0.0))
+    worst = np.unravel_index(np.argmin(ratio), ratio.shape)
+    if ratio[worst] < surge.MIN_RATIO:
         yield (
-            f"{spring.title}: its surge ratio is {slowest / driven:.3g}, below {surge.MIN_RATIO:g}: with "
-            f"{_most(spring.mass):.6g} kg it swings between its ends at {slowest:.4g} rad/s, and harmonic {order:g} of "
-            f"the slider, the highest that matters, drives it at {driven:.4g} rad/s; waves in the spring, which its "
-            f"`mass` leaves out, change the stiffness of its end by {surge.wave_percentage(slowest / driven)}"
+            f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}: with "
+            f"{mass[worst]:.6g} kg it swings between its ends at {natural[worst]:.4g} rad/s, and harmonic {order:g} of "
+            f"the slider, the highest that matters, drives it at {driven[worst]:.4g} rad/s; waves in the spring, which "
+            f"its `mass` leaves out, change the stiffness of its end by {surge.wave_percentage(ratio[worst])}"
         )
 
 

@@ -142,7 +142,7 @@ def principal_points(mechanism, loads=()):
     Raises
     ------
     ParameterError
-        The first argument is not a mechanism, or the loads are no loads.
+        The first argument is not a mechanism, the loads are no loads, or a spring is on no slider of it.
 
     Examples
     --------
@@ -163,6 +163,10 @@ def principal_points(mechanism, loads=()):
     )
     links = mechanism.links.items()
     springs = {name: mass.shaking for name, mass in spring_masses(loads).items()}
+    elsewhere = (name for name in springs if name not in mechanism.guides)
+    checks.require(
+        "principal_points", *(checks.choice("Spring: on", name, tuple(mechanism.guides)) for name in elsewhere)
+    )
     masses = [(name, link.mass) for name, link in links] + [*springs.items()]
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}

@@ -28,6 +28,7 @@ from ..cycle.rounding import FLOOR, PLACED, zeroed
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..machine.friction import NO_FRICTION, frictions_by_joint
+from ..machine.group import GROUND
 from ..machine.links import Link
 from ..machine.loads import Force, Gravity, spring_masses
 from ..mechanics import jamming
@@ -208,6 +209,11 @@ def _linear_quantity(solution, name) -> tuple[str, Quantity]:
     known = of_scene(solution)
     linear = [key for key, found in known.items() if found.kind in KINDS or key in LINEAR_ENERGIES]
     bare = without_bars(solution, name)
+    if known[bare].kind == GROUND:
+        raise QuantityError(
+            f"shares: {bare} is a force on the frame, at places that a machine with one source alone may lack; shares "
+            f"of its reactions and shaking force tell as much: {', '.join(linear)}"
+        )
     if bare not in linear:
         raise QuantityError(
             f"shares: {bare} is not linear in masses and loads; forces and moments are, which are {', '.join(linear)}"

@@ -215,6 +215,8 @@ PASSING = ks.solve(
         (saw(), 3, ks.ParameterError, "quantity must be a name"),
         (saw(), "slider_velocity", ks.QuantityError, "slider_velocity is not linear in masses and loads; forces and"),
         (saw(), "kinetic_energy", ks.QuantityError, "which are balancing_torque, .*, load_torque"),
+        (saw(), "|ground O|", ks.QuantityError, "ground O is a force on the frame, .*: balancing_torque"),
+        (saw(), "ground", ks.QuantityError, "ground is a force on the frame"),
         (saw(), "|guide_force|", ks.QuantityError, "only of a vector"),
         (BATCH, "O", ks.ParameterError, "shares works on one design at a time"),
         (OPEN, "O", ks.ParameterError, "does not close for crank angles"),

@@ -158,7 +158,7 @@ class GasSpring(SliderLoad):
         with np.errstate(invalid="ignore"):
             gone = volume <= 0.0
         if gone.any():
-            angle = np.degrees(np.broadcast_to(motion.crank_angle, gone.shape)[gone])
+            angle = np.degrees(np.unique(np.broadcast_to(motion.crank_angle, gone.shape)[gone]))
             many = ", ".join(f"{part:.6g}" for part in angle[:3])
             worst = np.unravel_index(np.nanargmin(volume), volume.shape)
             given, area, at, left = (

@@ -310,7 +310,7 @@ class PointLoad(PlacedLoad):
             size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
             meet = np.hypot(*(first - second)) <= MEETING_DISTANCE * size
         if meet.any():
-            angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
+            angle = np.unique(np.broadcast_to(motion.crank_angle, meet.shape)[meet])
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
             yield checks.Problem(
                 f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "

@@ -1,5 +1,6 @@
 """Gas springs: polytropic law, energy, limits, refusals, and what every engine and case file makes of them."""
 
+import re
 import warnings
 from dataclasses import replace
 
@@ -256,9 +257,13 @@ def test_no_volume_is_refused_with_crank_angles():
     program = ks.compile(ks.Scene.of(pump(gas(side=-1))), ("balancing_torque",), engine="numpy")
     with pytest.raises(ks.ParameterError, match="no volume is left"):
         program(TURN, {"gas_spring.volume": 5e-5})
-    designs = np.array([[5e-4], [5e-5]])
-    with pytest.raises(ks.ParameterError, match="no volume is left"):
+    designs = np.array([[5e-4], [5e-5], [4e-5]])
+    with pytest.raises(ks.ParameterError) as one:
+        pump(gas(volume=4e-5, side=-1))
+    with pytest.raises(ks.ParameterError) as several:
         pump(gas(volume=designs, side=-1))
+    counted = re.compile(r"no volume is left at \d+ crank angles, the first .* deg")  # of both designs together
+    assert counted.findall(str(several.value)) == counted.findall(str(one.value)) != []
 
 
 @every(

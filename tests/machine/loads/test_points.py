@@ -76,6 +76,10 @@ def test_meeting_points_are_refused_with_the_angle(item):
     assert np.isfinite(ks.solve(PUMP, [1.0], crank_speed=9.0, loads=item).balancing_torque).all()
     with pytest.raises(ks.ParameterError, match="the points meet"):
         ks.extremes(ks.solve(PUMP, [1.0], crank_speed=9.0, loads=item), "B")
+    designs = ks.crank_slider(0.1, 0.4, slider=ks.Link(np.array([[1.0], [2.0]])))
+    met = ks.PointForce(3.0, between=("A", (0.1, 0.0)))
+    with pytest.raises(ks.ParameterError, match="the points meet at 1 crank angles, 0 deg"):
+        ks.solve(designs, [0.0, 1.0], crank_speed=9.0, loads=met)
 
 
 def test_sweeps_name_designs_with_meeting_points():

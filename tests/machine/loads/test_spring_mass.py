@@ -1,5 +1,6 @@
 """Springs with mass against a heavier slider, beads on a line, waves in closed form, and the figures of the saw."""
 
+import re
 import warnings
 from dataclasses import replace
 
@@ -108,6 +109,9 @@ def test_half_of_the_mass_shakes_the_frame():
     assert ks.principal_points(s.mechanism, s.loads[0]).mass == 8.5
     with pytest.raises(ks.ParameterError, match="principal_points: loads must be loads, as of a scene, got <Solution"):
         ks.principal_points(s.mechanism, s)
+    for name in ("slider2", "coupler"):
+        with pytest.raises(ks.ParameterError, match=f"principal_points: Spring: on is '{name}', allowed: 'slider'"):
+            ks.principal_points(ks.crank_slider(0.1, 0.3), ks.Spring(1e3, 0.2, name, mass=0.1))
 
 
 @every("gravity", [0.0, 9.81])
@@ -273,11 +277,11 @@ def test_balanced_springs_of_many_designs():
     assert one_by_one[0] == 600.0 * 33.5 * 33.5
 
 
-def hints(mass, length=20.0, speed=10.0, **spring):
+def hints(mass, length=20.0, speed=10.0, stiffness=400.0, **spring):
     machine = ks.crank_slider(0.1, length, slider=ks.Link(4.0))
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
-        ks.solve(machine, 0.3, crank_speed=speed, loads=ks.Spring(400.0, length, mass=mass, **spring))
+        ks.solve(machine, 0.3, crank_speed=speed, loads=ks.Spring(stiffness, length, mass=mass, **spring))
     return [str(item.message) for item in found if "surge" in str(item.message)]
 
 
@@ -289,6 +293,27 @@ def test_a_hint_names_the_surge_ratio_below_five():
     assert "harmonic 1 of the slider, the highest that matters, drives it at 10 rad/s" in text
     assert "by 0.36 %" in text
     assert hints(1.59, speed=-9.0) == hints(0.0) == hints(1.59, speed=0.0) == []
+
+
+@every(
+    "stiffness, mass, speed, words",
+    [
+        ([0.0, 400.0], [0.0, 1.0], 10.0, None),  # the first has no mass to swing
+        ([4.0, 400.0], [1.0, 1.0], [0.1, 10.0], None),  # each at its own speed
+        (
+            [4.0, 400.0],
+            [0.1, 1.0],
+            10.0,
+            "ratio is 1.99, .*with 0.1 kg it swings between its ends at 19.87 rad/s",
+        ),
+        ([400.0, 400.0], [1.0, 1.0], [10.0, 20.0], "ratio is 3.14, .*drives it at 20 rad/s"),
+    ],
+)
+def test_a_hint_takes_each_design_by_itself(stiffness, mass, speed, words):
+    stiffness, mass, speed = (np.array(part)[..., None] if np.ndim(part) else part for part in (stiffness, mass, speed))
+    found = hints(mass, speed=speed, stiffness=stiffness)
+    assert len(found) == (words is not None)
+    assert not words or re.search(words, found[0])
 
 
 def test_a_short_coupler_drives_the_second_harmonic():
