@@ -86,7 +86,7 @@ class Solution(Certainty, Motion):
         Engine that computes it; whether it warns no more.
     resolution : float
         Step of crank angles at which load functions without `kinks` are sampled, rad.
-    shape, period, crank_sense, closed, closure
+    shape, period, crank_sense, closed, closure, gravity
     reactions, scalars
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
@@ -584,10 +584,7 @@ class Solution(Certainty, Motion):
         return self._found(joint + ending) if joint in self.friction else self._scalar(None)
 
     def _found(self, name):
-        """A quantity by its name in the table, or "closure", by the engine; another member of `dynamics` as it is.
-
-        Quantities of friction are in the table of scenes with friction alone.
-        """
+        """A quantity of the scene by name, or "closure", by the engine; another member of `dynamics` as it is."""
         if name not in self._values:
             own = of_mechanism(self.mechanism)  # sooner known than those of the scene
             if name != "closure" and name not in own and name not in of_scene(self):

@@ -52,7 +52,7 @@ class PlausibleRange(NamedTuple):
     unit: str = ""
 
 
-MAX_LENGTH_IN_LINKS = 30.0
+MAX_LENGTH_IN_LINKS = 20.0
 """Largest plausible length in lengths of the longest link; millimetres among metres give 1000."""
 PLAUSIBLE_BY_UNIT = {
     "rad": PlausibleRange(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
