@@ -26,7 +26,7 @@ import kinetostatics as ks  # noqa: E402
 from kinetostatics.casefile.reading import shipped_cases  # noqa: E402
 from kinetostatics.machine.friction import Sliding, Turning  # noqa: E402
 from kinetostatics.machine.guide import Guide  # noqa: E402
-from kinetostatics.machine.loads import Table  # noqa: E402
+from kinetostatics.machine.loads import Load, Table  # noqa: E402
 from kinetostatics.machine.loads.points import PlacePairRule, PlaceRule  # noqa: E402
 from kinetostatics.machine.loads.table_pieces import WholeTurns  # noqa: E402
 from kinetostatics.numbers import checks  # noqa: E402
@@ -100,6 +100,8 @@ class Machine(Drawn):
 
 SIMILAR = {"sawframe_2r63_ways"}
 """Cases whose variants are built as those of others."""
+LEFT_OUT = {"mass": 0.0, "reaction": "outside"}
+"""Values that loads need not name: springs without mass, process forces that the frame does not take."""
 
 
 def shipped(only):
@@ -229,7 +231,9 @@ def describe(item):
         return {"over": item.over, f"x [{x}]": item.x.tolist(), "y": item.y.tolist(), **back}
     if is_dataclass(item):
         rules = item.RULES.rules
-        names = [field.name for field in fields(item) if field.init and getattr(item, field.name) is not None]
+        given = [field.name for field in fields(item) if field.init and getattr(item, field.name) is not None]
+        left_out = LEFT_OUT if isinstance(item, Load) else {}
+        names = [name for name in given if name not in left_out or getattr(item, name) != left_out[name]]
         return {"type": type(item).__name__} | {
             name + _unit(rules.get(name), getattr(item, name)): describe(getattr(item, name)) for name in names
         }
