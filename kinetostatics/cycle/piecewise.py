@@ -366,11 +366,13 @@ class Pieces:
         one, two = evaluate(piece, low)[0], evaluate(piece, high)[0]
         with np.errstate(divide="ignore", invalid="ignore"):
             place = np.clip(np.nan_to_num(low + (high - low) * one / (one - two)), low, high)
+            moving = np.ones(place.size, dtype=bool)  # a root must not depend on those found beside it
             for _ in range(NEWTON_STEPS):
                 (value, rate), last = evaluate(piece, place), place
                 step = place - value / rate
-                place = np.clip(np.where(np.isfinite(step), step, place), low, high)
-                if np.abs(place - last).max() < NEWTON_TOLERANCE:
+                place = np.where(moving & np.isfinite(step), np.clip(step, low, high), place)
+                moving &= np.abs(place - last) >= NEWTON_TOLERANCE
+                if not moving.any():
                     break
         return place, piece
 

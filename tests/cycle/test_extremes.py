@@ -416,3 +416,9 @@ def test_value_and_bound_tables_have_equal_shape():
     proven = bounds["largest"].notna()
     assert proven.sum() > 10
     assert (bounds["largest"][proven] < 1e-11 * values["largest"][proven].abs() + 1e-9).all()
+
+
+def test_forces_that_are_constant_beside_change_points_are_known():
+    toggle = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(mass=1.0))
+    turn = ks.Scene(toggle, 10.0, loads=ks.Gravity()).solve(8)
+    assert [ks.extremes(turn, joint).constant for joint in ("A", "O2")] == [0.0, 9.81]

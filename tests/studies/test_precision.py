@@ -190,7 +190,7 @@ def few(monkeypatch):
 
 def test_case_study_takes_one_variant_a_kind(case):
     kinds = {name: precision.variant_of_each_kind(ks.load_case(name)) for name in ("mower_drive", "chain_unit")}
-    assert precision.variant_of_each_kind(case) == ["plain", "cam-circle", "cam-cosine"]
+    assert precision.variant_of_each_kind(case) == ["plain", "cam-circle", "cam-cosine", "upright-optimal"]
     assert kinds == {"mower_drive": ["unbalanced"], "chain_unit": ["rho-0.1"]}
 
 
