@@ -10,9 +10,11 @@ import warnings
 import numpy as np
 
 from ..cycle.load_functions import check_resolution, undeclared_functions
+from ..cycle.means import TERM_ROUNDING
 from ..cycle.piecewise import TAIL, Pieces, edges_between, point_count
 from ..errors import DriveError, HintWarning
 from ..machine.loads import TURN
+from ..numbers.parameter_tree import replace_unchecked
 
 MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
@@ -71,9 +73,13 @@ def resolved(driven, speed):
         state = driven.at_acceleration(angle, np.full(angle.shape, speed) if driven.by_speed else None, 0.0)
         return np.array([state.torque, state.inertia])
 
+    running = replace_unchecked(driven.scene, crank_speed=speed).unsolved(pieces.angle.ravel())
+    floor = TERM_ROUNDING * np.max(running.largest_torque_term)
+
     def rough(pieces, _, values):
         torque, inertia = values[..., 1:-1]
-        return (pieces.tail(torque) * weights(pieces) > TAIL) | (pieces.tail(inertia) > TAIL)
+        level = np.maximum(TAIL * np.abs(torque).max(), floor)
+        return (pieces.tails(torque) * weights(pieces) > level) | (pieces.tail(inertia) > TAIL)
 
     pieces, values, unresolved = pieces.resolved(evaluate(pieces.checked), evaluate, rough)
     if unresolved.any() or np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period):

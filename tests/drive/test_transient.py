@@ -255,3 +255,10 @@ def test_a_machine_that_runs_on_never_stands_still(scene, speed, motor, words):
 def test_a_motor_against_the_motion_stops_it():
     motion = ks.drive.coast(ks.Scene(WHEEL, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
     assert motion.events[-1].name == "standstill"
+
+
+def test_loads_that_cancel_but_for_rounding_are_no_torque():
+    """Two saws whose weights balance each other about the crank: 2e-13 N m of 2 kN m are left."""
+    twin = ks.load_case("sawframe_2r63_ways").variants["twin"]
+    run = ks.drive.start(twin.scene, twin.motor, twin.flywheel)
+    assert abs(run.energy_drift) < 1e-11 * 0.5 * twin.flywheel * run.speed[-1] ** 2
