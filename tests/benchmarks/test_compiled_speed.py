@@ -280,6 +280,7 @@ def test_sweep_takes_twice_its_bare_loop(benchmark, tell):
     assert whole <= 2 * alone
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_impossible_designs_hardly_slow_a_sweep(benchmark, tell):
     good = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, MANY)
     bad = good.copy()
