@@ -589,8 +589,7 @@ class Solution(Certainty, Motion):
     def _found(self, name):
         """A quantity of the scene by name, or "closure", by the engine; another member of `dynamics` as it is."""
         if name not in self._values:
-            own = of_mechanism(self.mechanism)  # sooner known than those of the scene
-            if name != "closure" and name not in own and name not in of_scene(self):
+            if name != "closure" and name not in of_mechanism(self.mechanism) and name not in of_scene(self):
                 return getattr(self.dynamics, name)
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
