@@ -129,7 +129,7 @@ def weights(pieces):
 def _require_resolved(driven, pieces, torque):
     """Refuse a load torque that the pieces do not resolve: it grows without bound."""
     size = np.abs(pieces.whole(np.abs(torque)))
-    lost = pieces.half[:, 0] * np.abs(pieces.series(torque)[-3:]).max(axis=0)
+    lost = pieces.half[:, 0] * pieces.tails(torque)
     if lost.sum() > MAX_UNRESOLVED * size.sum():
         worst = int(np.argmax(lost))
         angle = float(pieces.edges[worst : worst + 2].mean())

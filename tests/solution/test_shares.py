@@ -13,7 +13,7 @@ from support import chains, followers, friction_machines
 from support.case_files import shipped, variant_names
 from support.every import every
 from support.machines import largest
-from support.scenes import OWN, SCENES
+from support.scenes import BATCH, OWN, PASSING, SCENES
 
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 ANGLES = np.linspace(0.05, 6.3, 40)
@@ -197,15 +197,8 @@ def test_without_any_friction_left_effects_are_shares(kind):
 # Bad input
 
 
-BATCH = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(np.array([[1.0], [2.0]]))), 0.1, crank_speed=1.0)
 OPEN = ks.solve(ks.crank_slider(1.0, 0.5, guide_offset=0.2, slider=ks.Link(1.0)), ANGLES, crank_speed=1.0, on_gap="nan")
 IDLE = ks.solve(ks.crank_slider(0.3, 2.0), 0.1, crank_speed=1.0)
-PASSING = ks.solve(
-    ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open"),
-    0.1,
-    crank_speed=1.0,
-    loads=ks.Torque(5.0, on="coupler"),
-)
 
 
 @every(

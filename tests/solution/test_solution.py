@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.mechanism import Mechanism
+from kinetostatics.mechanics import quantities
 from support.cam_contacts import rolled, solved
 from support.every import every
 
@@ -288,3 +289,11 @@ def test_drive_power_is_torque_times_speed(speed):
     assert (power > 0).all()
     np.testing.assert_allclose(power, 1e3 * abs(s.slider_velocity), rtol=1e-12)
     assert (np.sign(s.balancing_torque) == np.sign(speed)).all()
+
+
+def test_reading_a_force_lists_no_quantities():
+    """For each new mechanism the list would take as long as the solution."""
+    made = ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0))
+    turn = ks.solve(made, np.linspace(0.0, 6.0, 8), crank_speed=33.5)
+    assert turn.balancing_torque.size == turn.reaction("O").shape[1] == 8
+    assert made not in quantities._known

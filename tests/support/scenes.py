@@ -217,6 +217,17 @@ BATCHES = {
 }
 
 
+BATCH = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(np.array([[1.0], [2.0]]))), 0.1, crank_speed=1.0)
+"""Two designs."""
+PASSING = ks.solve(
+    ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open"),
+    0.1,
+    crank_speed=1.0,
+    loads=ks.Torque(5.0, on="coupler"),
+)
+"""Forces grow without bound at the change points that it passes."""
+
+
 class OneSided(Pan):
     """A group that looks at values: it is there on one side only."""
 

@@ -8,6 +8,7 @@ from matplotlib.patches import Polygon
 import kinetostatics as ks
 from kinetostatics.mechanics.free_body import free_body
 from support.every import every
+from support.scenes import BATCH, PASSING
 
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 S = ks.Scene(SAW, 33.5, loads=[ks.Gravity(), ks.Spring(5e5, 2.0)]).solve(8)
@@ -71,14 +72,7 @@ def test_bars_are_the_shares(quantity, superposed):
     assert ax.get_xlabel() == f"{'share of' if found.superposed else 'effect on'} {found.label} [k{found.unit}]"
 
 
-BATCH = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(np.array([[1.0], [2.0]]))), 0.1, crank_speed=1.0)
 OPEN = ks.solve(ks.crank_slider(1.0, 0.5, slider=ks.Link(1.0)), np.zeros(1), crank_speed=1.0)
-PASSING = ks.solve(
-    ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open"),
-    0.1,
-    crank_speed=1.0,
-    loads=ks.Torque(5.0, on="coupler"),
-)
 
 
 @every(
