@@ -1,6 +1,7 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
 from . import design as design
 from . import drive as drive
+from . import sizing as sizing
 from .casefile.case import Case as Case
 from .casefile.case import load_case as load_case
 from .casefile.reading import shipped_cases as shipped_cases

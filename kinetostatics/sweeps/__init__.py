@@ -1,4 +1,4 @@
 """Many designs: tables of designs, sweeps, workers, datasets, tolerances.
 
-May import errors, numbers to design.
+May import errors, numbers to sizing.
 """

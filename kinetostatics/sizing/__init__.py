@@ -1,0 +1,15 @@
+"""From forces to parts: springs, bearings, sections of links, play in joints, foundations.
+
+May import errors, numbers to design.
+"""
+
+
+def __getattr__(name):
+    """A public name, loaded when first used; `__init__.pyi` lists them."""
+    from ..numbers.lazy import public_name
+
+    return public_name(__name__, name)
+
+
+def __dir__():
+    return __getattr__("__all__")

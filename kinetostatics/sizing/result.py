@@ -1,0 +1,75 @@
+"""What every result of sizing has: numbers with unit, meaning and formula, notes on what to look at, and a table."""
+
+import warnings
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from ..errors import HintWarning
+from ..numbers import formatting
+
+
+class Row(NamedTuple):
+    """What a number of a result is.
+
+    Attributes
+    ----------
+    unit : str
+        SI.
+    meaning : str
+    formula : str
+        With its source: author, year or textbook.
+    """
+
+    unit: str
+    meaning: str
+    formula: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sized:
+    """Base of the results of `sizing`: numbers by name, and notes.
+
+    A subclass lists its numbers in `ROWS`; each is a field or property. `notes` are sentences on what needs a look;
+    the function that makes the result also warns of them.
+
+    Attributes
+    ----------
+    notes : tuple of str
+
+    Examples
+    --------
+    As functions of `sizing` return it.
+
+    >>> import kinetostatics as ks
+    >>> class Pair(ks.sizing.Sized):
+    ...     ROWS = {"arm": ("m", "distance of two forces", "measured")}
+    ...     arm = 0.25
+    >>> Pair(notes=("look at the arm",))
+    <Pair: arm 0.25 m; look at the arm>
+    """
+
+    ROWS: ClassVar[dict[str, Row]] = {}
+    notes: tuple[str, ...]
+
+    def __repr__(self):
+        numbers = (
+            f"{name} {formatting.number(float(getattr(self, name)), 5)} {row.unit}".removesuffix(" 1")
+            for name, row in self.ROWS.items()
+        )
+        return f"<{type(self).__name__}: {', '.join(numbers)}{''.join(f'; {note}' for note in self.notes)}>"
+
+    def table(self):
+        """Value, unit, meaning and formula of each number, a pandas DataFrame; notes in ``attrs["notes"]``."""
+        import pandas as pd
+
+        rows = [(name, float(getattr(self, name)), *row) for name, row in self.ROWS.items()]
+        found = pd.DataFrame(rows, columns=["number", "value", *Row._fields]).set_index("number")
+        found.attrs["notes"] = list(self.notes)
+        return found
+
+
+def warn_of_notes(owner, result, stacklevel=3):
+    """The result, after a `HintWarning` for each of its notes."""
+    for note in result.notes:
+        warnings.warn(HintWarning(owner, note), stacklevel=stacklevel)
+    return result
