@@ -9,13 +9,14 @@ textbooks is nearly swing / (delta omega^2) (`drive.flywheel`).
 """
 
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..errors import HintWarning, ParameterError
 from ..mechanics.quantities import quantity
 from ..numbers import checks
 from ..numbers.formatting import heading
@@ -25,6 +26,8 @@ PEAK_TOLERANCE = 1e-4
 """Error of a peak, relative to it, above which the samples are too few; a hundredth of that relative to the range."""
 MEAN_TOLERANCE = 1e-2
 """Error of a mean, relative to it, above which the samples are too few; a tenth of that relative to the peak."""
+SOLUTION_ANGLES = 360
+"""Crank angles of solutions whose numbers a function returns; they do not change what it returns."""
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 OVER_THE_ANGLE = ("largest_at", "smallest_at", "swing")
 """Reductions in proportion to the number of turns over which the same values come."""
@@ -201,6 +204,51 @@ class Output:
         return found, is_rough(self, found, error, lambda rough: np.abs(values[rough]).max(axis=-1))
 
 
+@dataclass(frozen=True)
+class SolutionNumber:
+    """One column of a sweep: a number that a function returns from the solution of each design.
+
+    Attributes
+    ----------
+    name : str
+        Heading, without the unit.
+    function : function
+        From a `Solution` to a float; it can be pickled.
+    unit : str
+        SI.
+    ratio : bool
+        Whether the reference mechanism's number is divided by the design's.
+    """
+
+    name: str
+    function: Callable
+    unit: str
+    ratio: bool = False
+
+    def __str__(self):
+        return f"{'ratio ' * self.ratio}{self.name}"
+
+    @property
+    def column(self):
+        """Heading with unit."""
+        return heading(self, "1" if self.ratio else self.unit)
+
+    def label(self, scene):
+        """Label of an axis."""
+        return f"{'ratio of ' * self.ratio}{self.name}"
+
+    def of(self, scene) -> "SolutionNumber":
+        """The output itself, for its unit is that of the function."""
+        return self
+
+    def value(self, scene, reference=None):
+        """Number of a scene; a ratio is of the reference's number to it. Notes of the function are not shown."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", HintWarning)
+            found = float(self.function(scene.solve(SOLUTION_ANGLES)))
+        return replace(self, ratio=False).value(reference) / found if self.ratio else found
+
+
 def is_rough(output, found, error, size):
     """Whether the error of an output exceeds `PEAK_TOLERANCE` or `MEAN_TOLERANCE`, of each design.
 
@@ -215,18 +263,28 @@ def is_rough(output, found, error, size):
     return rough
 
 
-def parsed(text) -> Output:
+def parsed(text, parts=None) -> Output | SolutionNumber:
     """Output from its text.
+
+    Parameters
+    ----------
+    text : str
+        "largest O", or "main_bearing.hours" where `parts` has the part "main_bearing".
+    parts : mapping of name to part, optional
+        Parts to be sized, as `sizing.Part`.
 
     Raises
     ------
     ParameterError
-        The text names no reduction and quantity; the message lists the reductions.
+        The text names no reduction and quantity; the message lists the reductions. The part has no such number.
     """
-    if isinstance(text, Output):
+    if isinstance(text, Output | SolutionNumber):
         return text
     words = str(text).split()
     ratio = words[:1] == ["ratio"]
+    part, point, number = "".join(words[ratio:]).partition(".")
+    if point and part in (parts or ()):
+        return parts[part].number(number, ratio)
     reduction, *quantity = words[ratio:] or [""]
     found = Output(" ".join(quantity), reduction, ratio)
     if quantity and (reduction in REDUCTIONS or found.order is not None):

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from ..cycle.reductions import Output, parsed
+from ..cycle.reductions import Output, SolutionNumber, parsed
 from ..errors import ParameterError
 from ..machine.loads import Table, value_of
 from ..numbers import checks
@@ -20,7 +20,7 @@ class Constraint:
 
     Attributes
     ----------
-    output : Output
+    output : Output or SolutionNumber
     relation : "<=", ">=" or "="
     value : float
         SI.
@@ -28,7 +28,7 @@ class Constraint:
         Length, m, of the table over travel that sets the limit; the unit of its excess.
     """
 
-    output: Output
+    output: Output | SolutionNumber
     relation: str
     value: float
     span: float | None = None
@@ -43,7 +43,7 @@ class Constraint:
         return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
 
 
-def parse_constraint(text, known) -> Constraint:
+def parse_constraint(text, known, parts=None) -> Constraint:
     """Constraint from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
 
     `known` is the scene, or another object with a mechanism. Raises `ParameterError` for any other text.
@@ -54,7 +54,7 @@ def parse_constraint(text, known) -> Constraint:
             f'limit {text!r} must be an output, a relation and a value, such as "largest O <= 0.75 kN" or "largest '
             'slider_position = 2.3 m"'
         )
-    output = parse_output(found["output"], known)
+    output = parse_output(found["output"], known, parts)
     plain = output.ratio or output.unit == "1"
     try:
         number = re.fullmatch(NUMBER, found["value"].strip()) if plain else None
@@ -64,15 +64,17 @@ def parse_constraint(text, known) -> Constraint:
     return Constraint(output, _RELATIONS.get(found["relation"], found["relation"]), value)
 
 
-def parse_output(text, known) -> Output:
+def parse_output(text, known, parts=None) -> Output | SolutionNumber:
     """Output of a design, with its unit; refused if it is unknown, or the angle of an extreme, which jumps."""
-    output = parsed(text).of(known)
+    output = parsed(text, parts).of(known)
+    if isinstance(output, SolutionNumber):
+        return output
     if output.reduction.endswith("_at"):
         raise ParameterError(f"output {str(output)!r} is a place, which jumps; design by the value there")
     return output if output.unit else replace(output, unit="1")
 
 
-def parse_constraints(texts, known):
+def parse_constraints(texts, known, parts=None):
     """Constraints from texts; one error lists all faults."""
     if not isinstance(texts, str | Iterable):
         raise ParameterError(
@@ -81,7 +83,7 @@ def parse_constraints(texts, known):
     found, problems = [], []
     for text in (texts,) if isinstance(texts, str) else texts:
         try:
-            found.append(text if isinstance(text, Constraint) else parse_constraint(text, known))
+            found.append(text if isinstance(text, Constraint) else parse_constraint(text, known, parts))
         except ParameterError as error:
             problems.append(str(error))
     checks.require("design", *problems)

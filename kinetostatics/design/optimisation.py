@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cycle.reductions import Output
+from ..cycle.reductions import Output, SolutionNumber
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
@@ -59,6 +59,8 @@ def optimise(
         contact_pressure", "swing balancing_torque", "ratio mean_absolute balancing_torque" ...
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
+        Numbers of parts, "main_bearing.hours >= 20000 h" or `sizing.Part.limit`, have central differences for
+        derivatives.
     variant, reference : str
         As for `sweep`; of a scene `reference` is a `Scene`.
     robust : Spread, optional
@@ -97,12 +99,14 @@ def optimise(
     >>> round(found.report().loc["ratio mean_absolute balancing_torque [1]", "after"])
     67
     """
+    parts = getattr(source, "sizing", None)
     source, reference = choose_design(source, variant, reference)
     checks.require(
         "design", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE), *search_problems(starts, seed)
     )
-    task = parse_task(scene_of(source), minimise, maximise, limits, reference, angles)
-    problem = Problem(source, vary, [item.quantity for item in task.outputs], reference, angles, engine)
+    task = parse_task(scene_of(source), minimise, maximise, limits, reference, angles, parts=parts)
+    quantities = [item.quantity for item in task.outputs if isinstance(item, Output)]
+    problem = Problem(source, vary, quantities, reference, angles, engine)
     begins = _starting_designs(problem, starts, seed, begin)
     reported = (*task.outputs, *(limit.output for limit in problem.table_limits))
     return best_design(problem, task, begins, reported, robust, progress)
@@ -112,7 +116,7 @@ class Task(NamedTuple):
     """Task of a search: an output, as `text` names it, times `sign` is to become least under limits."""
 
     text: str
-    output: Output
+    output: Output | SolutionNumber
     sign: float
     limits: tuple[Constraint, ...]
 
@@ -122,18 +126,18 @@ class Task(NamedTuple):
         return self.output, *(limit.output for limit in self.limits)
 
 
-def parse_task(scene, minimise, maximise, limits, reference, angles, kept=()) -> Task:
+def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), parts=None) -> Task:
     """Task of a search from texts, with the limits `kept` first; refused without a reference or angles it needs."""
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     sign, text = (1.0, minimise) if maximise is None else (-1.0, maximise)
-    limits = (*parse_constraints(kept, scene), *parse_constraints(limits, scene))
-    task = Task(text, parse_output(text, scene), sign, limits)
+    limits = (*parse_constraints(kept, scene), *parse_constraints(limits, scene, parts))
+    task = Task(text, parse_output(text, scene, parts), sign, limits)
     ratio = next((str(output) for output in task.outputs if output.ratio), None)
     if ratio is not None and reference is None:
         raise ParameterError(f"design: {ratio!r} needs a reference: a Scene, as reference=plain")
-    orders = [int(output.reduction[9:]) for output in task.outputs if output.reduction.startswith("harmonic_")]
-    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
+    orders = [output.order for output in task.outputs if isinstance(output, Output)]
+    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders if order)])
     if angles < needed:
         raise ParameterError(f"design: angles must be at least {needed} for the outputs asked for, got {angles}")
     return task
@@ -171,8 +175,14 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
 
     Raises `DesignError` if no design keeps the limits at true extremes.
     """
-    checks.require("design", None if robust is None else spread_problem("robust", robust))
     text, output, sign, limits = task
+    checks.require(
+        "design",
+        None if robust is None else spread_problem("robust", robust),
+        None
+        if robust is None or isinstance(output, Output)
+        else f"{str(output)!r} is a number of a part, which cannot be robust; make it a limit",
+    )
     goal = Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
     searched, plain = goal, limits
     reference = None if problem.reference is None else scene_of(problem.reference)
@@ -215,11 +225,11 @@ def _without_ratios(goal, limits, reference):
     turned, found = {"<=": ">=", ">=": "<=", "=": "="}, []
     for limit in limits:
         output = limit.output
-        if output.ratio and limit.value > 0:
+        if isinstance(output, Output) and output.ratio and limit.value > 0:
             plain = without_ratio(output)
             limit = Constraint(plain, turned[limit.relation], true_value(plain, reference) / limit.value)
         found.append(limit)
-    if callable(goal.output) or not goal.output.ratio:
+    if not isinstance(goal.output, Output) or not goal.output.ratio:
         return goal, tuple(found)
     return Goal(without_ratio(goal.output), -goal.sign), tuple(found)
 
@@ -292,7 +302,7 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
 
 def _true_excess_of(problem, limit, values):
     """`true_excess` of a design; of an output over a spread or a ratio, at the crank angles of the search."""
-    if callable(limit.output) or limit.output.ratio:
+    if not isinstance(limit.output, Output) or limit.output.ratio:
         return excess_over(problem, limit, values)[0][0]
     return true_excess(limit, problem.scene(values))
 

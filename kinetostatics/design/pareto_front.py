@@ -87,10 +87,11 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         *(checks.choice("option", name, ("angles", "engine", "progress")) for name in options),
     )
     pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
+    parts = getattr(source, "sizing", None)
     item, compared = choose_design(source, variant, reference)
     shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
-    first, second = (parse_output(text, scene_of(item)) for text, _ in pair)
-    kept = parse_constraints(limits, scene_of(item))
+    first, second = (parse_output(text, scene_of(item), parts) for text, _ in pair)
+    kept = parse_constraints(limits, scene_of(item), parts)
 
     def best(number, more=(), begin=None):
         text, greatest = pair[number]

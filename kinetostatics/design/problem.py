@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import has_kinks
+from ..cycle.reductions import SolutionNumber
 from ..engines.graph import Graph, Node
 from ..engines.program import Program
 from ..engines.record import Recording
@@ -71,6 +72,8 @@ def scene_of(item):
     return getattr(item, "scene", item)
 
 
+DIFFERENCE_STEP = 1e-4
+"""Step of a central difference over the range of the number that varies."""
 BAR_DELAY = 1.0
 """Seconds of work after which a bar appears."""
 
@@ -199,6 +202,8 @@ class Problem:
         """Value of an output of a design, or of a function of designs, and its derivatives."""
         if callable(output):
             return output(values)
+        if isinstance(output, SolutionNumber):
+            return self._number(output, values)
         found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
@@ -208,6 +213,22 @@ class Problem:
         else:
             above, rises[self._shared] = self._compared.output(plain, values[self._shared])
         return above / found, (rises - above / found * slopes) / found
+
+    def _number(self, output, values):
+        """Number of the solution of a design, and its derivatives by central differences; NaN where there is none."""
+        step = DIFFERENCE_STEP * (self.high - self.low)
+        sides = [np.clip(values + side * np.diag(step), self.low, self.high) for side in (1.0, -1.0)]
+        found = [self._value(output, design) for design in (values, *np.concatenate(sides))]
+        count = len(self.names)
+        apart = np.diagonal(sides[0] - sides[1])
+        return found[0], (np.array(found[1 : count + 1]) - np.array(found[count + 1 :])) / apart
+
+    def _value(self, output, values):
+        self.evaluations += 1
+        try:
+            return compared_value(output, self.scene(values), self.reference and scene_of(self.reference))
+        except KinetostaticsError:
+            return np.nan
 
     def _computed(self, values):
         self.evaluations += 1
@@ -269,6 +290,8 @@ def _design_problem(name, item, kinds):
 
 def compared_value(output, scene, reference):
     """Value of an output of a scene; a ratio refers to the reference."""
+    if isinstance(output, SolutionNumber):
+        return output.value(scene, reference)
     found = true_value(output, scene)
     return true_value(output, reference) / found if output.ratio else found
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.load_functions import with_resolution
+from ..cycle.reductions import Output
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
@@ -180,7 +181,7 @@ class Found:
         return write_case(path, title or f"Design for the {self.goal}", scenes)
 
     def _of(self, output, scene):
-        if output.quantity not in of_scene(scene):
+        if isinstance(output, Output) and output.quantity not in of_scene(scene):
             return np.nan
         return compared_value(output, scene, self.reference)
 
@@ -205,9 +206,7 @@ def active_prices(problem, goal, limits, values):
     from scipy.optimize import lsq_linear
 
     output, sign = goal
-    if callable(output):
-        slopes = sign * output(values)[1][:, None]
-    elif not is_peak(output, sign):
+    if not is_peak(output, sign):
         slopes = sign * problem.output(output, values)[1][:, None]
     else:  # a column for each of equal peaks, the highest first
         heights, slopes = measures.bounded(output.reduction, problem.curve(output, values))

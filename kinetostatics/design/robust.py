@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.kinks import has_kinks
+from ..cycle.reductions import Output
 from ..errors import KinetostaticsError, ParameterError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
@@ -415,6 +416,9 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     checks.require("over_spread", spread_problem("spread", spread), samples_problem(samples))
     item, compared = choose_design(source, variant, reference)
     text = parse_output(output, scene_of(item))
+    checks.require(
+        "over_spread", None if isinstance(text, Output) else f"{str(text)!r} is a number of a part; use ks.tolerances"
+    )
     assembly.require_turn(scene_of(item).mechanism)
     sampled = _fixed_scene_output(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples)
     found = sampled.outputs(np.empty(0))

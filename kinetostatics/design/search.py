@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cycle.reductions import Output
 from . import measures
 from .constraints import Constraint
 
@@ -218,8 +219,8 @@ class _ScaledProblem:
         curves, rows = self.problem.curves(self.start), []
         # derivatives of limits and goal along the period, in units of their sizes
         for output, unit in [*((item.output, item.scale) for item in self.limits), (self.goal_of.output, self.unit)]:
-            if callable(output):
-                rows.append(output(self.start)[1][None] / unit)
+            if not isinstance(output, Output):
+                rows.append(self.problem.output(output, self.start)[1][None] / unit)
                 continue
             slopes, size = curves[output.quantity].slopes, unit
             if output.ratio:
@@ -283,6 +284,6 @@ class _ScaledProblem:
 
 def is_peak(output, sign):
     """Whether an output times a sign is a largest value over the period, which its parts bound one by one."""
-    if callable(output) or output.ratio:
+    if not isinstance(output, Output) or output.ratio:
         return False
     return output.reduction in measures.SIDES and (sign > 0) == (output.reduction != "smallest")

@@ -17,6 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..cycle.extremes import extrema
+from ..cycle.reductions import Output
 from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..mechanics.quantities import of_scene
@@ -203,7 +204,9 @@ def torque_free_cam(
     low, high = start.ends
     kept = f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"
     task = parse_task(start.scene, minimise, maximise, limits, compared, angles, kept)
-    quantities = (TORQUE, POSITION, *(item.quantity for item in task.outputs))
+    parts = ", ".join(str(item) for item in task.outputs if not isinstance(item, Output))
+    checks.require("torque-free cam", f"{parts}: numbers of parts are for ks.design.optimise" if parts else None)
+    quantities = (TORQUE, POSITION, *(item.quantity for item in task.outputs if isinstance(item, Output)))
     problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
     _require_possible(problem, start)
     generator = np.random.default_rng(seed)
@@ -217,7 +220,7 @@ def torque_free_cam(
         found = best_design(problem, task, begins, reported, robust, progress)
     except DesignError as error:  # with limited torque, what else balances weight
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
-        torque = any(limit.output.quantity == TORQUE for limit in task.limits)
+        torque = any(isinstance(limit.output, Output) and limit.output.quantity == TORQUE for limit in task.limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
     rubbing = scene_of(source).friction.get("O")
@@ -278,7 +281,7 @@ def _require_within_bound(start, problem, limits, reference, values):
     greatest = ratio_bound(start, problem.scene(values), reference)
     for limit in limits:
         output = limit.output
-        mean = output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
+        mean = isinstance(output, Output) and output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
         if mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
             raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", problem.numbers(values))
 

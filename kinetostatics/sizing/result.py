@@ -41,11 +41,12 @@ class Sized:
     As functions of `sizing` return it.
 
     >>> import kinetostatics as ks
-    >>> class Pair(ks.sizing.Sized):
-    ...     ROWS = {"arm": ("m", "distance of two forces", "measured")}
+    >>> from kinetostatics.sizing.result import Row
+    >>> class Couple(ks.sizing.Sized):
+    ...     ROWS = {"arm": Row("m", "distance of two forces", "measured")}
     ...     arm = 0.25
-    >>> Pair(notes=("look at the arm",))
-    <Pair: arm 0.25 m; look at the arm>
+    >>> Couple(notes=("the arm is short",))
+    <Couple: arm 0.25 m; the arm is short>
     """
 
     ROWS: ClassVar[dict[str, Row]] = {}

@@ -20,7 +20,7 @@ from ..cycle.kinks import has_kinks
 from ..cycle.limit_positions import NEAR
 from ..cycle.load_functions import repeating_problem, resolution_note
 from ..cycle.peaks import lowest
-from ..cycle.reductions import Output
+from ..cycle.reductions import Output, SolutionNumber
 from ..cycle.rounding import FLOOR
 from ..engines import numba_backend, shared_work
 from ..engines.program import program_of
@@ -147,6 +147,10 @@ class Job:
         From values in SI by name to a `Scene`, or an object with one; the reference's is None without ratios.
     columns : tuple of (column, name, factor)
         Columns of the parameters in the table of designs.
+    outputs, numbers : tuple
+        Outputs computed for all designs together, and numbers of the solution of each design alone.
+    order : tuple of int
+        Columns of the table: places among the outputs followed by the numbers.
     threads : int
         Cores for a chunk.
     streams : bool
@@ -165,6 +169,8 @@ class Job:
     make_reference: Callable[[dict], Any] | None
     columns: tuple[tuple[str, str, float], ...]
     outputs: tuple[Output, ...]
+    numbers: tuple[SolutionNumber, ...]
+    order: tuple[int, ...]
     angles: int
     engine: str
     threads: int
@@ -178,6 +184,11 @@ class Job:
     def ratios(self):
         """Indices of the outputs that are ratios to the reference."""
         return [place for place, item in enumerate(self.outputs) if item.ratio]
+
+    @property
+    def items(self):
+        """All outputs, by rows of the results."""
+        return *self.outputs, *self.numbers
 
     @property
     def sides(self):
@@ -234,6 +245,8 @@ def dry_run(job, designs, engines):
             raise
         except Exception:
             continue
+        for item in job.numbers:
+            item.value(scenes[0], scenes[-1])
         checks.require("sweep", *problems)
         hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in (*scene_hints(solutions[0]), *missed))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
@@ -287,22 +300,39 @@ FAILED = "failed"
 
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
-    numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
+    count = len(job.outputs)
+    numbers, reasons = np.empty((len(job.items), len(frame))), np.empty(len(frame), dtype=object)
     step = max(1, BLOCK_VALUES // job.angles if job.engine == "numpy" else len(frame))
     step = min(step, MAX_SPLIT_DESIGNS) if job.kinked else step
     given = job.given(frame)
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
-        (numbers[:, part], reasons[part]), *reference = (
+        (numbers[:count, part], reasons[part]), *reference = (
             _compute_designs(make, job, given[part], outputs) for make, outputs in job.sides
         )
         for above, failing in reference:
             numbers[job.ratios, part] = _ratios(above, numbers[job.ratios, part])
             reasons[part] = np.where((reasons[part] == "") & (failing != ""), "reference: " + failing, reasons[part])
+    if job.numbers:
+        for row in np.flatnonzero(reasons == ""):
+            numbers[count:, row], reasons[row] = _solution_numbers(job, given[row : row + 1])
     for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
-        wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))
+        wrong = (str(item) for item, number in zip(job.items, numbers[:, row], strict=True) if np.isnan(number))
         reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
     return result_table(job, frame, numbers, reasons)
+
+
+def _solution_numbers(job, given):
+    """Numbers (numbers,) of the solution of one design, and the reason if it has none."""
+    *_, plain = job.values(given)
+    try:
+        scene = scene_of(job.make, plain)
+        reference = job.make_reference and scene_of(job.make_reference, plain)
+        return [item.value(scene, reference) for item in job.numbers], ""
+    except (MissingLibraryError, OSError):
+        raise
+    except Exception as error:
+        return np.nan, str(error) or type(error).__name__
 
 
 def _ratios(above, below):
@@ -313,10 +343,10 @@ def _ratios(above, below):
 
 
 def result_table(job, frame, numbers, reasons):
-    """Table of outputs (outputs, designs) and reasons; NaN where there is a reason."""
+    """Table of all outputs (outputs, designs) and reasons; NaN where there is a reason."""
     failing = reasons != ""
     numbers[:, failing] = np.nan
-    found = {item.column: row for item, row in zip(job.outputs, numbers, strict=True)}
+    found = {job.items[place].column: numbers[place] for place in job.order}
     texts = reasons if failing.any() else ""  # one text for all takes a third of the time
     return pd.DataFrame({**found, FAILED: pd.Series(texts, frame.index, dtype=str)}, index=frame.index)
 
@@ -325,12 +355,14 @@ def result_table(job, frame, numbers, reasons):
 
 
 def _compute_designs(make, job, given, outputs, earlier=None, refused=False):
-    """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved.
+    """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved; none without outputs.
 
     A single design is an array of one, so that results do not depend on the batch. `earlier` are the numbers from half
     as many crank angles; `refused` means that arrays of a single design fail.
     """
     count, scene = len(given), None
+    if not outputs:
+        return np.empty((0, count)), np.full(count, "", dtype=object)
     for values in job.values(given)[refused:]:
         try:
             scene = scene_of(make, values)

@@ -17,7 +17,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from ..cycle.reductions import Output, parsed
+from ..cycle.reductions import Output, SolutionNumber, parsed
 from ..engines import numba_backend
 from ..errors import ParameterError
 from ..numbers import checks
@@ -36,7 +36,7 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     """The checked job, the engines to try, and the source and reference (only the source without ratios)."""
     compared = _source_and_reference(source, designs, variant, reference)
     known = compared[0].units if can_vary(compared[0]) else None
-    wanted, problems = _outputs(outputs)
+    wanted, problems = _outputs(outputs, getattr(source, "sizing", None))
     columns, wrong = si_columns(
         designs.columns, known, partial(path_problem, source) if isinstance(source, Scene) else None
     )
@@ -52,7 +52,7 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
         *(
             f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
             for item in wanted
-            if item.order and isinstance(angles, int) and 2 * item.order >= angles
+            if isinstance(item, Output) and item.order and isinstance(angles, int) and 2 * item.order >= angles
         ),
     ]
     ratios = any(item.ratio for item in wanted)
@@ -70,7 +70,11 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     if engine is None and is_large and numba_backend.numba_available():
         engines = ["compiled", "numpy"]
     threads = numba_backend.core_count() if executor is None and workers is None else 1
-    job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
+    together = tuple(item for item in wanted if isinstance(item, Output))
+    alone = tuple(item for item in wanted if isinstance(item, SolutionNumber))
+    order = tuple((*together, *alone).index(item) for item in wanted)
+    made = make, make_reference if ratios else None
+    job = Job(*made, columns, together, alone, order, angles, engines[-1], threads)
     _require_portable(job, executor, workers)
     return job, engines, compared if ratios else compared[:1]
 
@@ -137,19 +141,19 @@ def _return_fixed(item, values):
 
 def output_list(outputs):
     """Outputs as a list; a single one may be given alone."""
-    if isinstance(outputs, str | Output):
+    if isinstance(outputs, str | Output | SolutionNumber):
         return [outputs]
     if not isinstance(outputs, Iterable):
         raise ParameterError(f'sweep: outputs must be texts such as "largest O", got {outputs!r}')
     return list(outputs)
 
 
-def _outputs(outputs):
-    """The parsed outputs, and problems with them."""
+def _outputs(outputs, parts):
+    """The parsed outputs, and problems with them; `parts` by name are those of a case."""
     wanted, problems = [], []
     for text in output_list(outputs):
         try:
-            wanted.append(parsed(text))
+            wanted.append(parsed(text, parts))
         except ParameterError as error:
             problems.append(str(error))
     return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
@@ -244,6 +248,8 @@ def sweep(
         "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque", "largest
         contact_pressure" (of a cam with a `Roller`), "swing balancing_torque" (the energy of its flywheel, J) ...; with
         "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
+        "main_bearing.hours": a number of a part in the case's [sizing], or `sizing.Part.number`; each design is then
+        solved alone.
     variant, reference : str
         Of a case: the variant that the designs vary (by default the first besides the reference), and the reference of
         ratios (by default the case's). For a scene or function `reference` is a `Scene`. The reference varies in those
@@ -355,7 +361,7 @@ def _identity(job, designs, compared, chunk):
         "version": __version__,
         **({} if of_case else {"python": sys.implementation.cache_tag}),  # bytecode differs between releases
         **{name: digest(item) for name, item in zip((varied, "reference"), compared, strict=False)},
-        "outputs": [str(item) for item in job.outputs],
+        "outputs": [*map(str, job.outputs), *(digest((str(item), item.function)) for item in job.numbers)],
         "angles": int(job.angles),
         "chunk": int(chunk),
         "columns": [str(column) for column in designs.columns],

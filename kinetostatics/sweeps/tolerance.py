@@ -58,7 +58,7 @@ class Tolerances:
     def share(self, output, *, above=-np.inf, below=np.inf):
         """Share of designs whose output lies above and below the limits."""
         named = {parse_heading(column)[0]: column for column in self.outputs}
-        name = str(parsed(output))
+        name = str(output) if str(output) in named else str(parsed(output))
         checks.require("tolerances", checks.choice("output", name, tuple(named)))
         values, unit = self.table[named[name]], parse_heading(named[name])[1]
         above, below = (
@@ -131,8 +131,8 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         None if power else f"count must be a power of two, got {count!r}",
         None if folder is None else folder_problem(folder),
     )
-    found = designs.distributions(spreads)
-    wanted = tuple(dict.fromkeys(map(parsed, output_list(outputs))))
+    found, parts = designs.distributions(spreads), getattr(case, "sizing", None)
+    wanted = tuple(dict.fromkeys(parsed(text, parts) for text in output_list(outputs)))
     sweeps = itertools.count()
 
     def run(designed):

@@ -178,7 +178,7 @@ def _isolate_deaths(job, frame, workers):
             return found
     if alone:
         return result_table(
-            job, frame, np.full((len(job.outputs), 1), np.nan), np.array(["the worker died with this design"])
+            job, frame, np.full((len(job.items), 1), np.nan), np.array(["the worker died with this design"])
         )
     halves = np.array_split(np.arange(len(frame)), 2)
     return pd.concat([_isolate_deaths(job, frame.iloc[half], workers) for half in halves])

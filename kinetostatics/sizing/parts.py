@@ -1,0 +1,180 @@
+"""Parts by name: what a case file lists under [sizing], and what sweeps, tolerance studies and searches ask of them."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+from ..cycle.reductions import SolutionNumber
+from ..design.constraints import parse_constraint
+from ..errors import ParameterError
+from ..numbers import checks
+from ..numbers.units import to_si
+from ..solution.scene import Scene
+from ..solution.sections import Bar
+from . import bearings, foundation, play, scene_springs, sections, springs
+
+BAR = tuple(inspect.signature(Bar).parameters)
+"""Options that describe the bar of a link."""
+
+
+def _bar_strength(solution, *, link, **options):
+    bar = Bar(**{name: options.pop(name) for name in BAR if name in options})
+    return sections.bar_strength(solution, link, bar, **options)
+
+
+def _spring(solution, *, spring="spring", **options):
+    return scene_springs.spring_for(Scene.of(solution), spring, **options)
+
+
+class Kind(NamedTuple):
+    """A kind of part: function of a solution, class of its result, and the units of its options that are numbers."""
+
+    size: Callable
+    result: Any
+    units: Mapping[str, Any]
+    functions: tuple[Callable, ...]
+
+    @property
+    def options(self):
+        """Name of each option, and whether a part must give it."""
+        found = {}
+        for function in self.functions:
+            for name, item in list(inspect.signature(function).parameters.items()):
+                if name not in ("solution", "scene", "bar", "options", "crank_speed"):
+                    found[name] = item.default is item.empty
+        return found
+
+
+def _units(numbers):
+    return {name: unit for name, (unit, _) in numbers.items()}
+
+
+MASSES = ("m", "kg")
+KINDS = {
+    "bearing": Kind(bearings.bearing, bearings.Bearing, _units(bearings.NUMBERS), (bearings.bearing,)),
+    "plain bearing": Kind(
+        bearings.plain_bearing, bearings.PlainBearing, _units(bearings.NUMBERS), (bearings.plain_bearing,)
+    ),
+    "bar": Kind(
+        _bar_strength,
+        sections.BarStrength,
+        _units(sections.NUMBERS) | {"masses": MASSES},
+        (sections.bar_strength, Bar),
+    ),
+    "pin": Kind(sections.pin_strength, sections.PinStrength, _units(sections.NUMBERS), (sections.pin_strength,)),
+    "play": Kind(play.contact_loss, play.ContactLoss, _units(play.NUMBERS), (play.contact_loss,)),
+    "spring": Kind(
+        _spring, springs.HelicalSpring, _units(springs.NUMBERS), (scene_springs.spring_for, springs.helical_spring)
+    ),
+    "mount": Kind(
+        foundation.mount,
+        foundation.Mount,
+        _units(foundation.NUMBERS) | {"stiffness": ("N/m", "N/m", "N m/rad"), "centre": ("m", "m")},
+        (foundation.mount,),
+    ),
+    "block": Kind(foundation.block_for, foundation.Mount, _units(foundation.NUMBERS), (foundation.block_for,)),
+}
+"""Kinds of parts by name."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a machine that is to be sized, by name.
+
+    Parameters
+    ----------
+    name : str
+    kind : str
+        "bearing", "plain bearing", "bar", "pin", "play", "spring", "mount" or "block".
+    options : mapping
+        Arguments of the function of `sizing` that sizes it; of a bar also those of `Bar`.
+
+    Raises
+    ------
+    ParameterError
+        There is no such kind, an option is not one of it, or one is missing.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
+    >>> pin = ks.sizing.Part("pin_B", "pin", {"joint": "B", "diameter": 0.08, "width": 0.1})
+    >>> designs = ks.designs.grid({"slider.mass": "400..600 kg:2"})
+    >>> table = ks.sweep(saw, designs, [pin.number("shear_stress")], progress=False)
+    >>> (table["pin_B.shear_stress [Pa]"] / 1e6).round(1).tolist()
+    [15.4, 23.1]
+    """
+
+    name: str
+    kind: str
+    options: Mapping[str, Any]
+
+    def __post_init__(self):
+        checks.require(f"part {self.name!r}", *self.problems(self.kind, self.options))
+
+    @staticmethod
+    def problems(kind, options):
+        """Sentences on a wrong kind, and on options that are unknown or missing."""
+        problem = checks.choice("kind", kind, tuple(KINDS))
+        if problem:
+            return [problem]
+        known = KINDS[kind].options
+        wrong = [checks.choice("option", name, tuple(known)) for name in options]
+        return [*filter(None, wrong), *(f"{name} is missing" for name, need in known.items() if need - (name in options))]
+
+    def of(self, solution):
+        """The part's size, a `Sized`, from a solution."""
+        return KINDS[self.kind].size(solution, **self.options)
+
+    def number(self, number, ratio=False):
+        """A number of its size as output of `sweep`, `tolerances` and `design.optimise`: "hours" of a bearing."""
+        rows = KINDS[self.kind].result.ROWS
+        checks.require(self.name, checks.choice("number", number, tuple(rows)))
+        return SolutionNumber(f"{self.name}.{number}", partial(_number, self, number), rows[number].unit, ratio)
+
+    def limit(self, text):
+        """A limit for `design.optimise` from a text such as "hours >= 20000 h"."""
+        return parse_constraint(f"{self.name}.{text}", None, {self.name: self})
+
+
+def _number(part, number, solution):
+    return getattr(part.of(solution), number)
+
+
+def read_part(name, raw):
+    """Part of a table of a case file, and the faults of the table: sentences after their keys.
+
+    Numbers are texts with units, as everywhere in case files.
+    """
+    options = dict(raw)
+    kind, problems = options.pop("kind", None), []
+    if kind not in KINDS:
+        missing = f"is missing; allowed: {', '.join(map(repr, KINDS))}"
+        return None, [f".kind {missing}" if kind is None else f".{checks.choice('kind', kind, tuple(KINDS))}"]
+    for key, value in options.items():
+        try:
+            options[key] = _in_si(value, KINDS[kind].units.get(key))
+        except ValueError as error:
+            problems.append(f".{key} {error}")
+    problems += [f": {problem}" for problem in Part.problems(kind, options)]
+    return (None if problems else Part(name, kind, options)), problems
+
+
+def _in_si(value, unit):
+    """Value of an option in SI; a unit of several is that of the entries of a list, or of pairs in it."""
+    if unit is None or isinstance(value, bool):
+        return value
+    if isinstance(value, list):
+        of = unit if isinstance(unit, tuple) else (unit,) * len(value)
+        if any(isinstance(part, list) for part in value):
+            return [_in_si(part, of) for part in value]
+        return [_in_si(part, one) for part, one in zip(value, of, strict=False)]
+    one = unit[0] if isinstance(unit, tuple) else unit
+    if one == "1":
+        return value
+    if isinstance(value, str):
+        return to_si(value, one)
+    raise ValueError(f"must be a text with a unit, such as \"1 {one}\", found {value!r}")
+
