@@ -133,8 +133,9 @@ class Sections:
         Places of pins, loads and point masses, m; the first is 0, the last the length between the pins.
     start : float
         Coordinate of the first pin on the link's own axis, m.
-    actions : tuple of int
-        Station of each force on the link but inertia and weight, as `mechanics.free_body` lists them.
+    placed : tuple of int
+        Station of each force on the link but inertia and weight, as `mechanics.free_body` lists them, and of each
+        point mass.
 
     Examples
     --------
@@ -151,7 +152,7 @@ class Sections:
     x: np.ndarray
     stations: np.ndarray
     start: float
-    actions: tuple[int, ...]
+    placed: tuple[int, ...]
 
     def __repr__(self):
         value, x, angle = self.largest_moment
@@ -181,11 +182,10 @@ class Sections:
         pull = motion.as_vector(motion.gravity) - motion.acceleration((self.link, self.start, 0.0))
         pull = np.stack([dot(pull, axis) for axis in axes])  # force on a unit mass at the first pin, and its slope in x
         slope = np.stack([motion.rate(self.link) ** 2, -motion.angular_acceleration(self.link)])
+        acting = [[*(dot(item.force, axis) for axis in axes), item.couple] for item in _actions(motion, self.link)]
+        acting += [[*(mass * (pull + x * slope)), 0.0 * pull[0]] for x, mass in self.bar.masses]
         forces = np.zeros((len(self.stations), 3, pull.shape[-1]))  # along t, along n, couple
-        for station, item in zip(self.actions, _actions(motion, self.link), strict=True):
-            forces[station] += [*(dot(item.force, axis) for axis in axes), item.couple]
-        for x, mass in self.bar.masses:
-            forces[np.searchsorted(self.stations, x), :2] += mass * (pull + x * slope)
+        np.add.at(forces, list(self.placed), acting)
         moments = forces[:, 1] * self.stations[:, None] + forces[:, 2]
         axial, shear, moment = (part[:-1].cumsum(axis=0) for part in (forces[:, 0], forces[:, 1], moments))
         per_length = self.bar.mass / self.stations[-1]
@@ -271,15 +271,18 @@ class WithSections:
         period = closed_turn(self, owner).period
         motion = self.moved_to(period * PLACES).dynamics
         actions = _actions(motion, link)
-        places, start = _places(motion, link, actions, owner)
+        places, start, size = _places(motion, link, actions, owner)
         length = max(places)
         bar = _own_bar(bar, motion.mechanism.links[link], start, length, owner)
         masses = [x for x, _ in bar.masses]
-        wrong = f"a point mass lies at {max(masses):.6g} m, beyond the length {length:.6g} m" if masses else None
-        checks.require(owner, wrong if max([0.0, *masses]) > length else None)
-        stations = np.unique([*places, *masses])
-        order = tuple(np.searchsorted(stations, places).tolist())
-        return Sections(self, link, bar, np.linspace(0.0, length, at), stations, start, order)
+        beyond = max([0.0, *masses]) > length + size
+        text = f"a point mass lies at {max([0.0, *masses]):.6g} m, beyond the second pin at {length:.6g} m"
+        checks.require(owner, text if beyond else None)
+        known = np.array([*places, *masses])
+        stations = np.unique(known)
+        stations = stations[np.diff(stations, prepend=-np.inf) > size]
+        placed = np.abs(known[:, None] - stations).argmin(axis=1)
+        return Sections(self, link, bar, np.linspace(0.0, stations[-1], at), stations, start, tuple(placed.tolist()))
 
 
 def evaluate(coefficients, x):
@@ -303,7 +306,7 @@ def _actions(motion, link):
 
 
 def _places(motion, link, actions, owner):
-    """Distance of each action from the first pin, m, and the coordinate of that pin on the link's axis."""
+    """Distance of each action from the first pin, m, coordinate of that pin on the link's axis, and their rounding."""
     placed = motion.placement.links[link]
     origin, axis = motion.as_vector(placed.joint.position), motion.as_vector(placed.direction)
     rays = [item.point - origin for item in actions]
@@ -322,8 +325,7 @@ def _places(motion, link, actions, owner):
         elif not -size <= x.mean() - start <= stop - start + size:
             texts.append(f"{item.name!r} acts {x.mean() - start:.4g} m from the first pin, beyond the second")
     checks.require(owner, *texts)
-    places = (along.mean(axis=1) - start).clip(0.0)
-    return [float(min(places, key=lambda own, x=x: own if abs(own - x) < size else np.inf)) for x in places], start
+    return along.mean(axis=1) - start, start, size
 
 
 def _own_bar(bar, link, start, length, owner):

@@ -69,5 +69,5 @@ def sections(found, ax=None):
     for part in four:
         part.axhline(0.0, color=INK, lw=0.5)
         part.margins(x=0.0)
-        part.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(0.0, 1.16), ncols=2)
+        part.legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 0.97), ncols=2)
     return four
