@@ -15,21 +15,17 @@ from ..cycle.extremes import extrema
 from ..cycle.means import closed_turn
 from ..machine.loads import TURN
 from ..numbers import checks
-from ..solution.sections import POSITIVE, Sections, evaluate
+from ..solution.sections import BAR, POSITIVE, Sections, evaluate
 from .result import Row, Sized, warn_of_notes
 
 NUMBERS = {
-    "ultimate": ("Pa", POSITIVE),
-    "endurance": ("Pa", POSITIVE),
-    "yield_strength": ("Pa", POSITIVE),
-    "diameter": ("m", POSITIVE),
-    "width": ("m", POSITIVE),
-    "shear_planes": ("1", POSITIVE),
-    "length": ("m", POSITIVE),
+    **BAR,
+    **dict.fromkeys(("ultimate", "endurance", "yield_strength", "shear_modulus"), ("Pa", POSITIVE)),
+    **dict.fromkeys(("diameter", "width", "length"), ("m", POSITIVE)),
+    "shear_planes": ("1", {"low": 1.0}),
     "polar_moment": ("m**4", POSITIVE),
-    "shear_modulus": ("Pa", POSITIVE),
 }
-"""Unit and rule of each option."""
+"""Unit and rule of each option, and of the numbers of a bar."""
 SHAFT = ("length", "polar_moment", "shear_modulus")
 PLACES = 101
 """Places in each part of a bar, and again between the neighbours of the worst one, at which fatigue is looked at."""
@@ -61,7 +57,7 @@ class BarStrength(Sized):
         "buckling_load": Row(
             "N",
             "in the plane of motion, free to turn at both pins",
-            "Euler pi^2 E I/L^2; if L/k < pi sqrt(2 E/S_y) Johnson A S_y (1 - S_y (L/k)^2/(4 pi^2 E)) (Shigley, 4-12)",
+            "Euler pi^2 E I/L^2; if L/k < pi sqrt(2 E/S_y) Johnson A S_y (1 - S_y (L/k)^2/(4 pi^2 E)); Shigley 4-12",
         ),
         "buckling_safety": Row("1", "least over the turn, inf without compression", "buckling load/compression"),
     }
@@ -168,7 +164,7 @@ def _worst_fibre(sections, fibres, use):
 def _numbers(owner, solution, values, bar=None):
     """Options by name as floats, after the checks of a solution and of the elasticity of a bar."""
     lacks = [name for name in ("second_moment", "youngs_modulus") if getattr(bar, name, 0.0) is None]
-    texts = (f"the bar lacks its {name}, give ks.Bar(..., {name}=...)" for name in lacks if bar is not None)
+    texts = (f"the bar lacks its {name}, give ks.Bar(..., {name}=...)" for name in lacks)
     given = {name: (value, *NUMBERS[name]) for name, value in values.items()}
     return checks.single_numbers(owner, checks.solution("solution", solution), *texts, **given)
 

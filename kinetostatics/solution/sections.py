@@ -11,11 +11,13 @@ polynomials. N is positive in tension, V is the force of the part along n, and M
 t. M is 0 at both pins without friction.
 """
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ConditionWarning
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -74,8 +76,7 @@ class Bar:
 
     def __post_init__(self):
         try:
-            pairs = [(x, mass) for x, mass in self.masses]
-            problem = None
+            pairs, problem = [(x, mass) for x, mass in self.masses], None
         except (TypeError, ValueError):
             pairs, problem = [], f"masses must be pairs (x, mass), m and kg, got {checks.shown(self.masses)}"
         given = {name: (getattr(self, name), *of) for name, of in BAR.items() if getattr(self, name) is not None}
@@ -134,8 +135,7 @@ class Sections:
     start : float
         Coordinate of the first pin on the link's own axis, m.
     placed : tuple of int
-        Station of each force on the link but inertia and weight, as `mechanics.free_body` lists them, and of each
-        point mass.
+        Station of each force but inertia and weight, as `mechanics.free_body` lists them, and of each point mass.
 
     Examples
     --------
@@ -200,19 +200,23 @@ class Sections:
 
     def highest(self, choose) -> SectionPeak:
         """Largest value over bar and period of the polynomials that ``choose(axial, shear, moment)`` lists."""
-        from ..cycle.extremes import extrema, largest_of
+        from ..cycle.extremes import extrema, largest_of, warning
 
         low, high = self.stations[:-1, None], self.stations[1:, None]
 
         def candidates(at):
-            polynomials = np.array(choose(*self.polynomials(at)))
-            places = np.array([low + 0.0 * polynomials[:, 0], high + 0.0 * polynomials[:, 0], *_turning(polynomials)])
-            places = np.clip(np.nan_to_num(places), low, high)
-            return places, evaluate(polynomials, places)
+            with np.errstate(invalid="ignore"):
+                polynomials = np.array(choose(*self.polynomials(at)))
+                places = np.array(np.broadcast_arrays(low, high, *_turning(polynomials)))
+                places = np.clip(np.nan_to_num(places), low, high)
+                return places, evaluate(polynomials, places)
 
-        value, angle = largest_of(extrema(self.solution, lambda at: candidates(at)[1].max(axis=(0, 1, 2))))
-        places, values = candidates(self.solution.moved_to(np.nan_to_num([angle])))
-        return SectionPeak(float(value), float(places.ravel()[values.argmax()]), float(np.nan_to_num(angle)))
+        found = extrema(self.solution, lambda at: candidates(at)[1].max(axis=(0, 1, 2)))
+        if text := warning(self.solution, [found]):
+            warnings.warn(text, ConditionWarning, stacklevel=4)
+        value, angle = np.nan_to_num(largest_of(found), posinf=np.inf)
+        places, values = candidates(self.solution.moved_to(np.array([angle])))
+        return SectionPeak(float(value), float(places.ravel()[values.argmax()]), float(angle))
 
     def table(self):
         """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
@@ -227,7 +231,7 @@ class Sections:
 class WithSections:
     """Solutions give the forces inside their straight links."""
 
-    def sections(self, link, bar, at=101) -> Sections:
+    def sections(self: Any, link, bar, at=101) -> Sections:
         """Axial force, shear force and bending moment inside a straight link between two pins.
 
         Parameters
@@ -264,21 +268,12 @@ class WithSections:
         from ..cycle.means import closed_turn
 
         owner = f"sections of {link!r}"
-        wrong = (
-            None if isinstance(bar, Bar) else f"bar must be a ks.Bar(area=..., modulus=...), got {checks.shown(bar)}"
-        )
-        checks.require(owner, wrong, checks.count("at", at))
-        period = closed_turn(self, owner).period
-        motion = self.moved_to(period * PLACES).dynamics
-        actions = _actions(motion, link)
-        places, start, size = _places(motion, link, actions, owner)
-        length = max(places)
-        bar = _own_bar(bar, motion.mechanism.links[link], start, length, owner)
-        masses = [x for x, _ in bar.masses]
-        beyond = max([0.0, *masses]) > length + size
-        text = f"a point mass lies at {max([0.0, *masses]):.6g} m, beyond the second pin at {length:.6g} m"
-        checks.require(owner, text if beyond else None)
-        known = np.array([*places, *masses])
+        wrong = f"bar must be a ks.Bar(area=..., modulus=...), got {checks.shown(bar)}"
+        checks.require(owner, None if isinstance(bar, Bar) else wrong, checks.count("at", at))
+        motion = self.moved_to(closed_turn(self, owner).period * PLACES).dynamics
+        places, start, size = _places(motion, link, owner)
+        bar = _own_bar(bar, motion.mechanism.links[link], start, max(places), owner)
+        known = np.array([*places, *(x for x, _ in bar.masses)])
         stations = np.unique(known)
         stations = stations[np.diff(stations, prepend=-np.inf) > size]
         placed = np.abs(known[:, None] - stations).argmin(axis=1)
@@ -305,9 +300,9 @@ def _actions(motion, link):
     return [item for item in free_body(motion, link) if item.kind not in (INERTIA, WEIGHT)]
 
 
-def _places(motion, link, actions, owner):
+def _places(motion, link, owner):
     """Distance of each action from the first pin, m, coordinate of that pin on the link's axis, and their rounding."""
-    placed = motion.placement.links[link]
+    actions, placed = _actions(motion, link), motion.placement.links[link]
     origin, axis = motion.as_vector(placed.joint.position), motion.as_vector(placed.direction)
     rays = [item.point - origin for item in actions]
     along, across = (np.array([part(axis, ray) for ray in rays]) for part in (dot, cross))
@@ -342,5 +337,7 @@ def _own_bar(bar, link, start, length, owner):
         "give the link these numbers, or change the bar"
     )
     equal = all(abs(part) <= TOLERANCE * size for part, size in zip(lost, sizes, strict=True))
-    checks.require(owner, None if equal else text)
+    last = max((x for x, _ in bar.masses), default=0.0)
+    beyond = f"a point mass lies at {last:.6g} m, beyond the second pin at {length:.6g} m"
+    checks.require(owner, None if equal else text, beyond if last > length * (1.0 + TOLERANCE) else None)
     return bar

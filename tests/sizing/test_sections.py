@@ -207,6 +207,15 @@ def test_a_scalar_angle_gives_one_curve():
     assert ks.solve(machine(SAW), 0.5, crank_speed=SPEED).sections("coupler", SAW, at=7).axial_force.shape == (7,)
 
 
+def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
+    coupler, rocker = ks.Link(2.0, 0.2, 2.0 * 0.4**2 / 12), ks.Link(1.0, 0.05, 1.0 * 0.1**2 / 12)
+    deltoid = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open", coupler=coupler, rocker=rocker)
+    found = ks.Scene(deltoid, 10.0, loads=[ks.Gravity()]).solve(7).sections("coupler", ks.Bar(1e-3, 1e-5))
+    with pytest.warns(ks.ConditionWarning, match="grows without bound at 0, 180 deg"):
+        assert found.largest_tension.value == np.inf
+    assert found.largest_moment.value == pytest.approx(2.0 * (9.81 + 0.1 * 10.0**2) * 0.4 / 8)
+
+
 # Strength
 
 
