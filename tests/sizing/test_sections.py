@@ -207,6 +207,17 @@ def test_a_scalar_angle_gives_one_curve():
     assert ks.solve(machine(SAW), 0.5, crank_speed=SPEED).sections("coupler", SAW, at=7).axial_force.shape == (7,)
 
 
+def test_a_pin_between_the_ends_makes_shear_and_axial_force_jump():
+    s = two_throws(across=0.0)
+    found = s.sections("coupler", PLAIN, at=5)
+    axis = s.placement.links["coupler"].direction
+    x, y = s.reaction("C2")
+    along, across = x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
+    assert np.diff(found.axial_force[2:4], axis=0)[0] == pytest.approx(along, abs=1e-8)
+    assert np.diff(found.shear_force[2:4], axis=0)[0] == pytest.approx(-across, abs=1e-8)
+    assert np.abs(found.bending_moment[[0, -1]]).max() < 1e-9 < 1.0 < np.abs(found.bending_moment[2]).max()
+
+
 def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
     coupler, rocker = ks.Link(2.0, 0.2, 2.0 * 0.4**2 / 12), ks.Link(1.0, 0.05, 1.0 * 0.1**2 / 12)
     deltoid = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open", coupler=coupler, rocker=rocker)
@@ -380,10 +391,10 @@ def far():
     return scene(ks.crank_slider(R, L, coupler=ks.Link(1.0, 2.5)))
 
 
-def two_throws():
-    """A second coupler on a pin beside the line of the first."""
-    pin = ks.Pin(on="coupler", at=(1.0, 0.2), name="C")
-    second = ks.SliderGroup(2.0, guide=ks.Guide(angle=0.0), on="C", pin="D", label="2")
+def two_throws(across=0.2):
+    """A second coupler on a pin of the first, beside its line."""
+    pin = ks.Pin(on="coupler", at=(1.0, across), name="C")
+    second = ks.SliderGroup(2.0, on="C", pin="D", label="2", slider=ks.Link(100.0))
     return scene(ks.Mechanism("two", ks.Crank(R), (*ks.crank_slider(R, L).groups, pin, second)))
 
 
@@ -484,7 +495,7 @@ def test_figure_shows_envelopes_and_the_worst_angle():
 def test_table_and_text_name_the_peaks():
     found = solved().sections("coupler", SAW)
     value, x, angle = found.largest_moment
-    assert tuple(found.table().loc["largest moment"]) == ("N m", value, x, pytest.approx(np.degrees(angle)))
+    assert tuple(found.table().loc["moment"]) == ("N m", value, x, pytest.approx(np.degrees(angle)))
     assert f"{value:.6g} N m at 1 m" in repr(found)
 
 
