@@ -137,7 +137,7 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     safety = critical / compression if compression > 0.0 else np.inf
     text = f"compression reaches {compression / euler:.0%} of Euler's load, which raises the bending moment as much"
     notes = (text,) if compression > MAX_COMPRESSION * euler and sections.largest_moment.value > 0.0 else ()
-    largest, smallest = sections.highest(fibres).value, -sections.highest(lambda *forces: -fibres(*forces)).value
+    largest, smallest = sections.highest(fibres).value, 0.0 - sections.highest(lambda *forces: -fibres(*forces)).value
     fatigue = 1.0 / use(low, high) if use(low, high) else np.inf
     amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
     found = (largest, smallest, amplitude, mean, fatigue, slenderness, critical, safety)
@@ -256,7 +256,7 @@ def rigidity_of(solution, bars=None, shaft=None) -> dict[str, Rigidity]:
 
 def bar_rigidity(solution, link, bar) -> Rigidity:
     """First bending frequency and deflection of a straight link, and how far vibration makes it depart from rigid."""
-    _numbers("bar_rigidity", solution, {}, bar)
+    _numbers("needs: bars", solution, {}, bar)
     sections = solution.sections(link, bar)
     stiffness, ends, number = bar.youngs_modulus * bar.second_moment, sections.stations, np.arange(1, SINES + 1)
     length = ends[-1]
@@ -274,7 +274,7 @@ def bar_rigidity(solution, link, bar) -> Rigidity:
     def deflection(at):
         return weight @ evaluate(sections.polynomials(at)[2][:, part], x[:, None])
 
-    return _against_harmonics("bar_rigidity", solution, deflection, natural)
+    return _against_harmonics("needs: bars", solution, deflection, natural)
 
 
 def shaft_rigidity(solution, shaft) -> Rigidity:
@@ -283,8 +283,8 @@ def shaft_rigidity(solution, shaft) -> Rigidity:
     length, polar_moment, shear_modulus = _numbers("needs: shaft", solution, values).values()
     stiffness = shear_modulus * polar_moment / length
     with np.errstate(divide="ignore"):
-        natural = np.sqrt(stiffness / closed_turn(solution, "shaft_rigidity").even.reduced_inertia.mean())
-    return _against_harmonics("shaft_rigidity", solution, lambda at: at.balancing_torque / stiffness, natural)
+        natural = np.sqrt(stiffness / closed_turn(solution, "needs: shaft").even.reduced_inertia.mean())
+    return _against_harmonics("needs: shaft", solution, lambda at: at.balancing_torque / stiffness, natural)
 
 
 def _against_harmonics(owner, solution, function, natural):
@@ -297,5 +297,5 @@ def _against_harmonics(owner, solution, function, natural):
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.fft.irfft(np.where(rounding, 0.0, series * squares / (1.0 - squares)))
     largest = abs(float(extrema(solution, function).largest))
-    departure = float(np.abs(change).max() / largest) if largest else 0.0
+    departure = float(np.nan_to_num(np.abs(change).max(), nan=np.inf) / largest) if largest else 0.0  # inf at resonance
     return Rigidity((), float(natural), float(natural / speed), largest, departure)

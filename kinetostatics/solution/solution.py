@@ -104,8 +104,7 @@ class Solution(Certainty, WithSections, Motion):
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
-    measure(name)
-    at(crank_angle)
+    measure(name), at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
     explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame()
 

@@ -16,8 +16,7 @@ ANGLES = 720
 def sections(found, ax=None):
     """Axial force, shear force and bending moment along a bar, and its largest and smallest stress over the turn.
 
-    Bands reach from the smallest to the largest value over the turn; lines are drawn at the crank angle of the largest
-    bending moment, and, where another one is worst, at that too.
+    Bands reach from the smallest to the largest value over the turn; each line is drawn at its worst crank angle.
 
     Parameters
     ----------
@@ -49,11 +48,10 @@ def sections(found, ax=None):
         four = plt.subplots(4, 1, layout="constrained", figsize=(6.4, 8.0))[1]
     angle = np.linspace(0.0, found.solution.period, ANGLES + 1)
     whole = replace(found, solution=found.solution.moved_to(angle))
-    names = {"axial_force": "largest_tension", "shear_force": "largest_shear", "bending_moment": "largest_moment"}
-    for part, (name, peak) in zip(four, names.items(), strict=False):
-        values, worst = getattr(whole, name), getattr(found, peak)
-        if peak == "largest_tension":
-            worst = max(worst, found.largest_compression, key=lambda item: item.value)
+    axial = max(found.largest_tension, found.largest_compression)
+    peaks = {"axial_force": axial, "shear_force": found.largest_shear, "bending_moment": found.largest_moment}
+    for part, (name, worst) in zip(four, peaks.items(), strict=False):
+        values = getattr(whole, name)
         factor, unit = display_unit("N m" if name == "bending_moment" else "N", [values])
         at = replace(found, solution=found.solution.moved_to(np.array([worst.angle])))
         ends = factor * values.min(axis=1), factor * values.max(axis=1)

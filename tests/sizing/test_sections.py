@@ -85,6 +85,7 @@ def test_forces_are_those_of_a_chain_of_point_masses(bar, speed):
                 assert other[row] == pytest.approx(own, abs=3e-6 * np.abs(other).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bar", [SAW, ODD])
 def test_extremes_are_those_of_a_fine_grid_and_above_it(bar):
     s = solved(bar, loads=[ks.Gravity()], angles=1440)
@@ -230,6 +231,7 @@ def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
 # Strength
 
 
+@pytest.mark.slow
 def test_stress_and_fatigue_are_those_of_a_fine_grid():
     s = solved(ODD, loads=[ks.Gravity()], angles=1440)
     found, forces = ks.sizing.bar_strength(s, "coupler", ODD, **LIMITS), s.sections("coupler", ODD, at=401)
@@ -339,6 +341,11 @@ def test_departure_is_the_steady_vibration_of_an_oscillator():
     states = run(np.linalg.solve(np.eye(2) - monodromy, rest[-1]))
     still = np.cos(turn[::10]) + 0.3 * np.sin(2 * turn[::10])
     assert found.departure == pytest.approx(np.abs(states[:, 0] - still).max() / np.abs(still).max(), rel=1e-4)
+
+
+def test_a_harmonic_at_resonance_departs_without_bound():
+    found = strength._against_harmonics("test", solved(), lambda at: np.cos(2 * at.crank_angle), 2 * SPEED)
+    assert found.departure == np.inf
 
 
 def test_twist_of_a_shaft():
@@ -469,7 +476,7 @@ def test_unknown_names_are_refused():
         (lambda: ks.needs(solved(), "O", progress=False, bars=[SAW]), "bars must be a dict"),
         (lambda: ks.needs(solved(), "O", progress=False, bars={"coupler": PLAIN}), "lacks its second_moment"),
         (lambda: ks.needs(solved(), "O", progress=False, shaft={"length": 1.0}), "polar_moment must be a number"),
-        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "the crank stands"),
+        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank stands"),
         (lambda: ks.plots.sections(3), "found must be Sections"),
         (lambda: ks.plots.sections(solved().sections("coupler", SAW), ax=[1]), "ax must be 4 Axes"),
     ],
