@@ -276,6 +276,17 @@ def test_bar_without_load_is_safe():
     assert (found.fatigue_safety, found.buckling_safety, found.largest_stress) == (np.inf, np.inf, 0.0)
 
 
+@pytest.mark.parametrize(("force", "mean_counts"), [(-1e5, False), (1e5, True)])
+def test_mean_stress_counts_in_tension_only(force, mean_counts):
+    """A massless coupler under a steady force on the slider: N = F/cos of its angle."""
+    s = ks.Scene(ks.crank_slider(R, L), 1.0, 0.0, (ks.ProcessForce(force),)).solve(12)
+    found = ks.sizing.bar_strength(s, "coupler", ks.Bar(6e-3, 3e-4, **STEEL), **LIMITS)
+    level, steep = force / 6e-3, force / 6e-3 / np.sqrt(1 - (R / L) ** 2)
+    use = abs(steep - level) / 2 / 200e6 + mean_counts * (level + steep) / 2 / 600e6
+    assert found.fatigue_safety == pytest.approx(1 / use, rel=1e-9)
+    assert found.mean_stress == pytest.approx((level + steep) / 2)
+
+
 def test_pin():
     s = solved(angles=7200)
     found = ks.sizing.pin_strength(s, "A", diameter=0.1, width=0.12, shear_planes=1)
