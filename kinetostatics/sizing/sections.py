@@ -44,6 +44,10 @@ class BarStrength(Sized):
     """Stress, fatigue and buckling of a bar; `sections` are the forces inside, `x` is the place of fatigue, m."""
 
     ROWS: ClassVar = {
+        "largest_tension": Row("N", "over bar and turn", "N' = mu (a - g).t"),
+        "largest_compression": Row("N", "over bar and turn", "N' = mu (a - g).t"),
+        "largest_shear": Row("N", "size, over bar and turn", "V' = mu (g - a).n"),
+        "largest_moment": Row("N m", "size, over bar and turn", "M' = V"),
         "largest_stress": Row("Pa", "over bar and turn, tension positive", "N/A +- M/W"),
         "smallest_stress": Row("Pa", "over bar and turn, compression negative", "N/A +- M/W"),
         "stress_amplitude": Row("Pa", "at the fibre nearest to fatigue", "s_a = (max - min)/2 over the turn"),
@@ -63,6 +67,10 @@ class BarStrength(Sized):
     }
     sections: Sections
     x: float
+    largest_tension: float
+    largest_compression: float
+    largest_shear: float
+    largest_moment: float
     largest_stress: float
     smallest_stress: float
     stress_amplitude: float
@@ -133,14 +141,14 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     euler = np.pi**2 * bar.youngs_modulus * bar.area / slenderness**2
     yields = limits["yield_strength"] * bar.area
     critical = euler if euler < 0.5 * yields else yields * (1.0 - 0.25 * yields / euler)
-    compression = sections.largest_compression.value
+    peaks = sections.largest_tension, sections.largest_compression, sections.largest_shear, sections.largest_moment
+    _, compression, _, moment = forces = [peak.value for peak in peaks]
     safety = critical / compression if compression > 0.0 else np.inf
     text = f"compression reaches {compression / euler:.0%} of Euler's load, which raises the bending moment as much"
-    notes = (text,) if compression > MAX_COMPRESSION * euler and sections.largest_moment.value > 0.0 else ()
-    largest, smallest = sections.highest(fibres).value, 0.0 - sections.highest(lambda *forces: -fibres(*forces)).value
+    notes = (text,) if compression > MAX_COMPRESSION * euler and moment > 0.0 else ()
+    stresses = [sections.highest(fibres).value, 0.0 - sections.highest(lambda *forces: -fibres(*forces)).value]
     fatigue = 1.0 / use(low, high) if use(low, high) else np.inf
-    amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
-    found = (largest, smallest, amplitude, mean, fatigue, slenderness, critical, safety)
+    found = (*forces, *stresses, 0.5 * (high - low), 0.5 * (high + low), fatigue, slenderness, critical, safety)
     return warn_of_notes("bar_strength", BarStrength(notes, sections, x, *found))
 
 

@@ -244,6 +244,10 @@ def test_stress_and_fatigue_are_those_of_a_fine_grid():
     assert found.x == pytest.approx(forces.x[use.argmax() % 401], abs=5e-3)
     assert 1 / found.fatigue_safety == pytest.approx(found.stress_amplitude / 200e6 + max(found.mean_stress, 0) / 600e6)
     assert found.table().loc["fatigue_safety", "unit"] == "1"
+    for name, values in (("tension", forces.axial_force), ("compression", -forces.axial_force)):
+        assert getattr(found, f"largest_{name}") == pytest.approx(values.max(), rel=1e-5)
+    for name, values in (("shear", forces.shear_force), ("moment", forces.bending_moment)):
+        assert getattr(found, f"largest_{name}") == pytest.approx(np.abs(values).max(), rel=1e-5)
 
 
 @pytest.mark.parametrize(
