@@ -312,6 +312,40 @@ def friction():
     return figure
 
 
+def sections():
+    """A coupler between its pins with its point masses, and a part of it with the forces at the section."""
+    figure, (bar, part) = plt.subplots(2, 1)
+    for ax, end in ((bar, 4.0), (part, 1.6)):
+        ax.fill([0, end, end, 0], [-0.12, -0.12, 0.12, 0.12], fc="0.88", ec=INK, lw=1.0)
+        arrow(ax, np.array([-0.7, 0.0]), np.array([0.0, 0.0]), "$F_t$", tail=True)
+        arrow(ax, np.array([0.0, -0.75]), np.array([0.0, 0.0]), "$F_n$", tail=True)
+        ax.plot(0.0, 0.0, "o", ms=7, mfc="white", mec=INK)
+        ax.plot([1.0], [0.0], "o", ms=9, color=STEEL)
+        ax.text(1.0, 0.26, r"$m_i$", ha="center", color=STEEL)
+    bar.plot(4.0, 0.0, "o", ms=7, mfc="white", mec=INK)
+    arrow(bar, np.array([4.8, 0.0]), np.array([4.1, 0.0]), "")
+    arrow(bar, np.array([4.0, -0.75]), np.array([4.0, 0.0]), "")
+    for height, end, text in ((0.62, 4.0, "L"), (-0.42, 1.0, r"$x_i$")):
+        bar.annotate("", (0, height), (end, height), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+        bar.text(0.5 * end, height + 0.08, text, ha="center", bbox={"fc": "white", "ec": "none", "pad": 0.5})
+    for x in np.linspace(0.2, 1.5, 6):
+        arrow(part, np.array([x, 0.75]), np.array([x, 0.42]), "", LOAD)
+    part.text(0.45, 0.82, r"$\mu\,(g - a)$ on each metre", color=LOAD)
+    arrow(part, np.array([1.6, 0.0]), np.array([2.5, 0.0]), "N")
+    arrow(part, np.array([1.6, 0.12]), np.array([1.6, -0.7]), "V")
+    angle_mark(part, np.array([1.6, 0.0]), 0.42, np.radians(-75), np.radians(75), "", ACCENT)
+    part.text(2.05, 0.36, "M", color=ACCENT)
+    part.annotate("", (0, -0.42), (1.6, -0.42), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+    part.text(0.8, -0.36, "x", ha="center")
+    arrow(part, np.array([3.4, 0.0]), np.array([4.1, 0.0]), "t", INK)
+    arrow(part, np.array([3.4, 0.0]), np.array([3.4, 0.7]), "n", INK)
+    for ax in (bar, part):
+        ax.set(xlim=(-1.0, 5.0), ylim=(-0.95, 1.05))
+        ax.set_aspect("equal")
+        ax.axis("off")
+    return figure
+
+
 DRAWINGS = {
     "signs": (signs, (6.4, 3.1)),
     "groups": (groups, (7.6, 4.0)),
@@ -322,6 +356,7 @@ DRAWINGS = {
     "yoke": (yoke, (6.4, 2.3)),
     "cam_roller": (cam_roller, (7.0, 1.6)),
     "friction": (friction, (6.4, 2.5)),
+    "../parts/sections": (sections, (6.4, 4.2)),
 }
 """How each is drawn, and its size in inches."""
 

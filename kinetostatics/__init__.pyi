@@ -79,6 +79,8 @@ from .solution.program import Program as Program
 from .solution.program import compile as compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene as Scene
 from .solution.scene import solve as solve
+from .solution.sections import Bar as Bar
+from .solution.sections import Sections as Sections
 from .solution.shares import Shares as Shares
 from .solution.solution import Solution as Solution
 from .studies import precision as precision

@@ -1,2 +1,4 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
 from .result import Sized as Sized
+from .sections import bar_strength as bar_strength
+from .sections import pin_strength as pin_strength

@@ -39,6 +39,7 @@ from .parameters import (
     require_known_between_angles,
     scene_plausibility_test,
 )
+from .sections import WithSections
 
 MAX_VALUES_TOGETHER = 100_000
 """Values over designs and angles up to which all forces are computed together."""
@@ -59,7 +60,7 @@ def _scalar(name, text):
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, Motion):
+class Solution(Certainty, WithSections, Motion):
     """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
     Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
@@ -103,10 +104,9 @@ class Solution(Certainty, Motion):
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
-    measure(name)
-    at(crank_angle)
+    measure(name), at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
-    explain(quantity, angle, design), shares(quantity), frame()
+    explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame()
 
     Notes
     -----

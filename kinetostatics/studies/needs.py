@@ -10,6 +10,7 @@ beside others, unless there are too many models.
 import itertools
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..engines.program import program_of
 from ..errors import NotGivenError, ParameterError
 from ..mechanics.quantities import components, label_of
 from ..numbers import checks
+from ..sizing.sections import rigidity_of
 from ..solution.solution import Solution
 from .simplifications import ingredients
 
@@ -73,6 +75,9 @@ class Needs:
         Number of combinations run.
     left_out : dict of str to str
         Simplifications that were not tried in combinations, with the reason.
+    rigidity : dict of str to Sized
+        By link with a bar, and "shaft": natural frequency, rad/s, its `order`, deflection, relative to the length or in
+        rad, and `departure`, the share of the deflection within which a rigid part is right; ``.table()`` has formulas.
 
     Examples
     --------
@@ -91,6 +96,7 @@ class Needs:
     smallest: Model
     tried: int
     left_out: dict[str, str] = field(default_factory=dict)
+    rigidity: dict[str, Any] = field(default_factory=dict)
 
     def __str__(self):
         saved = 1 - self.smallest.operations / self.full.operations
@@ -98,6 +104,9 @@ class Needs:
             f"{self.label} within {self.within:.3g}: {self.smallest.name}, {self.smallest.operations} of "
             f"{self.full.operations} operations ({saved:.0%} saved), error {self.smallest.error:.2g}; "
             f"{self.tried} models run" + "".join(f"; {name} left out: {why}" for name, why in self.left_out.items())
+        ) + "".join(
+            f"; rigid {name} is within {found.departure:.2g}, its frequency {found.order:.3g} times that of the crank"
+            for name, found in self.rigidity.items()
         )
 
     @property
@@ -116,7 +125,7 @@ class Needs:
         return _frame(self.ladder, self.quantity, self.full)
 
 
-def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs:
+def needs(scene, quantity, within=0.01, *, variant=None, progress=True, bars=None, shaft=None) -> Needs:
     """Find the cheapest model within a tolerance: run every combination of simplifications.
 
     Simplifications: no gravity, springs, process forces, friction of pins, guides, slots or rollers; constant crank
@@ -140,6 +149,10 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
         Of a case; its reference by default.
     progress : bool
         Show a progress bar after ten seconds.
+    bars : mapping of link to Bar, optional
+        Straight links of given section; `Needs.rigidity` compares them with rigid ones.
+    shaft : mapping, optional
+        Shaft between drive and crank: "length", m, "polar_moment", m4, "shear_modulus", Pa; compared likewise.
 
     Returns
     -------
@@ -149,7 +162,8 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     Raises
     ------
     ParameterError
-        The solution is a batch, the quantity zero throughout, or the tolerance not positive.
+        The solution is a batch, the quantity zero throughout, or the tolerance not positive; a bar as for
+        `Solution.sections`, or it lacks `second_moment` or `youngs_modulus`; the crank of a bar or shaft stands.
 
     Examples
     --------
@@ -170,6 +184,7 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
         raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
+    rigidity = rigidity_of(solution, bars, shaft)
     runs = _ModelRunner(solution, quantity)
     parts = ingredients(solution.mechanism).values()
     alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
@@ -185,7 +200,7 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
         if not ladder or made.operations < ladder[-1].operations:
             ladder.append(made)
     each, tried = tuple(alone.values()), len(models)
-    return Needs(quantity, within, models[0], each, tuple(ladder), smallest, tried, runs.left_out)
+    return Needs(quantity, within, models[0], each, tuple(ladder), smallest, tried, runs.left_out, rigidity)
 
 
 class _ModelRunner:

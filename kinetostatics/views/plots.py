@@ -22,6 +22,7 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
+from .sizing_sections import sections
 
 __all__ = [
     "acceleration_error",
@@ -49,6 +50,7 @@ __all__ = [
     "model_ladder",
     "over_turn",
     "pressure_angle",
+    "sections",
     "shaking_force",
     "shares",
     "sweep_map",

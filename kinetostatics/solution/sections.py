@@ -1,0 +1,345 @@
+"""Axial force, shear force and bending moment inside a straight link, over its length and the turn.
+
+The part of a link from its first pin to a section is in equilibrium: inertia, weight, forces of pins and loads on it,
+and the forces of the section (d'Alembert; Timoshenko, *Strength of Materials*). With x from the first pin along t, n
+the left normal of t, mu the mass per length, and the acceleration a, which is linear in x:
+
+    N' = mu (a - g).t        V' = mu (g - a).n        M' = V
+
+So between pins, point masses and loads N and V are quadratic in x, and M is cubic: extremes over x are those of
+polynomials. N is positive in tension, V is the force of the part along n, and M > 0 stretches the fibre on the right of
+t. M is 0 at both pins without friction.
+"""
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import ConditionWarning
+from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
+from ..numbers import checks
+from ..numbers.lazy import cached_property
+from ..numbers.planar import cross, dot
+
+POSITIVE: dict[str, Any] = {"low": 0.0, "strict": True}
+BAR = {
+    "area": ("m**2", POSITIVE),
+    "modulus": ("m**3", POSITIVE),
+    "mass": ("kg", {"low": 0.0}),
+    "second_moment": ("m**4", POSITIVE),
+    "youngs_modulus": ("Pa", POSITIVE),
+}
+"""Unit and rule of each number of a bar."""
+PLACES = np.array([0.02, 0.17, 0.31, 0.46, 0.62, 0.77, 0.93])
+"""Places in the period, relative to it, at which the forces are located on a link."""
+TOLERANCE = 1e-9
+"""Difference of places, and of a bar from its link, relative to lengths and masses, that is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """Section and mass of a straight link: a uniform bar from pin to pin, and point masses on it.
+
+    Parameters
+    ----------
+    area : float
+        A of the section, m2.
+    modulus : float
+        Section modulus W for bending in the plane of motion, m3: stress N/A +- M/W at the two outer fibres.
+    masses : sequence of (x, mass)
+        Point masses, kg, at x from the first pin, m.
+    mass : float, optional
+        Of the uniform bar, kg; by default what the link's mass leaves beside `masses`.
+    second_moment, youngs_modulus : float, optional
+        Second moment of area I, m4, and E, Pa; buckling and rigidity need them.
+
+    Raises
+    ------
+    ParameterError
+        A number is not finite, or not positive; a point mass or its place is negative.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.Bar(area=6e-3, modulus=3e-4, masses=[(1.0, 88.5)], mass=61.5).properties(2.0)
+    (150.0, 1.0, 20.5)
+    """
+
+    area: float
+    modulus: float
+    masses: tuple[tuple[float, float], ...] = ()
+    mass: float | None = None
+    second_moment: float | None = None
+    youngs_modulus: float | None = None
+
+    def __post_init__(self):
+        try:
+            pairs, problem = [(x, mass) for x, mass in self.masses], None
+        except (TypeError, ValueError):
+            pairs, problem = [], f"masses must be pairs (x, mass), m and kg, got {checks.shown(self.masses)}"
+        given = {name: (getattr(self, name), *of) for name, of in BAR.items() if getattr(self, name) is not None}
+        for number, (x, mass) in enumerate(pairs, 1):
+            given |= {f"x {number}": (x, "m", {"low": 0.0}), f"point mass {number}": (mass, "kg", {"low": 0.0})}
+        found = checks.single_numbers("Bar", problem, **given)
+        masses = [(found.pop(f"x {number}"), found.pop(f"point mass {number}")) for number in range(1, len(pairs) + 1)]
+        vars(self).update(found, masses=tuple(masses))
+
+    def properties(self, length):
+        """Mass, kg, centre from the first pin, m, and moment of inertia about it, kg m2, for a length, m."""
+        bar = self.mass or 0.0
+        parts = [(0.5 * length, bar), *self.masses]
+        total = sum(mass for _, mass in parts)
+        centre = sum(x * mass for x, mass in parts) / total if total else 0.5 * length
+        return total, centre, bar * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
+
+
+class SectionPeak(NamedTuple):
+    """Largest value in the bar over the period, at `x` from the first pin, m, and a crank angle, rad."""
+
+    value: float
+    x: float
+    angle: float
+
+
+def _curve(row, text):
+    """Force at each section and crank angle."""
+    return property(lambda self: self._curves[row], doc=text)
+
+
+def _peak(choose, text):
+    """True extreme over length and turn."""
+
+    def found(self):
+        return self.highest(choose)
+
+    found.__doc__ = text
+    return cached_property(found)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sections:
+    """Forces inside a straight link; made by `Solution.sections`.
+
+    Attributes
+    ----------
+    solution : Solution
+    link : str
+    bar : Bar
+        With the mass of its uniform part.
+    x : array (at,)
+        Distances of the sections from the first pin, m; at a pin, load or point mass the section lies before it.
+    stations : array
+        Places of pins, loads and point masses, m; the first is 0, the last the length between the pins.
+    start : float
+        Coordinate of the first pin on the link's own axis, m.
+    placed : tuple of int
+        Station of each force but inertia and weight, as `mechanics.free_body` lists them, and of each point mass.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 50.0), slider=ks.Link(600))
+    >>> found = ks.Scene(saw, 33.5).solve(360).sections("coupler", bar=ks.Bar(area=6e-3, modulus=3e-4))
+    >>> print(f"{found.largest_moment.value:.0f} N m at {found.largest_moment.x:.3f} m")
+    6545 N m at 0.851 m
+    """
+
+    solution: Any
+    link: str
+    bar: Bar
+    x: np.ndarray
+    stations: np.ndarray
+    start: float
+    placed: tuple[int, ...]
+
+    def __repr__(self):
+        value, x, angle = self.largest_moment
+        where = f"{value:.6g} N m at {x:.6g} m and {np.degrees(angle):.6g} deg"
+        return f"<Sections: {self.link}, {len(self.x)} sections, largest bending moment {where}>"
+
+    axial_force = _curve(0, "N at each section and crank angle, (at, N), N, positive in tension.")
+    shear_force = _curve(1, "V at each section and crank angle, (at, N), N.")
+    bending_moment = _curve(2, "M at each section and crank angle, (at, N), N m.")
+    largest_tension = _peak(lambda n, v, m: [n], "Largest axial force, a `SectionPeak`.")
+    largest_compression = _peak(lambda n, v, m: [-n], "Largest compressive force, a `SectionPeak`.")
+    largest_shear = _peak(lambda n, v, m: [v, -v], "Largest size of the shear force, a `SectionPeak`.")
+    largest_moment = _peak(lambda n, v, m: [m, -m], "Largest size of the bending moment, a `SectionPeak`.")
+
+    @cached_property
+    def _curves(self):
+        segment = np.clip(np.searchsorted(self.stations, self.x) - 1, 0, len(self.stations) - 2)
+        at = self.solution.moved_to(np.atleast_1d(self.solution.crank_angle))
+        found = evaluate(self.polynomials(at)[:, :, segment], self.x[:, None])
+        return found.reshape(*found.shape[:2], *self.solution.shape)
+
+    def polynomials(self, solution):
+        """Coefficients of N, V and M by powers of x between the stations, (3, 4, segments, N), at other angles."""
+        motion = solution.dynamics
+        t = motion.as_vector(motion.placement.links[self.link].direction)
+        axes = (t, np.stack([-t[1], t[0]]))
+        pull = motion.as_vector(motion.gravity) - motion.acceleration((self.link, self.start, 0.0))
+        pull = np.stack([dot(pull, axis) for axis in axes])  # force on a unit mass at the first pin, and its slope in x
+        slope = np.stack([motion.rate(self.link) ** 2, -motion.angular_acceleration(self.link)])
+        acting = [[*(dot(item.force, axis) for axis in axes), item.couple] for item in _actions(motion, self.link)]
+        acting += [[*(mass * (pull + x * slope)), 0.0 * pull[0]] for x, mass in self.bar.masses]
+        forces = np.zeros((len(self.stations), 3, pull.shape[-1]))  # along t, along n, couple
+        np.add.at(forces, list(self.placed), acting)
+        moments = forces[:, 1] * self.stations[:, None] + forces[:, 2]
+        axial, shear, moment = (part[:-1].cumsum(axis=0) for part in (forces[:, 0], forces[:, 1], moments))
+        per_length = self.bar.mass / self.stations[-1]
+        (p, q), (p_slope, q_slope), none = per_length * pull, per_length * slope, 0.0 * axial
+        return np.array(
+            [
+                [-axial, none - p, none - p_slope / 2.0, none],
+                [shear, none + q, none + q_slope / 2.0, none],
+                [-moment, shear, none + q / 2.0, none + q_slope / 6.0],
+            ]
+        )
+
+    def highest(self, choose) -> SectionPeak:
+        """Largest value over bar and period of the polynomials that ``choose(axial, shear, moment)`` lists."""
+        from ..cycle.extremes import extrema, largest_of, warning
+
+        low, high = self.stations[:-1, None], self.stations[1:, None]
+
+        def candidates(at):
+            with np.errstate(invalid="ignore"):
+                polynomials = np.array(choose(*self.polynomials(at)))
+                places = np.array(np.broadcast_arrays(low, high, *_turning(polynomials)))
+                places = np.clip(np.nan_to_num(places), low, high)
+                return places, evaluate(polynomials, places)
+
+        found = extrema(self.solution, lambda at: candidates(at)[1].max(axis=(0, 1, 2)))
+        if text := warning(self.solution, [found]):
+            warnings.warn(text, ConditionWarning, stacklevel=4)
+        value, angle = np.nan_to_num(largest_of(found), posinf=np.inf)
+        places, values = candidates(self.solution.moved_to(np.array([angle])))
+        return SectionPeak(float(value), float(places.ravel()[values.argmax()]), float(angle))
+
+    def table(self):
+        """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
+        import pandas as pd
+
+        rows = [
+            (name, unit, peak.value, peak.x, np.degrees(peak.angle))
+            for name, unit in {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}.items()
+            for peak in [getattr(self, f"largest_{name}")]
+        ]
+        return pd.DataFrame(rows, columns=["largest", "unit", "value", "x [m]", "at [deg]"]).set_index("largest")
+
+
+class WithSections:
+    """Solutions give the forces inside their straight links."""
+
+    def sections(self: Any, link, bar, at=101) -> Sections:
+        """Axial force, shear force and bending moment inside a straight link between two pins.
+
+        Parameters
+        ----------
+        link : str
+            "coupler", "rocker", "crank" ...
+        bar : Bar
+            Its section, and its mass as a uniform bar and point masses.
+        at : int
+            Number of sections, evenly spaced from pin to pin.
+
+        Returns
+        -------
+        Sections
+            `.axial_force`, `.shear_force`, `.bending_moment` (at, N); `.largest_moment` ... true extremes over length
+            and turn, whatever the sections and crank angles; `.table()`, ``ks.plots.sections(found)``.
+
+        Raises
+        ------
+        ParameterError
+            Mass, centre or inertia of the bar are not those of the link; a force on the link acts off the line of its
+            pins, moves along it, or is a couple without a place; the mechanism does not close all round; a batch.
+        QuantityError
+            There is no such link.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> bar = ks.Bar(area=6e-3, modulus=3e-4, masses=[(1.0, 88.5)])
+        >>> ks.Scene(saw, 33.5).solve(360).sections("coupler", bar).largest_compression.value.__round__()
+        218418
+        """
+        from ..cycle.means import closed_turn
+
+        owner = f"sections of {link!r}"
+        wrong = f"bar must be a ks.Bar(area=..., modulus=...), got {checks.shown(bar)}"
+        checks.require(owner, None if isinstance(bar, Bar) else wrong, checks.count("at", at))
+        motion = self.moved_to(closed_turn(self, owner).period * PLACES).dynamics
+        places, start, size = _places(motion, link, owner)
+        bar = _own_bar(bar, motion.mechanism.links[link], start, max(places), owner)
+        known = np.array([*places, *(x for x, _ in bar.masses)])
+        stations = np.unique(known)
+        stations = stations[np.diff(stations, prepend=-np.inf) > size]
+        placed = np.abs(known[:, None] - stations).argmin(axis=1)
+        return Sections(self, link, bar, np.linspace(0.0, stations[-1], at), stations, start, tuple(placed.tolist()))
+
+
+def evaluate(coefficients, x):
+    """Polynomials by their coefficients (..., 4, segments, N) at x."""
+    constant, first, second, third = np.moveaxis(coefficients, -3, 0)
+    return constant + x * (first + x * (second + x * third))
+
+
+def _turning(polynomials):
+    """Both places where the slope of cubics (kinds, 4, segments, N) is zero; not finite where there is none."""
+    _, c, half_b, a = np.moveaxis(polynomials, 1, 0)
+    a = 3.0 * a
+    with np.errstate(all="ignore"):
+        far = -half_b - np.copysign(np.sqrt(half_b * half_b - a * c), half_b)
+        return far / a, c / far
+
+
+def _actions(motion, link):
+    """Forces and couples on a link but its own inertia and weight."""
+    return [item for item in free_body(motion, link) if item.kind not in (INERTIA, WEIGHT)]
+
+
+def _places(motion, link, owner):
+    """Distance of each action from the first pin, m, coordinate of that pin on the link's axis, and their rounding."""
+    actions, placed = _actions(motion, link), motion.placement.links[link]
+    origin, axis = motion.as_vector(placed.joint.position), motion.as_vector(placed.direction)
+    rays = [item.point - origin for item in actions]
+    along, across = (np.array([part(axis, ray) for ray in rays]) for part in (dot, cross))
+    size = TOLERANCE * motion.mechanism.extent
+    pins = [row.mean() for row, item in zip(along, actions, strict=True) if item.kind == REACTION]
+    start, stop = (min(pins), max(pins)) if pins else (0.0, 0.0)
+    texts = [None if stop - start > size else "it has no two pins, so it is not a bar between pins"]
+    for item, x, y in zip(actions, along, across, strict=True):
+        if np.ptp(x) > size:
+            texts.append(f"{item.name!r} moves along it by {np.ptp(x):.4g} m or more")
+        elif np.abs(y).max() > size:
+            texts.append(f"{item.name!r} acts {np.abs(y).max():.4g} m off its axis")
+        elif item.kind == LOAD and np.any(item.couple):
+            texts.append(f"{item.name!r} is a couple without a place on the bar")
+        elif not -size <= x.mean() - start <= stop - start + size:
+            texts.append(f"{item.name!r} acts {x.mean() - start:.4g} m from the first pin, beyond the second")
+    checks.require(owner, *texts)
+    return along.mean(axis=1) - start, start, size
+
+
+def _own_bar(bar, link, start, length, owner):
+    """The bar with the mass of its uniform part; refused unless it has the link's mass, centre and inertia."""
+    if bar.mass is None:
+        bar = replace(bar, mass=max(0.0, link.mass - sum(mass for _, mass in bar.masses)))
+    mass, centre, inertia = bar.properties(length)
+    along, across = (link.centre[0] - start, link.centre[1]) if link.mass else (centre, 0.0)
+    lost = (mass - link.mass, np.hypot(centre - along, across), inertia - link.inertia)
+    sizes = (link.mass, length, max(link.mass * length**2, link.inertia))
+    text = (
+        f"the bar is not the link: its mass, {mass:.6g} kg, differs by {lost[0]:+.4g} kg, its centre, {centre:.6g} m "
+        f"from the first pin, by {lost[1]:.4g} m, its moment of inertia, {inertia:.6g} kg m2, by {lost[2]:+.4g} kg m2; "
+        "give the link these numbers, or change the bar"
+    )
+    equal = all(abs(part) <= TOLERANCE * size for part, size in zip(lost, sizes, strict=True))
+    last = max((x for x, _ in bar.masses), default=0.0)
+    beyond = f"a point mass lies at {last:.6g} m, beyond the second pin at {length:.6g} m"
+    checks.require(owner, None if equal else text, beyond if last > length * (1.0 + TOLERANCE) else None)
+    return bar
