@@ -1,2 +1,5 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
+from .foundation import Mount as Mount
+from .foundation import block_for as block_for
+from .foundation import mount as mount
 from .result import Sized as Sized
