@@ -9,8 +9,8 @@ The crank turns at a constant speed relative to the block, so the machine pushes
 if they rested in their mean place, and the resultant of the springs passes through the centre of mass.
 """
 
+from collections import namedtuple
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,9 +23,11 @@ from ..machine.loads import TURN
 from ..numbers import checks
 from .result import Row, Sized, warn_of_notes
 
+Machine = namedtuple("Machine", "speed order force mass acceleration")
+"""Harmonics (3, N) of a machine's force on the frame and moment about the centre, by order; its own numbers."""
 NUMBERS = {
     "mass": ("kg", POSITIVE),
-    "inertia": ("kg m2", POSITIVE),
+    "inertia": ("kg*m**2", POSITIVE),
     "stiffness": ("N/m", POSITIVE),
     "damping": ("1", {"low": 0.0}),
     "v_rms": ("m/s", POSITIVE),
@@ -38,6 +40,8 @@ NEGLIGIBLE, RESONANT = 1e-13, 1e-9
 """Size of a harmonic relative to the largest that is left out; distance from resonance relative to its frequency."""
 MAX_TAIL, MAX_COUPLING = 1e-3, 0.05
 """Largest share of v_peak above the last harmonic, and acceleration of the block over the machine's, without a note."""
+BLOW_STEP, MAX_JUMP = 1e-6, 1e-3
+"""Crank angle beside a kink or limit position, rad; change of velocity over speed and lengths that is no blow."""
 WAYS = {"x": ("m", "N"), "y": ("m", "N"), "turn": ("rad", "N m")}
 """Directions of the block, with units of motion and load."""
 ROWS = {
@@ -103,11 +107,11 @@ class Mount(Sized):
         import pandas as pd
 
         checks.require("harmonics", checks.choice("way", way, tuple(WAYS)))
-        parts = {"force": self.force, "displacement": self.displacement, "ground": self.ground_force}
-        found = {name: part[list(WAYS).index(way)] for name, part in parts.items()}
-        ratio = found["displacement"] * np.conj(found["force"])
-        lag = np.where(ratio == 0.0, np.nan, -np.sign(self.crank_speed) * np.degrees(np.angle(ratio)))
-        table = {name: np.abs(part) for name, part in found.items()} | {"lag [deg]": lag}
+        row = list(WAYS).index(way)
+        force, moves, ground = (part[row] for part in (self.force, self.displacement, self.ground_force))
+        angle = -np.sign(self.crank_speed) * np.degrees(np.angle(moves * np.conj(force)))
+        lag = np.where(moves * force == 0.0, np.nan, angle)
+        table = {"force": abs(force), "displacement": abs(moves), "ground": abs(ground), "lag [deg]": lag}
         return pd.DataFrame(table, index=pd.Index(self.order, name="order"))
 
 
@@ -136,8 +140,8 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     Raises
     ------
     ParameterError
-        A number is out of range; the machine has gaps, several designs, no constant speed or a force that grows without
-        bound; a harmonic meets a natural frequency without damping.
+        A number is out of range; the machine has gaps, several designs, no constant speed, or velocities that jump; a
+        harmonic meets a natural frequency without damping.
 
     Warns
     -----
@@ -160,14 +164,13 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     centre, wrong = checks.Pair("m").check(centre, "centre")
     if (len(springs) == len(WAYS)) == (inertia is None):
         problems.append("inertia and a third stiffness, that of turning, must be given together")
-    given = {"mass": (mass, *NUMBERS["mass"])} | (
-        {} if inertia is None else {"inertia": (inertia, *NUMBERS["inertia"])}
-    )
+    plain = {"mass": mass} | ({} if inertia is None else {"inertia": inertia})
+    given = {name: (value, *NUMBERS[name]) for name, value in plain.items()}
     for way, spring, ratio in zip(WAYS, springs, ratios, strict=False):
-        unit = "N m" if way == "turn" else NUMBERS["stiffness"][0]
+        unit = "N*m/rad" if way == "turn" else NUMBERS["stiffness"][0]
         given |= {f"stiffness {way}": (spring, unit, POSITIVE), f"damping {way}": (ratio, *NUMBERS["damping"])}
     found = checks.single_numbers("mount", *problems, problem, wrong, **given)
-    machine = _spectrum("mount", solution, centre)
+    machine = _machine("mount", solution, centre)
     if found["mass"] <= machine.mass:
         words = f"mass must be greater than that of the moving links, {machine.mass:.6g} kg, which it includes"
         raise ParameterError(f"mount: {words}, got {found['mass']:.6g}")
@@ -212,7 +215,7 @@ def block_for(solution, *, v_rms, tuning=0.5, damping=0.1):
     checks.require("block_for", checks.solution("solution", solution))
     values = {"v_rms": v_rms, "tuning": tuning, "damping": damping}
     found = checks.single_numbers("block_for", **{name: (value, *NUMBERS[name]) for name, value in values.items()})
-    machine = _spectrum("block_for", solution, (0.0, 0.0))
+    machine = _machine("block_for", solution, (0.0, 0.0))
 
     def block(mass):
         spring = mass * (found["tuning"] * machine.speed) ** 2
@@ -225,24 +228,19 @@ def block_for(solution, *, v_rms, tuning=0.5, damping=0.1):
     return warn_of_notes("block_for", block(mass))
 
 
-class Spectrum(NamedTuple):
-    """Harmonics (3, N) of the force on the frame and its moment about the centre; the machine's own numbers."""
-
-    speed: float
-    order: np.ndarray
-    force: np.ndarray
-    mass: float
-    acceleration: float
-
-
-def _spectrum(owner, solution, centre):
-    """`Spectrum` of a machine at constant speed, by integrals on the pieces between kinks."""
+def _machine(owner, solution, centre):
+    """`Machine` of a machine at constant speed, by integrals on the pieces between kinks."""
     turn = closed_turn(solution, owner)
     speed = np.unique(solution.crank_speed)
     if speed.size != 1 or not speed[0] or np.any(solution.crank_acceleration):
         raise ParameterError(f"{owner}: takes a machine at a constant crank speed other than 0, without acceleration")
-    if np.isinf(extrema(solution, "ground").value).any():
-        raise ParameterError(f"{owner}: the force of {solution.mechanism.name} on the frame grows without bound")
+    edges, size = turn.pieces.edges, abs(speed * solution.mechanism.extent)
+    before, after = (turn.at.moved_to(edges + side * BLOW_STEP) for side in (-1.0, 1.0))
+    for joint in solution.mechanism.joints:
+        blows = edges[np.any(abs(after.velocity(joint) - before.velocity(joint)) > MAX_JUMP * size, axis=0)]
+        if blows.size:
+            words = f"changes its velocity at once at {np.degrees(blows[0]):.6g} deg, a blow on the frame"
+            raise ParameterError(f"{owner}: {joint} {words}")
 
     def wrench(angle):
         ground = turn.at.moved_to(turn.clear(angle)).ground
@@ -265,7 +263,7 @@ def _spectrum(owner, solution, centre):
     force = np.where(counts, force, 0.0)[:, :last]
     mass = sum(float(np.max(link.mass)) for link in solution.mechanism.links.values())
     peak = largest_of(extrema(solution, acceleration, pulsed=False))[0]
-    return Spectrum(float(speed[0]), order[:last], force, mass, peak)
+    return Machine(float(speed[0]), order[:last], force, mass, peak)
 
 
 def _mount(owner, machine, masses, springs, ratios, centre):
@@ -293,9 +291,8 @@ def _mount(owner, machine, masses, springs, ratios, centre):
     rms, straight = np.sqrt(0.5 * np.sum(np.abs(velocity) ** 2, axis=1)), [0, 1, 3, 4]
     gain = np.divide(load, fixed, out=np.full(len(WAYS), np.nan), where=fixed > 0.0)
     coupling = acceleration[straight].max() / (machine.acceleration or np.nan)
-    tuning = natural.min() / abs(machine.speed)
     rows = zip(rms, peak, (high + low)[10:], load, gain, strict=False)
-    own = [masses[0, 0], tuning, rms[straight].max(), peak[straight].max(), coupling]
+    own = [masses[0, 0], natural.min() / abs(machine.speed), rms[straight].max(), peak[straight].max(), coupling]
     numbers = dict(zip(ROWS, map(float, np.append(own, [*rows])), strict=True))
     notes = []
     if coupling > MAX_COUPLING:
@@ -303,15 +300,14 @@ def _mount(owner, machine, masses, springs, ratios, centre):
         notes.append(f"the block's acceleration is {coupling:.1%} of the machine's; {words}")
     tail = HARMONICS * np.max(np.abs(velocity[straight, 3 * HARMONICS // 4 :]), initial=0.0)
     if tail > MAX_TAIL * numbers["v_peak"]:
-        share = tail / numbers["v_peak"]
-        notes.append(f"the force on the frame jumps: harmonics above {HARMONICS} add up to {share:.1%} of v_peak")
+        share = f"{tail / numbers['v_peak']:.1%} of v_peak"
+        notes.append(f"the force on the frame jumps: harmonics above {HARMONICS} add up to {share}")
     return Mount(tuple(notes), numbers, order, machine.speed, force, moves, ground)
 
 
 def _listed(name, value, count=None):
     """Numbers by direction as a tuple, and their fault or None; a lone number is for `count` directions, or for x."""
-    several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
-    values = tuple(value) if several else (value,) * (count or 1)
+    values = tuple(value) if isinstance(value, list | tuple) else (value,) * (count or 1)
     fits = len(values) == count if count else 0 < len(values) <= len(WAYS)
     words = f"as many as of stiffness, {count}" if count else "up to three, for x, y and turning"
     return values, None if fits else f"{name} must be a number or a list of {words}, got {checks.shown(value)}"

@@ -43,14 +43,8 @@ def mount(result):
         finish_axes(over, f"velocity, {way} [m{unit}/s]", True, round(np.degrees(angle[-1])))
         table = result.harmonics(way).iloc[:8]
         factor, shown = display_unit(load, [table["force"].to_numpy()])
-        for side, name, color, label in (
-            (-1, "force", STEEL, "on a fixed frame"),
-            (1, "ground", ACCENT, "on the ground"),
-        ):
-            bars.bar(
-                table.index + 0.2 * side * order[0], factor * table[name], 0.4 * order[0], color=color, label=label
-            )
-        bars.set_xlabel("harmonic of the crank")
-        bars.set_ylabel(f"amplitude, {way} [{shown}]")
-        bars.legend(frameon=False, fontsize="small")
+        loads = factor * table[["force", "ground"]].set_axis([f"{order:g}" for order in table.index])
+        words = {"xlabel": "harmonic of the crank", "ylabel": f"amplitude, {way} [{shown}]"}
+        loads.plot.bar(ax=bars, color=[STEEL, ACCENT], width=0.8, rot=0, **words)
+        bars.legend(["on a fixed frame", "on the ground"], frameon=False, fontsize="small")
     return figure

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 import kinetostatics as ks
 from support.every import every
+from support.units import UNITS
 
 TURN = 2.0 * np.pi
 PUMP = {"mass": 75.0, "stiffness": 220e3, "damping": 0.02}
@@ -183,6 +184,23 @@ def test_velocity_follows_the_scale_of_masses_and_speeds():
     assert (fast.travel_x, fast.ground_x) == pytest.approx((one.travel_x, 4.0 * one.ground_x), rel=1e-12)
 
 
+def test_a_machine_turned_by_a_right_angle_shakes_the_block_upward():
+    lying = ks.sizing.mount(pump(), mass=75.0, stiffness=[220e3, 220e3], damping=0.02)
+    machine = ks.crank_slider(0.05, 0.16, guide_angle=np.pi / 2, slider=ks.Link(1.5))
+    s = ks.solve(machine, 0.0, crank_speed=24.0 * np.pi)
+    upright = ks.sizing.mount(s, mass=75.0, stiffness=[220e3, 220e3], damping=0.02)
+    for name in ("v_rms", "v_peak", "travel", "ground", "transmissibility"):
+        assert upright.numbers[f"{name}_y"] == pytest.approx(lying.numbers[f"{name}_x"], rel=1e-12)
+    assert upright.v_rms == pytest.approx(lying.v_rms, rel=1e-12)
+
+
+def test_quantities_with_units_are_converted():
+    plain = ks.sizing.mount(rich(), mass=4e3, inertia=900.0, stiffness=[5e4, 9e4, 4e3], damping=0.3, centre=(0.1, -0.3))
+    stiffness = [UNITS("50 N/mm"), UNITS("90 kN/m"), UNITS("4 kN m/rad")]
+    given = {"mass": UNITS("4 t"), "inertia": UNITS("900 kg m^2"), "centre": UNITS.Quantity((100, -300), "mm")}
+    assert ks.sizing.mount(rich(), stiffness=stiffness, damping=0.3, **given).numbers == pytest.approx(plain.numbers)
+
+
 def test_held_directions_pass_their_load_on():
     s = rich()
     block = ks.sizing.mount(s, mass=900.0, stiffness=5e4, damping=0.1)
@@ -252,12 +270,21 @@ def test_wrong_numbers_are_refused(wrong, message):
         ks.sizing.mount(pump(), **{**PUMP, **wrong})
 
 
+def touching(coupler, offset):
+    """The coupler is square to the guide at a crank angle: the slider's velocity jumps there, between finite forces."""
+    machine = ks.crank_slider(0.05, coupler, guide_offset=offset, slider=ks.Link(1.5))
+    with warnings.catch_warnings(action="ignore"):
+        return ks.solve(machine, 0.3, crank_speed=75.4)
+
+
 MACHINES = [
     (lambda: "pump", "solution must be a Solution"),
     (lambda: pump(0.0, sense=1), "constant crank speed other than 0"),
     (lambda: pump(crank_acceleration=1.0), "constant crank speed other than 0, without acceleration"),
     (lambda: pump(np.array([[70.0], [80.0]])), "works on one design at a time"),
     (lambda: ks.solve(ks.crank_slider(0.05, 0.04), 0.0, crank_speed=75.4), "does not close for crank angles 53.1"),
+    (lambda: touching(0.06, 0.01), "B changes its velocity at once at 270 deg, a blow on the frame"),
+    (lambda: touching(0.05, 0.0), "B changes its velocity at once at 90 deg, a blow on the frame"),
 ]
 
 
