@@ -297,10 +297,10 @@ def _mount(owner, machine, masses, springs, ratios, centre):
     notes = []
     if coupling > MAX_COUPLING:
         words = "reactions and torque, computed on a fixed frame, are off by about as much"
-        notes.append(f"the block's acceleration is {coupling:.1%} of the machine's; {words}")
+        notes.append(f"the block's acceleration is {100.0 * coupling:.3g} % of the machine's; {words}")
     tail = HARMONICS * np.max(np.abs(velocity[straight, 3 * HARMONICS // 4 :]), initial=0.0)
     if tail > MAX_TAIL * numbers["v_peak"]:
-        share = f"{tail / numbers['v_peak']:.1%} of v_peak"
+        share = f"{100.0 * tail / numbers['v_peak']:.2g} % of v_peak"
         notes.append(f"the force on the frame jumps: harmonics above {HARMONICS} add up to {share}")
     return Mount(tuple(notes), numbers, order, machine.speed, force, moves, ground)
 

@@ -238,7 +238,7 @@ def test_block_for_keeps_the_velocity():
 
 def test_a_light_block_is_noted():
     """On very soft springs the accelerations are as the masses."""
-    with pytest.warns(ks.HintWarning, match=r"mount: the block's acceleration is 18\.8% of the machine's; reactions"):
+    with pytest.warns(ks.HintWarning, match=r"mount: the block's acceleration is 18.8 % of the machine's; reactions"):
         block = ks.sizing.mount(pump(), mass=8.0, stiffness=1e-3, damping=0.0)
     assert block.coupling == pytest.approx(1.5 / 8.0, rel=1e-6)
 
