@@ -346,6 +346,83 @@ def sections():
     return figure
 
 
+def spring_line(start, end, width, turns=5):
+    """Points (2, N) of a zigzag between two points, with straight ends."""
+    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    along = np.concatenate([[0.0, 0.2], 0.2 + 0.6 * (np.arange(2 * turns) + 0.5) / (2 * turns), [0.8, 1.0]])
+    across = width * np.concatenate([[0.0, 0.0], np.tile([1.0, -1.0], turns), [0.0, 0.0]])
+    way = end - start
+    return start[:, None] + np.outer(way, along) + np.outer(strokes.left(way / np.hypot(*way)), across)
+
+
+def damper_lines(start, end, width):
+    """A piston in its cylinder between two points, each line (2, N)."""
+    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    way = end - start
+    side = width * strokes.left(way / np.hypot(*way))
+    at = [start + share * way for share in (0.0, 0.35, 0.55, 0.65, 1.0)]
+    cylinder = [at[3] + side, at[1] + side, at[1] - side, at[3] - side]
+    return [np.array([at[0], at[1]]).T, np.array(cylinder).T, np.array([at[4], at[2]]).T] + [
+        np.array([at[2] + 0.7 * side, at[2] - 0.7 * side]).T
+    ]
+
+
+def dimension(ax, start, end, text, shift):
+    """A dimension between two points."""
+    style = {**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8, "mutation_scale": 8}
+    ax.annotate("", end, start, arrowprops=style)
+    ax.text(*(np.add(start, end) / 2 + shift), text, ha="center", va="center")
+
+
+def foundation():
+    """A block with a machine on springs and dampers."""
+    figure, ax = plt.subplots()
+    ax.fill([-1.2, 1.2, 1.2, -1.2], [0.0, 0.0, 0.8, 0.8], fc="0.9", ec=INK, lw=1.2)
+    pivot = np.array([-0.7, 1.05])
+    pin, end = pivot + 0.22 * _unit(55), pivot + (0.95, 0.0)
+    ax.fill([-0.82, -0.7, -0.58], [0.8, 1.05, 0.8], fc="white", ec=INK, lw=1.0)
+    ax.fill([-0.1, 0.85, 0.85, -0.1], [0.8, 0.8, 0.97, 0.97], fc="white", ec=INK, lw=1.0)
+    for first, second in ((pivot, pin), (pin, end)):
+        ax.plot(*np.stack([first, second], axis=1), **LINES["bar"])
+    ax.fill(*(end[:, None] + _box(np.array([1.0, 0.0]), 0.08)), **PLATES["block"])
+    for point, name, shift in ((pivot, "O", (-0.13, 0.05)), (pin, "A", (-0.02, 0.13)), (end, "B", (0.02, 0.18))):
+        ax.plot(*point, "o", ms=5, mfc="white", mec=INK, zorder=8)
+        ax.text(*np.add(point, shift), name, ha="center", va="center")
+    arrow(ax, pivot + (0.12, 0.0), pivot + (0.5, 0.0), "F", ACCENT)
+    ground = [((-2.0, -0.6), (2.0, -0.6)), ((-2.0, 1.0), (-2.0, -0.6))]
+    for start, stop in ground:
+        ax.plot(*strokes.hatched_line(np.array(start), np.array(stop), 0.09), color=INK, lw=0.8)
+    for place in (-0.9, 0.6):
+        ax.plot(*spring_line((place, -0.6), (place, 0.0), 0.07), color=STEEL, lw=1.2)
+        for line in damper_lines((place + 0.3, -0.6), (place + 0.3, 0.0), 0.08):
+            ax.plot(*line, color=STEEL, lw=1.2)
+    ax.plot(*spring_line((-2.0, 0.55), (-1.2, 0.55), 0.07), color=STEEL, lw=1.2)
+    for line in damper_lines((-2.0, 0.25), (-1.2, 0.25), 0.08):
+        ax.plot(*line, color=STEEL, lw=1.2)
+    ax.text(-1.6, 0.74, "$k_x$", ha="center")
+    ax.text(-1.6, 0.03, "$c_x$", ha="center", va="center")
+    ax.text(-0.15, -0.32, "$k_y, c_y$\n$k_\\theta, c_\\theta$", ha="center", va="center")
+    centre = np.array([0.15, 0.4])
+    ax.plot(*centre, "o", ms=7, mfc="white", mec=INK)
+    ax.plot(*centre, ".", ms=3, color=INK)
+    arrow(ax, centre, centre + (0.4, 0.0), "x", LOAD)
+    arrow(ax, centre, centre + (0.0, 0.27), "y", LOAD)
+    angle_mark(ax, centre, 0.2, np.radians(200), np.radians(330), r"$\theta$", LOAD, 0.55)
+    ax.text(0.85, 0.2, "mass, inertia", ha="center", va="center", fontsize="small")
+    for level in (pivot, centre):
+        ax.plot([level[0], -0.95], [level[1], level[1]], color=INK, lw=0.5)
+    dimension(ax, (-0.95, centre[1]), (-0.95, pivot[1]), "centre y < 0", (-0.36, 0.21))
+    dimension(ax, (pivot[0], 0.08), (centre[0], 0.08), "centre x", (0.0, 0.07))
+    for level in (pivot, centre):
+        ax.plot([level[0], level[0]], [level[1], 0.05], color=INK, lw=0.5)
+    arrow(ax, np.array([1.6, -0.15]), np.array([1.6, -0.58]), "to the ground", ACCENT, tail=True)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.04)
+    ax.axis("off")
+    return figure
+
+
 DRAWINGS = {
     "signs": (signs, (6.4, 3.1)),
     "groups": (groups, (7.6, 4.0)),
@@ -357,6 +434,7 @@ DRAWINGS = {
     "cam_roller": (cam_roller, (7.0, 1.6)),
     "friction": (friction, (6.4, 2.5)),
     "../parts/sections": (sections, (6.4, 4.2)),
+    "../parts/foundation": (foundation, (6.4, 3.2)),
 }
 """How each is drawn, and its size in inches."""
 

@@ -26,6 +26,7 @@ Then
     drive.steady, drive.flywheel ...            running under a motor; flywheels, starting, coasting
     balancing, Counterweight                    counterweights: full, partial, optimal
     design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque
+    sizing.bearing, sizing.spring_for ...       from forces to parts: bearings, springs, links, play, foundations
     cams, laws, design.contact                  cams, laws of motion, contact pressure of the roller
     linkage, principal_points                   classes of four-bars; the common mass centre
     sweep, tolerances, designs                  one row per design; effect of tolerances

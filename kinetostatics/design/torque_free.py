@@ -281,7 +281,11 @@ def _require_within_bound(start, problem, limits, reference, values):
     greatest = ratio_bound(start, problem.scene(values), reference)
     for limit in limits:
         output = limit.output
-        mean = isinstance(output, Output) and output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
+        mean = (
+            isinstance(output, Output)
+            and output.ratio
+            and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
+        )
         if mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
             raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", problem.numbers(values))
 

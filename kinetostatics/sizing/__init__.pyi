@@ -1,4 +1,7 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
+from .foundation import Mount as Mount
+from .foundation import block_for as block_for
+from .foundation import mount as mount
 from .result import Sized as Sized
 from .sections import bar_strength as bar_strength
 from .sections import pin_strength as pin_strength

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from ..cycle.reductions import SolutionNumber
 from ..design.constraints import parse_constraint
-from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.units import to_si
 from ..solution.scene import Scene
@@ -122,7 +121,10 @@ class Part:
             return [problem]
         known = KINDS[kind].options
         wrong = [checks.choice("option", name, tuple(known)) for name in options]
-        return [*filter(None, wrong), *(f"{name} is missing" for name, need in known.items() if need - (name in options))]
+        return [
+            *filter(None, wrong),
+            *(f"{name} is missing" for name, need in known.items() if need - (name in options)),
+        ]
 
     def of(self, solution):
         """The part's size, a `Sized`, from a solution."""
@@ -176,5 +178,4 @@ def _in_si(value, unit):
         return value
     if isinstance(value, str):
         return to_si(value, one)
-    raise ValueError(f"must be a text with a unit, such as \"1 {one}\", found {value!r}")
-
+    raise ValueError(f'must be a text with a unit, such as "1 {one}", found {value!r}')

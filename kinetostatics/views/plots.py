@@ -22,6 +22,7 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
+from .sizing_mount import mount
 from .sizing_sections import sections
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "mass_centres",
     "mechanism",
     "model_ladder",
+    "mount",
     "over_turn",
     "pressure_angle",
     "sections",
