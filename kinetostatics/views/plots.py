@@ -22,6 +22,7 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
+from .sizing_play import contact_loss
 
 __all__ = [
     "acceleration_error",
@@ -32,6 +33,7 @@ __all__ = [
     "cam_pressure_angle",
     "cam_profile",
     "chain_unit_motion",
+    "contact_loss",
     "contact_pressure",
     "crank_speed",
     "drive_torques",
