@@ -419,6 +419,32 @@ def foundation():
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
     ax.margins(0.04)
+def play():
+    """A journal in its play, much enlarged: bearing, contact and force; the clearance is half the difference."""
+    figure, ax = plt.subplots()
+    around = np.linspace(0.0, 2.0 * np.pi, 240)
+    circle, beta, lag, c = np.array([np.cos(around), np.sin(around)]), np.radians(35.0), np.radians(28.0), 0.45
+    e, f = (np.array([np.cos(turned), np.sin(turned)]) for turned in (beta, beta + lag))
+    journal = c * e
+    ax.fill(*(1.9 * circle), fc="0.9", ec=STEEL, lw=1.0)
+    ax.fill(*(1.5 * circle), fc="white", ec=INK, lw=1.2)
+    ax.fill(*(journal[:, None] + 1.05 * circle), fc=STEEL, ec=INK, lw=1.0, alpha=0.45)
+    ax.plot(*(c * circle), color=INK, lw=0.7, ls="--")
+    ax.plot([0.0, 2.3], [0.0, 0.0], color=INK, lw=0.5, ls="-.")
+    ax.plot(*np.transpose([(0.0, 0.0), 2.35 * e]), color=INK, lw=0.5, ls="-.")
+    ax.plot(*np.transpose([journal, journal + 1.3 * f]), color=ACCENT, lw=0.5, ls="-.")
+    arrow(ax, journal, journal + 0.6 * f, "F", ACCENT)
+    arrow(ax, 2.3 * e, 1.5 * e, "N", LOAD, tail=True)
+    angle_mark(ax, np.zeros(2), 2.05, 0.0, beta, r"$\beta$", INK, 1.07)
+    angle_mark(ax, journal, 1.25, beta, beta + lag, "d", ACCENT, 1.12)
+    arrow(ax, np.zeros(2), c * np.array([-0.94, -0.34]), "c", INK)
+    arrow(ax, journal, journal + 0.55 * strokes.left(e), "t", INK)
+    for point in (np.zeros(2), journal):
+        ax.plot(*point, "o", ms=4, mfc="white", mec=INK, zorder=8)
+    ax.text(0.0, -1.72, "bearing", ha="center", va="center", fontsize="small")
+    ax.text(0.55, -0.35, "journal", ha="center", va="center", fontsize="small")
+    ax.set_aspect("equal")
+    ax.margins(0.06)
     ax.axis("off")
     return figure
 
@@ -435,6 +461,7 @@ DRAWINGS = {
     "friction": (friction, (6.4, 2.5)),
     "../parts/sections": (sections, (6.4, 4.2)),
     "../parts/foundation": (foundation, (6.4, 3.2)),
+    "../parts/play": (play, (4.4, 3.6)),
 }
 """How each is drawn, and its size in inches."""
 

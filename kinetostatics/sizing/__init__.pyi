@@ -2,6 +2,8 @@
 from .foundation import Mount as Mount
 from .foundation import block_for as block_for
 from .foundation import mount as mount
+from .play import ContactLoss as ContactLoss
+from .play import contact_loss as contact_loss
 from .result import Sized as Sized
 from .sections import bar_strength as bar_strength
 from .sections import pin_strength as pin_strength

@@ -24,6 +24,7 @@ from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
 from .sizing_mount import mount
 from .sizing_sections import sections
+from .sizing_play import contact_loss
 
 __all__ = [
     "acceleration_error",
@@ -34,6 +35,7 @@ __all__ = [
     "cam_pressure_angle",
     "cam_profile",
     "chain_unit_motion",
+    "contact_loss",
     "contact_pressure",
     "crank_speed",
     "drive_torques",

@@ -1,0 +1,374 @@
+"""Loss of contact in a joint with play, by the journal as a pendulum in the force of the machine without play.
+
+With radial play c in one joint the journal touches its bearing in a direction e(beta); t is a quarter turn ahead. F is
+the force that presses them together without play, M the effective mass against a relative motion r of journal and
+bearing with the crank prescribed. To first order in c, by time,
+
+    M r'' = F - N e,   r = c e:    M_tt c beta'' = F_t + M_te c beta'^2,    N = F_e + c (M_ee beta'^2 - M_et beta'')
+
+With M = m_e in all directions and the lag d of e behind F, m_e c beta'' = |F| sin d, N = |F| cos d + m_e c beta'^2.
+A unit relative motion moves link i by V_i, so M = sum V_i^T m_i V_i; by virtual work -V_i are the reactions at the
+joint under unit loads on link i.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from ..cycle.extremes import extrema
+from ..cycle.kinks import sign_changes
+from ..cycle.means import TERM_ROUNDING, closed_turn, means
+from ..cycle.piecewise import JUMP_OFFSET, rule, waves
+from ..errors import ParameterError
+from ..machine.cams.profile import POSITIVE
+from ..machine.links import Turning, Wrench, arm
+from ..machine.loads import spring_masses
+from ..numbers import checks
+from ..numbers.planar import cross
+from .result import Row, Sized, warn_of_notes
+
+NUMBERS = {"clearance": ("m", POSITIVE), "damping": ("1", POSITIVE)}
+"""Units and rules of the options."""
+KNOT_STEP = 1.5e-3
+"""Largest crank angle between knots of the splines of forces and masses, rad: cubic interpolation errs by 1e-12."""
+ZERO_FORCE, MIN_MASS_RATIO = 1e-9, 1e-9
+"""Least over largest force, and principal effective mass, below which the least counts as zero."""
+OFFSETS = np.geomspace(1e-9, 1e-2, 60)
+"""Distances from least forces, rad, at which the index is evaluated too: it is sharpest there."""
+BEFORE = 1e-5
+"""Crank angle from a zero of a force to where its direction is read, rad."""
+TOLERANCE, PERIODIC_TOLERANCE, MAX_PERIODS = 1e-8, 1e-6, 30
+"""Relative error of a step; change of angle (rad) and rate over a period that counts as none; periods until then."""
+SCREEN = "a screen for one joint with play: it tells where contact is lost and the first landing, not what follows"
+
+
+class Flight(NamedTuple):
+    """A loss of contact: crank angles of leaving and landing, rad, then speed (m/s) and energy (J) of the impact.
+
+    The journal crosses its play freely, M r'' = F. Where it lands with v along the normal n, an impact without rebound
+    takes v^2/(2 n.M^-1.n).
+    """
+
+    start: float
+    stop: float
+    speed: float
+    energy: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactLoss(Sized):
+    """Where a journal leaves its bearing, and how hard it lands; made by `contact_loss`.
+
+    Attributes
+    ----------
+    joint : str
+    period : float
+        rad.
+    reversals : tuple of float
+        Crank angles at which the force without play passes through zero, rad.
+    flights : tuple of Flight
+        Losses of contact in the order in which they happen.
+    angle, force, normal, lag, index_curve : array (N,)
+        Crank angle, rad; magnitude of the force without play and normal force of the pendulum, N; angle from journal to
+        force, counter-clockwise, rad; index. After a loss the pendulum, which cannot leave, is no longer the journal.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(2.0))
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     found = ks.sizing.contact_loss(ks.solve(pump, 0.0, crank_speed=100.0), "B", clearance=2e-5)
+    >>> print(", ".join(f"{flight.energy:.4f} J at {flight.stop:.3f} rad" for flight in found.flights))
+    0.0058 J at 1.500 rad, 0.0061 J at 5.103 rad
+    """
+
+    ROWS: ClassVar = {
+        "index": Row("1", "largest index; contact is lost from about 1", "|dtheta/dt| sqrt(M_tt c/|F|), theta of F"),
+        "earles_wu": Row("rad/s/N^0.5", "the same without mass and play", "|dtheta/dt|/sqrt|F| (Earles, Wu 1977)"),
+        "least_force": Row("N", "least force on the joint without play", "min |F|"),
+        "least_normal": Row("N", "least normal force, negative: lost", "F_e + c (M_ee beta'^2 - M_et beta'')"),
+        "effective_mass": Row("kg", "mass across F at the largest index; along F where it reverses", "M = sum V^T m V"),
+        "lost_angle": Row("rad", "crank angle without contact in a period", "sum of flights, M r'' = F"),
+        "impact_speed": Row("m/s", "largest speed of impact", "along the normal, M r'' = F in flight"),
+        "impact_energy": Row("J", "largest energy of an impact without rebound", "v^2/(2 n.M^-1.n)"),
+    }
+    joint: str
+    period: float
+    reversals: tuple[float, ...]
+    flights: tuple[Flight, ...]
+    angle: np.ndarray
+    force: np.ndarray
+    normal: np.ndarray
+    lag: np.ndarray
+    index_curve: np.ndarray
+    index: float
+    earles_wu: float
+    effective_mass: float
+    least_force: float
+    least_normal: float
+
+    @property
+    def lost_angle(self):
+        return float(sum(abs(flight.stop - flight.start) for flight in self.flights))
+
+    @property
+    def impact_speed(self):
+        return max((flight.speed for flight in self.flights), default=0.0)
+
+    @property
+    def impact_energy(self):
+        return max((flight.energy for flight in self.flights), default=0.0)
+
+
+def contact_loss(solution, joint, clearance, damping=0.1):
+    """Whether a joint with play knocks: where its journal leaves the bearing and how hard it lands, by a screen.
+
+    The journal is a pendulum in the turning force of the machine without play (Earles and Wu, *J. Eng. Ind.* 99(2),
+    1977, 375); its periodic motion gives the normal force. Across a direction without mass the journal follows the
+    force, and contact is lost only where the force passes through zero.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its own crank angles do not matter, and its speed counts as constant.
+    joint : str
+        Name of the reaction of a pin: "O", "A", "B" ...
+    clearance : float
+        Radial play c, half the difference of the diameters, m.
+    damping : float
+        Of the journal's oscillation about the direction of the force, relative to critical; divided by 1 + index^2,
+        so that a force that turns fast does not take the journal along.
+
+    Returns
+    -------
+    ContactLoss
+
+    Raises
+    ------
+    ParameterError
+        A number is not positive; the joint is no pin, carries no force or has no mass; the crank is at rest; the
+        mechanism does not close all round, or its force grows without bound; the solution is a batch of designs; the
+        journal does not land within a period.
+
+    Warns
+    -----
+    HintWarning
+        That it is a screen, where the force passes through zero, and that no periodic motion was reached.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, coupler=ks.Link(1.0, 0.08, 0.01), slider=ks.Link(2.0))
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     found = ks.sizing.contact_loss(ks.solve(pump, 0.0, crank_speed=100.0), "B", clearance=2e-5)
+    >>> print(f"index {found.index:.3f}, least normal force {found.least_normal:.0f} N")
+    index 76.061, least normal force -16 N
+    """
+    owner, given = "contact_loss", {"clearance": clearance, "damping": damping}
+    checks.require(owner, checks.solution("solution", solution))
+    pins = tuple(
+        name
+        for name, pair in solution.mechanism.pairs.items()
+        if isinstance(pair, Turning) and pair.link != pair.against and name in solution.reactions
+    )
+    numbers = {name: (given[name], *rule) for name, rule in NUMBERS.items()}
+    numbers = checks.single_numbers(owner, checks.choice("joint", joint, pins), **numbers)
+    play = _Play(solution, joint, closed_turn(solution, owner), **numbers)
+    found = extrema(solution, joint)
+    least = found.angle[~found.maximum]
+    reversals = least[found.value[~found.maximum] <= ZERO_FORCE * found.largest]
+    around = np.mod(np.add.outer(least, [*-OFFSETS, 0.0, *OFFSETS]).ravel(), play.period)
+    return warn_of_notes(owner, _judged(play, joint, reversals, np.union1d(play.knots, around)))
+
+
+def _judged(play, joint, reversals, angle):
+    """The `ContactLoss` at crank angles, among which are those near least forces."""
+    size, direction, _, across = play.follow(angle)
+    index, notes, peaks = play.indices(angle)[1], [SCREEN], [np.inf, np.inf]
+    mass, starts = across[np.argmax(index)], [(at, play.follow(at - play.sense * BEFORE)[1], 0.0) for at in reversals]
+    if reversals.size:
+        mass = _resolved(play.at(reversals[0])[2:5], (np.cos(starts[0][1]), np.sin(starts[0][1])))[0]
+        degrees = ", ".join(f"{degree:.1f}" for degree in np.degrees(reversals))
+        notes.append(f"the force at {joint} passes through zero at {degrees} deg: the index is infinite")
+    else:
+        peaks = [_largest(lambda at, row=row: play.indices(at)[row], angle) for row in (1, 0)]
+    normal, lag, least = size, np.zeros(angle.shape), float(size.min())
+    if not play.lacks_mass:
+        motion, repeats = play.motion()
+        if not repeats:
+            notes.append(f"the journal reached no periodic motion in {MAX_PERIODS} periods: the last one counts")
+        normal = play.normal(angle, motion)
+        lag = np.remainder(direction - motion(angle)[0] + np.pi, 2.0 * np.pi) - np.pi
+        least = -_largest(lambda at: -play.normal(at, motion), angle)
+        starts = [(at, *motion(at)) for at in play.losses(angle, motion)]
+    flights: list[Flight] = []
+    for start in starts[:: int(play.sense)]:
+        if not flights or play.sense * (start[0] - flights[-1].stop) >= 0.0:
+            flights.append(play.flight(*start))
+    curves = angle, size, normal, lag, np.where(np.isin(angle, reversals), np.inf, index)
+    numbers = *peaks, float(mass / play.scale), float(size.min()), least
+    return ContactLoss(tuple(notes), joint, play.period, tuple(reversals.tolist()), tuple(flights), *curves, *numbers)
+
+
+def _largest(function, angle):
+    """Largest value of a function, refined between the crank angles beside the largest of some."""
+    from scipy.optimize import minimize_scalar
+
+    values = function(angle)
+    place = int(np.argmax(values))
+    ends = angle[max(place - 1, 0)], angle[min(place + 1, angle.size - 1)]
+    found = minimize_scalar(lambda at: -function(at), bounds=ends, method="bounded", options={"xatol": 1e-12})
+    return max(float(values[place]), -float(found.fun))
+
+
+def effective_mass(solution, joint):
+    """Effective mass M (2, 2, N) against relative motion in a turning pair, crank prescribed, without friction, kg."""
+    placement, links, springs = solution.placement, solution.mechanism.links, spring_masses(solution.loads)
+    units, loads, masses = iter(np.eye(3 * len(links))[..., None]), {}, []
+    for name, link in links.items():
+        force, to_centre = (next(units), next(units)), arm(placement.links[name].direction, *link.body[1:3])
+        loads[name] = Wrench(force, next(units) + (0.0 if to_centre is None else cross(to_centre, force)))
+        mass = link.mass + (springs[name].moving if name in springs else 0.0)
+        masses += [mass, mass, link.inertia]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = solution.mechanism.resolve(placement, loads, {}).reactions[joint]
+    shape = len(masses), *solution.shape
+    ways = np.stack([np.broadcast_to(0.0 if part is None else part, shape) for part in found])
+    return np.einsum("aiN,i,biN->abN", ways, np.array(masses, dtype=float), ways)
+
+
+class _Play:
+    """Force F and mass M over the crank angle, and the journal in its play; M times c omega^2, rates by crank angle."""
+
+    def __init__(self, solution, joint, turn, clearance, damping):
+        self.speed, self.period = float(np.mean(solution.crank_speed)), turn.period
+        self.sense, self.clearance, self.damping = np.sign(self.speed), clearance, damping
+        self.scale = clearance * self.speed**2
+
+        def function(angle):
+            at = turn.at.moved_to(turn.clear(angle))
+            mass = self.scale * effective_mass(at, joint)
+            return np.stack([*-at.reaction(joint), mass[0, 0], mass[0, 1], mass[1, 1]])
+
+        usable = turn.angle[turn.usable]
+        sizes, rounding = function(usable), TERM_ROUNDING * np.max(turn.at.moved_to(usable).largest_force_term)
+        force, mass = np.abs(sizes[:2]).max(), np.abs(sizes[2:]).max()
+        whys = {
+            "crank_speed must not be 0": self.speed == 0.0,
+            f"the force at {joint!r} grows without bound": not np.isfinite(force + mass)
+            or solution.mechanism.grows(joint),
+            f"{joint!r} carries no force": force <= rounding,
+            f"{joint!r} has no mass on either side; give its links theirs": mass == 0.0,
+        }
+        if why := next((text for text, holds in whys.items() if holds), None):
+            raise ParameterError(f"contact_loss: {why}, so contact in it cannot be judged")
+        _, _, pieces, values = means(function, turn, np.array([rounding] * 2 + [TERM_ROUNDING * mass] * 3))
+        self._interpolate(pieces, values[..., 1:-1])
+
+    def _interpolate(self, pieces, values):
+        from scipy.interpolate import CubicHermiteSpline
+
+        own, half = rule(pieces.count), pieces.half
+        places = np.linspace(-1.0, 1.0, 2 + int(2.0 * half.max() / KNOT_STEP)) * (1.0 - JUMP_OFFSET / half)
+        orders = [values @ own.series.T]
+        for _ in range(2):
+            orders.append(orders[-1] @ own.derived.T / half)
+        at_places = waves(pieces.count, places.ravel()).reshape(pieces.count, *places.shape)
+        value, slope, bend = (np.einsum("fpc,cpk->pkf", part, at_places).reshape(-1, 5) for part in orders)
+        self.knots = (pieces.middle[:, None] + half * places).ravel()
+        both = np.column_stack([value, slope[:, :2]]), np.column_stack([slope, bend[:, :2]])
+        self.spline = CubicHermiteSpline(self.knots, *both)
+        xx, xy, yy = value[:, 2:].T
+        self.lacks_mass = bool(np.any(xx * yy - xy * xy <= MIN_MASS_RATIO * (xx + yy) ** 2))
+
+    def at(self, angle):
+        """F, M and F' at crank angles, (7, ...): x, y, xx, xy, yy, x', y'."""
+        return np.moveaxis(self.spline(np.mod(angle, self.period)), -1, 0)
+
+    def follow(self, angle):
+        """Magnitude of F, its direction, its rate of turning, and M across it."""
+        x, y, *mass, dx, dy = self.at(angle)
+        size = np.maximum(np.hypot(x, y), np.finfo(float).tiny)
+        across = _resolved(mass, (x / size, y / size))[2]
+        across = np.where(across > MIN_MASS_RATIO * (mass[0] + mass[2]), across, 0.0)
+        return size, np.arctan2(y, x), (x * dy - y * dx) / size / size, across
+
+    def indices(self, angle):
+        """Rate of turning of F by time over the root of its magnitude, and over the journal's natural frequency."""
+        size, _, rate, across = self.follow(angle)
+        index = np.abs(rate) / np.sqrt(size)
+        return np.array([abs(self.speed) * index, np.sqrt(across) * index])
+
+    def contact(self, angle, turned, rate):
+        """Second derivative of the journal's angle, and the normal force without damping, N."""
+        x, y, *mass, dx, dy = self.at(angle)
+        e = np.cos(turned), np.sin(turned)
+        ee, et, tt = _resolved(mass, e)
+        size = np.maximum(np.hypot(x, y), np.finfo(float).tiny)
+        turning, own = (x * dy - y * dx) / size / size, np.sqrt(size / tt)
+        free = (e[0] * y - e[1] * x + et * rate * rate) / tt
+        damped = free - 2.0 * self.damping * self.sense * own * (rate - turning) / (1.0 + (turning / own) ** 2)
+        return damped, e[0] * x + e[1] * y + ee * rate * rate - et * free
+
+    def normal(self, angle, motion):
+        """Normal force of a journal in motion, N."""
+        return self.contact(angle, *motion(angle))[1]
+
+    def motion(self):
+        """Angle and rate of the journal as a function of the crank angle, and whether they repeat after the period."""
+        from scipy.integrate import solve_ivp
+
+        size, direction, rate, _ = self.follow(self.knots)
+        first = int(np.argmax(size))
+        ends = self.knots[first], self.knots[first] + self.sense * self.period
+        state, repeats, periods = np.array([direction[first], rate[first]]), False, 0
+        options = {"method": "LSODA", "rtol": TOLERANCE, "atol": TOLERANCE, "dense_output": True}
+        while not repeats and periods < MAX_PERIODS:
+            run = solve_ivp(lambda angle, y: (y[1], self.contact(angle, *y)[0]), ends, state, **options)
+            change, state, periods = run.y[:, -1] - state, run.y[:, -1], periods + 1
+            change[0] = np.remainder(change[0] + np.pi, 2.0 * np.pi) - np.pi
+            repeats = bool(np.abs(change).max() < PERIODIC_TOLERANCE * (1.0 + abs(state[1])))
+        return lambda angle: run.sol(min(ends) + np.mod(angle - min(ends), self.period)), repeats
+
+    def losses(self, angle, motion):
+        """Crank angles, rising, at which the normal force turns negative in the sense of rotation."""
+        _, (changes,) = sign_changes(lambda at: [self.normal(at[0], motion)], self.period, angle)
+        changes = np.sort(changes)
+        return [at for at in changes if self.normal(at + self.sense * BEFORE, motion) < 0.0]
+
+    def flight(self, start, turned, rate):
+        """`Flight` of a journal that leaves at an angle with a rate."""
+        from scipy.integrate import solve_ivp
+
+        def mobility(angle):
+            x, y, xx, xy, yy, *_ = self.at(angle)
+            return np.linalg.pinv([[xx, xy], [xy, yy]], MIN_MASS_RATIO, hermitian=True), (x, y)
+
+        def slopes(angle, y):
+            inverse, force = mobility(angle)
+            return [*y[2:], *inverse @ force]
+
+        def landing(angle, y):
+            return np.hypot(*y[:2]) - (1.0 + TOLERANCE)
+
+        vars(landing).update(terminal=True, direction=1.0)
+        e, ends = np.array([np.cos(turned), np.sin(turned)]), (start, start + self.sense * self.period)
+        begin, options = [*e, -rate * e[1], rate * e[0]], {"rtol": TOLERANCE, "atol": TOLERANCE**1.5, "max_step": 0.02}
+        run = solve_ivp(slopes, ends, begin, events=landing, **options)
+        if not run.t_events[0].size:
+            raise ParameterError("contact_loss: the journal does not land within a period: the clearance is too large")
+        (stop,), (state,) = run.t_events[0], run.y_events[0]
+        n = state[:2] / np.hypot(*state[:2])
+        speed = abs(float(n @ state[2:]))
+        energy = 0.5 * self.clearance * speed**2 / float(n @ mobility(stop)[0] @ n)
+        return Flight(float(start), float(stop), speed * self.clearance * abs(self.speed), energy)
+
+
+def _resolved(mass, e):
+    """M_ee, M_et, M_tt of M by xx, xy, yy in a direction e, t a quarter turn ahead of it."""
+    (xx, xy, yy), (a, b) = mass, e
+    along, across = xx * a * a + 2.0 * xy * a * b + yy * b * b, xx * b * b - 2.0 * xy * a * b + yy * a * a
+    return along, (yy - xx) * a * b + xy * (a * a - b * b), across
