@@ -22,6 +22,7 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
+from .sizing_springs import helical_spring
 
 __all__ = [
     "acceleration_error",
@@ -39,6 +40,7 @@ __all__ = [
     "error_by_distance",
     "free_body",
     "front",
+    "helical_spring",
     "hodograph",
     "hodographs",
     "law_motion",
