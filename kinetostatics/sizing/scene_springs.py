@@ -112,9 +112,11 @@ def spring_for(scene, spring="spring", **options):
     Traceback (most recent call last):
     kinetostatics.errors.ParameterError: spring_for: no opposed springs of music wire balance 600 kg: ...
     """
-    checks.require("spring_for", scene_problem(scene))
+    defaults = {name: value for name, value in (helical_spring.__kwdefaults__ or {}).items() if name != "crank_speed"}
+    unknown = (checks.choice("option", name, tuple(defaults)) for name in options)
+    checks.require("spring_for", scene_problem(scene), *unknown)
     load, travel, speed, balance = _balance(scene, spring)
-    options = {**(helical_spring.__kwdefaults__ or {}), **options, "travel": travel, "crank_speed": speed}
+    options = defaults | options | {"travel": travel, "crank_speed": speed}
     stiffness = balance
     for _ in range(MAX_ITERATIONS):
         found = lightest("spring_for", stiffness=stiffness, **options)

@@ -45,8 +45,8 @@ CORRECTIONS = {
 END_TURNS, CLASH_SHARE, SHEAR_SHARE = 2.0, 0.15, 0.67
 """Inactive turns of squared and ground ends; clearance at the largest force over the travel; ultimate strength in
 torsion over that in tension (Norton; Shigley)."""
-INDICES, LEAST_SURGE_RATIO = (4.0, 12.0), 13.0
-"""Range of the index that is easily coiled; surge frequency over that of the crank that textbooks want (Norton)."""
+INDICES, LEAST_TURNS, LEAST_SURGE_RATIO = (4.0, 12.0), 3.0, 13.0
+"""Range of the index that is easily coiled; least active turns; least surge ratio (Norton; Shigley)."""
 WIRE_RANGE = 1e-6, 1e6
 """Wire diameters of the search over that at a stress of G."""
 SAFE = 1.0 - 1e-9
@@ -170,8 +170,7 @@ class HelicalSpring(Sized):
     Raises
     ------
     ParameterError
-        A number is not positive or finite, there is no such material, the wire is not thinner than the coils, or an
-        opposed spring loses its load.
+        As for `helical_spring`, or the wire is not thinner than the coils.
 
     Examples
     --------
@@ -326,6 +325,9 @@ class HelicalSpring(Sized):
         index = self.coil_diameter / self.wire_diameter
         if not INDICES[0] <= index <= INDICES[1]:
             yield f"index {index:.3g}: wire is easily coiled with an index of {INDICES[0]:g} to {INDICES[1]:g}"
+        if self.active_turns < LEAST_TURNS:
+            advice = "take a smaller index, or more springs"
+            yield f"{self.active_turns:.3g} active turns; textbooks want {LEAST_TURNS:g}: {advice}"
         for name, remedy in REMEDIES.items():
             if (safety := getattr(self, name)) < SAFE:
                 yield f"{name.replace('_', ' ')} is {safety:.3g}, below 1: {remedy}"

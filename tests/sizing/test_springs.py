@@ -211,6 +211,7 @@ def test_table_and_quantities():
 
 @every(("given", "note"), [
     ({"crank_speed": 1e3}, "surge ratio is"),
+    ({"stiffness": 40e3}, "active turns; textbooks want 3"),
     ({"index": 3.0}, "index 3: wire is easily coiled"),
     ({"allowed_stress": 2e9}, "static safety is"),
     ({"allowed_stress": 1e6}, "wire of .* mm: strength of music wire is known from 0.3 to 6 mm"),
@@ -316,3 +317,11 @@ def test_numbers_are_those_of_the_signatures():
 
     names = {*inspect.signature(ks.sizing.helical_spring).parameters, *ks.sizing.BalancingSpring.__dataclass_fields__}
     assert set(NUMBERS) <= names
+
+
+def test_options_of_a_scene_are_those_of_a_spring():
+    scene = ks.Scene(PUMP, 90.0, loads=SPRING)
+    with pytest.raises(ks.ParameterError, match=r"option is 'saftey', allowed: .*; option is 'crank_speed', allowed"):
+        ks.sizing.spring_for(scene, saftey=1.2, crank_speed=3.0)
+    with pytest.raises(ks.ParameterError, match="correction is 'ks'"):
+        norton().stress(100.0, "ks")
