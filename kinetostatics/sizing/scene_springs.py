@@ -30,11 +30,6 @@ MAX_ITERATIONS, TOLERANCE = 500, 1e-13
 class BalancingSpring(HelicalSpring):
     """A `HelicalSpring` that balances a slider, as returned by `spring_for`.
 
-    Attributes
-    ----------
-    carried_mass, surge_excitation
-        See the rows of its table.
-
     Examples
     --------
     >>> import kinetostatics as ks
@@ -115,7 +110,7 @@ def spring_for(scene, spring="spring", **options):
     defaults = {name: value for name, value in (helical_spring.__kwdefaults__ or {}).items() if name != "crank_speed"}
     unknown = (checks.choice("option", name, tuple(defaults)) for name in options)
     checks.require("spring_for", scene_problem(scene), *unknown)
-    load, travel, speed, balance = _balance(scene, spring)
+    solution, rate, travel, speed, balance = _balance(scene, spring)
     options = defaults | options | {"travel": travel, "crank_speed": speed}
     stiffness = balance
     for _ in range(MAX_ITERATIONS):
@@ -130,23 +125,21 @@ def spring_for(scene, spring="spring", **options):
             f"their surge ratio is {np.pi / z:.3g}, and from 2 down their own mass takes all stiffness; allow more "
             "stress, or take gas springs (ks.GasSpring), or none"
         )
-    bare = Scene(scene.mechanism, speed, loads=Spring(found.stiffness, load.free_position, load.on)).unsolved(
-        np.zeros(1)
-    )
     given = {item.name: getattr(found, item.name) for item in fields(found) if item.init}
-    given |= {"carried_mass": balance / speed**2, "surge_excitation": spring_surge(bare, found.mass).excitation}
+    surge = spring_surge(solution, found.mass * rate / found.stiffness)
+    given |= {"carried_mass": balance / speed**2, "surge_excitation": surge.excitation}
     return warn_of_notes("spring_for", BalancingSpring(**given))
 
 
 def _balance(scene, name):
-    """The spring of a scene, its travel, m, the crank speed without sign, and the dynamic stiffness of its end, N/m."""
+    """Solution with a spring alone, its stiffness, travel, crank speed without sign, dynamic stiffness of its end."""
     places = {path.removesuffix(".stiffness"): place for path, place in scene.places.items()}
     owners = {key: place._replace(steps=place.steps[:-1]).value(scene) for key, place in places.items()}
     springs = {key: owner for key, owner in owners.items() if isinstance(owner, Spring) and "." not in key}
     if not springs:
         raise ParameterError("spring_for: the scene has no Spring among its loads")
     checks.require("spring_for", checks.choice("spring", name, tuple(springs)))
-    load, solution = springs[name], scene.unsolved(np.zeros(1))
+    load = springs[name]
     found = checks.single_numbers(
         "spring_for",
         "the spring must have no cubic term" if np.any(load.cubic) else None,
@@ -154,10 +147,11 @@ def _balance(scene, name):
         mass=(load.mass, "kg", {}),
         crank_speed=(scene.crank_speed, "rad/s", {"unequal": 0.0}),
     )
+    solution = Scene(scene.mechanism, scene.crank_speed, loads=load).unsolved(np.zeros(1))
     closed_turn(solution, "spring_for")
     speed, mass, stiffness = abs(found["crank_speed"]), found["mass"], found["stiffness"]
     if speed * np.sqrt(mass / stiffness) >= np.pi / 2.0:
         raise ParameterError("spring_for: the spring's own mass takes all its stiffness, so it balances nothing")
     balance = float(end_stiffness(stiffness, mass, speed)) if mass else stiffness
     reach = peak_of(solution, lambda at: np.abs(at.placement.travels[load.on].position - load.free_position))
-    return load, 2.0 * reach.value, speed, balance
+    return solution, stiffness, 2.0 * reach.value, speed, balance

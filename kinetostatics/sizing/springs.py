@@ -158,14 +158,10 @@ class HelicalSpring(Sized):
 
     Attributes
     ----------
-    springs : int
-        An opposed pair is two.
-    amplitude, largest_force : float
-        Of each spring, N.
-    ultimate_stress, set_stress : float
-        In torsion, Pa.
-    endurance : (mean, alternating)
-        Stresses of endless life, Pa.
+    springs, amplitude, largest_force
+        Number of springs, two in an opposed pair; forces of each, N.
+    ultimate_stress, set_stress, endurance
+        In torsion, Pa; the last is (mean, alternating) of endless life.
 
     Raises
     ------
@@ -174,17 +170,11 @@ class HelicalSpring(Sized):
 
     Examples
     --------
-    Norton, *Machine Design*, example 14-4: 60 to 150 lb over 1 in.
-
     >>> import kinetostatics as ks
-    >>> inch, pound = 0.0254, 4.4482216
-    >>> wire, coil = 0.207 * inch, 9 * 0.207 * inch
-    >>> turns = 79.3e9 * wire**4 / (8 * coil**3 * 90 * pound / inch)
-    >>> found = ks.sizing.HelicalSpring(
-    ...     wire_diameter=wire, coil_diameter=coil, active_turns=turns, travel=inch, preload=105 * pound
-    ... )
-    >>> print(f"{found.mean_stress * inch**2 / pound:.0f} psi, fatigue safety {found.fatigue_safety:.2f}")
-    59281 psi, fatigue safety 1.93
+    >>> given = {"wire_diameter": 5e-3, "coil_diameter": 0.045, "active_turns": 4.5, "travel": 0.025}
+    >>> found = ks.sizing.HelicalSpring(**given, preload=470.0)
+    >>> print(f"{found.mean_stress / 1e6:.0f} MPa, fatigue safety {found.fatigue_safety:.2f}")
+    455 MPa, fatigue safety 1.77
     """
 
     wire_diameter: float

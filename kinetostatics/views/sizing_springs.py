@@ -8,6 +8,7 @@ from ..numbers import checks
 from ..sizing.springs import HelicalSpring
 from .canvas import ACCENT, INK, LOAD, STEEL
 
+SMALL: dict[str, Any] = {"fontsize": "small"}
 THIN = {"arrowstyle": "->", "lw": 0.8}
 ROUND = np.linspace(0.0, 2.0 * np.pi, 33)
 LABELS = ("d {:.4g}", "D {:.4g}", "{:.4g} free", "{:.4g} solid")
@@ -48,15 +49,12 @@ def helical_spring(spring, ax=None):
     means = np.array([0.0, spring.endurance[0], spring.ultimate_stress])
     kind = "peened" if spring.peened else "not peened"
     haigh.plot(means / 1e6, spring.alternating_limit(means) / 1e6, color=INK, label=f"endless life, {kind}")
-    share = spring.stress(1.0) / spring.stress(1.0, "Wahl")
-    haigh.plot(
-        [0.0, spring.set_stress / 1e6], [spring.set_stress / share / 1e6, 0.0], color=STEEL, ls="--", label="set"
-    )
+    ends = spring.set_stress / 1e6 * np.array([1.0, spring.stress(1.0, "Wahl") / spring.stress(1.0)])
+    haigh.plot([0.0, ends[0]], [ends[1], 0.0], color=STEEL, ls="--", label="set")
     start, grown = spring.initial_stress / 1e6, spring.fatigue_safety
     haigh.plot([start, start + grown * (mean - start)], [0.0, grown * alternating], color=LOAD, ls=":")
-    haigh.plot(
-        mean, alternating, "o", color=ACCENT, label=f"spring: safety {grown:.2f}, set {spring.static_safety:.2f}"
-    )
+    label = f"spring: safety {grown:.2f}, set {spring.static_safety:.2f}"
+    haigh.plot(mean, alternating, "o", color=ACCENT, label=label)
     haigh.set(xlabel="mean stress [MPa]", ylabel="alternating stress [MPa]", xlim=0.0)
     haigh.set_ylim(0.0, 1.35 * max(spring.endurance[1] / 1e6, alternating))
     haigh.legend(frameon=False, fontsize="small", loc="upper right")
@@ -83,14 +81,12 @@ def draw_spring(ax, spring, names):
         ax.fill(x + 0.5 * wire * np.cos(ROUND), y + 0.5 * wire * np.sin(ROUND), fc="white", ec=INK, lw=0.8)
     for x, top, place, name in ((side + 0.3 * coil, free, 0.8, names[2]), (side + 0.75 * coil, solid, 0.5, names[3])):
         ax.annotate("", (x, 0.0), (x, top), arrowprops=DIMENSION)
-        ax.text(x - 0.03 * coil, place * top, name, rotation=90, ha="right", va="center", fontsize="small")
+        ax.text(x - 0.03 * coil, place * top, name, rotation=90, ha="right", va="center", **SMALL)
         ax.plot([0.5 * coil, x], [top, top], color=INK, lw=0.5)
     below, tip = -0.1 * free, (-side, np.interp(np.floor(ends[-1] + 0.5) - 0.5, turn, height))
     ax.annotate("", (-0.5 * coil, below), (0.5 * coil, below), arrowprops=DIMENSION)
-    ax.text(0.0, below, names[1], ha="center", va="bottom", fontsize="small")
-    ax.annotate(
-        names[0], tip, (tip[0] - 0.2 * coil, tip[1]), ha="right", va="center", fontsize="small", arrowprops=THIN
-    )
+    ax.text(0.0, below, names[1], ha="center", va="bottom", **SMALL)
+    ax.annotate(names[0], tip, (tip[0] - 0.2 * coil, tip[1]), ha="right", va="center", arrowprops=THIN, **SMALL)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
     ax.axis("off")
