@@ -13,6 +13,7 @@ from kinetostatics.mechanics.motion import Motion
 from kinetostatics.views import strokes
 from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
 from kinetostatics.views.drawings import LINES, PIVOT, PLATES
+from kinetostatics.views.sizing_springs import draw_spring
 from kinetostatics.views.strokes import Shape
 
 FOLDER = Path(__file__).parent / "theory"
@@ -446,6 +447,24 @@ def play():
     ax.set_aspect("equal")
     ax.margins(0.06)
     ax.axis("off")
+def springs():
+    """A helical spring with its dimensions; a slider between springs that press and pull, and between opposed ones."""
+    figure, (one, two) = plt.subplots(1, 2, width_ratios=(1.0, 1.6))
+    made = {"wire_diameter": 8e-3, "coil_diameter": 48e-3, "active_turns": 5.0, "travel": 0.03, "preload": 1.5e3}
+    draw_spring(one, ks.sizing.HelicalSpring(**made), ("d", "D", "$L_0$", "$L_s$"))
+    for height, end, name in ((0.0, 1.3, "opposed: two springs, always pressed"), (1.6, 0.0, "push-pull: one spring")):
+        for start, far in ((-2.2, -0.4), (2.2, 0.4))[: 1 + (end > 0.0)]:
+            points = strokes.span_sign(strokes.SPRING, *np.array([[[start], [height]], [[far], [height]]]), 0.22)
+            two.plot(*points[..., 0], color=INK, lw=1.0)
+            wall = np.array([[start, height - 0.4], [start, height + 0.4]])[:: 1 if start < 0 else -1]
+            two.plot(*strokes.hatched_line(*wall[::-1], 0.1), color=INK, lw=0.8)
+        two.fill([-0.4, 0.4, 0.4, -0.4], [height - 0.2, height - 0.2, height + 0.2, height + 0.2], fc=STEEL, ec=INK)
+        two.text(0.0, height - 0.72, name, ha="center", va="center")
+    two.annotate("", (-1.0, 2.15), (1.0, 2.15), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+    two.text(0.0, 2.2, "travel", ha="center", va="bottom")
+    two.set_aspect("equal")
+    two.margins(0.06)
+    two.axis("off")
     return figure
 
 
@@ -462,6 +481,7 @@ DRAWINGS = {
     "../parts/sections": (sections, (6.4, 4.2)),
     "../parts/foundation": (foundation, (6.4, 3.2)),
     "../parts/play": (play, (4.4, 3.6)),
+    "../parts/springs": (springs, (6.4, 3.0)),
 }
 """How each is drawn, and its size in inches."""
 

@@ -54,8 +54,8 @@ class Sized:
 
     def __repr__(self):
         numbers = (
-            f"{name} {formatting.number(float(getattr(self, name)), 5)} {row.unit}".removesuffix(" 1")
-            for name, row in self.ROWS.items()
+            f"{name} {formatting.number(float(getattr(self, name)), 5)} {unit}".removesuffix(" 1")
+            for name, (unit, *_) in self.ROWS.items()
         )
         return f"<{type(self).__name__}: {', '.join(numbers)}{''.join(f'; {note}' for note in self.notes)}>"
 

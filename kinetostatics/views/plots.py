@@ -25,6 +25,7 @@ from .hodographs import hodograph, hodographs
 from .sizing_mount import mount
 from .sizing_sections import sections
 from .sizing_play import contact_loss
+from .sizing_springs import helical_spring
 
 __all__ = [
     "acceleration_error",
@@ -43,6 +44,7 @@ __all__ = [
     "error_by_distance",
     "free_body",
     "front",
+    "helical_spring",
     "hodograph",
     "hodographs",
     "law_motion",
