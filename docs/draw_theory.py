@@ -420,6 +420,9 @@ def foundation():
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
     ax.margins(0.04)
+    return figure
+
+
 def play():
     """A journal in its play, much enlarged: bearing, contact and force; the clearance is half the difference."""
     figure, ax = plt.subplots()
@@ -447,6 +450,9 @@ def play():
     ax.set_aspect("equal")
     ax.margins(0.06)
     ax.axis("off")
+    return figure
+
+
 def springs():
     """A helical spring with its dimensions; a slider between springs that press and pull, and between opposed ones."""
     figure, (one, two) = plt.subplots(1, 2, width_ratios=(1.0, 1.6))

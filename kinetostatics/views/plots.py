@@ -23,8 +23,8 @@ from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
 from .sizing_mount import mount
-from .sizing_sections import sections
 from .sizing_play import contact_loss
+from .sizing_sections import sections
 from .sizing_springs import helical_spring
 
 __all__ = [
