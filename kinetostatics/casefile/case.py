@@ -3,7 +3,7 @@
 import re
 import typing
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +48,8 @@ class Case:
         Distributions of parameters, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     designs : mapping of name to Design
         Searches that the file describes; `.find()` runs one.
+    sizing : mapping of name to Part
+        Parts that the forces size, of [sizing.NAME]; `sizing_table()` shows their numbers.
 
     Examples
     --------
@@ -67,6 +69,7 @@ class Case:
     published: PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
     designs: typing.Mapping[str, Design] = field(default_factory=dict)
+    sizing: typing.Mapping[str, typing.Any] = field(default_factory=dict)
 
     @property
     def files(self):
@@ -193,6 +196,26 @@ class Case:
         }
         return balancing_table(self.solve(self.reference), found, self.published.sampling) if found else None
 
+    def sizing_table(self, names=None):
+        """Numbers of the parts in SI, a column for each variant; a pandas DataFrame, None without parts.
+
+        The index is part and number. ``attrs["notes"]`` tells what needs a look, and why a part has no numbers with a
+        variant, whose cells are then NaN.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Variants; by default all.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> ks.load_case("pumpjack").sizing_table() is None
+        True
+        """
+        names = list(self.variants) if names is None else names
+        return sizing_table(self.sizing, {name: self.solve(name) for name in names}) if self.sizing else None
+
     def linkage_table(self):
         """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are crank-rockers."""
         if not all(linkage.has_swinging_rocker(variant.mechanism) for variant in self.variants.values()):
@@ -250,6 +273,8 @@ def load_case(path) -> Case:
         if item is not None and item.table.reference is not None:
             place = key_path(_place(("reference",), name, tables[name], common))
             problems.append(checks.choice(place, item.table.reference, tuple(variants)))
+    sizing = _read_parts(head.sizing, problems) if head and head.sizing else {}
+    variants = {name: item and replace(item, sizing=sizing) for name, item in variants.items()}
     if head is not None:
         problems += tolerance_problems(head.tolerances, variants)
         designs = read_designs(head.design, head.reference, variants, problems)
@@ -263,7 +288,44 @@ def load_case(path) -> Case:
     for hint, places in found.items():
         warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
     kept, wanted = NamedItems("variant", path, variants), NamedItems("design", path, designs)
-    return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
+    head_of_case = head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted
+    return Case(*head_of_case, NamedItems("part", path, sizing))
+
+
+def _read_parts(tables, problems):
+    """Parts by name of the tables in the file; appends their faults to `problems`."""
+    from ..sizing.parts import read_part
+
+    found = {}
+    for name, raw in tables.items():
+        part, wrong = read_part(name, raw)
+        found |= {} if part is None else {name: part}
+        problems += [f"sizing.{name}{problem}" for problem in wrong]
+    return found
+
+
+def sizing_table(parts, solutions):
+    """Table of `Case.sizing_table` of parts and solutions by name."""
+    import pandas as pd
+
+    found, notes, units = {}, [], {}
+    for name, solution in solutions.items():
+        for key, part in parts.items():
+            units |= {(key, number): row.unit for number, row in part.rows.items()}
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", HintWarning)  # they are the notes
+                    sized = part.of(solution)
+            except KinetostaticsError as error:
+                notes.append(f"{key}, {name}: {error}")
+            else:
+                notes += [f"{key}, {name}: {note}" for note in sized.notes]
+                found |= {(key, number, name): float(getattr(sized, number)) for number in part.rows}
+    index = pd.MultiIndex.from_tuples(list(units), names=["part", "number"])
+    columns = {name: [found.get((*row, name), np.nan) for row in units] for name in solutions}
+    table = pd.DataFrame({"unit": list(units.values()), **columns}, index=index)
+    table.attrs["notes"] = notes
+    return table
 
 
 def _place(keys, name, own, common):

@@ -148,7 +148,7 @@ def _problems(table, source, reference):
         texts = {f".{key}": text for key in ("minimise", "maximise") if (text := getattr(table, key)) is not None}
     limits = {f".limits[{number}]": text for number, text in enumerate(table.limits, 1)}
     for key, text in (texts | limits).items():
-        yield from _problem_of(key, _require_output, text, key in limits, scene, reference.scene)
+        yield from _problem_of(key, _require_output, text, key in limits, scene, reference.scene, source.sizing)
     if getattr(table, "robust", None) is not None:
         for path in table.robust.spreads:
             problem = checks.choice("parameter", path, tuple(scene.units))
@@ -163,9 +163,9 @@ def _problem_of(key, take, *given):
         yield f"{key}: {_without_owner(error)}"
 
 
-def _require_output(text, limit, scene, reference):
+def _require_output(text, limit, scene, reference, parts):
     """Raise an error unless the scene has the output, or that of a limit, and for a ratio the reference too."""
-    output = parse_constraint(text, scene).output if limit else parse_output(text, scene)
+    output = parse_constraint(text, scene, parts).output if limit else parse_output(text, scene, parts)
     if output.ratio:
         output.of(reference)
 

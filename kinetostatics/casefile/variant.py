@@ -39,6 +39,8 @@ class Variant:
         Of the file.
     tabulated : mapping of keys to what was read
         Contents of the files beside the case file: cams, tables. They are not read again.
+    sizing : mapping of name to Part
+        Parts of the case file, for limits and outputs such as "main_bearing.hours".
 
     Examples
     --------
@@ -56,6 +58,7 @@ class Variant:
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
     tabulated: Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
+    sizing: Mapping[str, typing.Any] = field(default_factory=dict, repr=False)
 
     mechanism = property(attrgetter("scene.mechanism"), doc="Crank and groups.")
     loads = property(attrgetter("scene.loads"), doc="Loads, a tuple.")

@@ -76,6 +76,7 @@ def run(options):
         lambda: {
             "angles": options.angles,
             "variants": {name: _extremes(solution, given[name], shares[name]) for name, solution in solutions.items()},
+            **_parts(case, solutions),
         },
         lambda: _print_extremes(case, solutions, given, shares, options),
         lambda: output.stacked({name: solution.frame() for name, solution in solutions.items()}, "variant"),
@@ -106,7 +107,25 @@ def _extremes(solution, given, shares):
     return found
 
 
+def _parts(case, solutions):
+    """Sizes of the parts of the case for ``--json``: by variant, part and number; none without parts."""
+    from ..casefile.case import sizing_table
+
+    if not case.sizing:
+        return {}
+    found = sizing_table(case.sizing, solutions)
+    sizes = {
+        name: {
+            part: {number: {"value": value, "unit": found.loc[(part, number), "unit"]} for number, value in own.items()}
+            for part, own in ((part, found.loc[part][name]) for part in case.sizing)
+        }
+        for name in solutions
+    }
+    return {"sizing": sizes, "sizing_notes": found.attrs["notes"]}
+
+
 def _print_extremes(case, solutions, given, shares, options):
+    from ..casefile.case import sizing_table
     from ..cycle.extremes import SHOWN, extremes_by_name
     from ..cycle.losses import lose
     from . import sweep_commands
@@ -138,6 +157,13 @@ def _print_extremes(case, solutions, given, shares, options):
                 print_folded(f"\n{found.note}")
         if options.uncertain:
             sweep_commands.print_uncertainty(solution, given[name])
+    if case.sizing:
+        sizes = sizing_table(case.sizing, solutions)
+        for name, part in case.sizing.items():
+            print(f"\n{name}: {part.kind}\n")
+            print_table(sizes.loc[name])
+        if sizes.attrs["notes"]:
+            print_folded("\n" + "\n".join(sizes.attrs["notes"]), indent=2)
 
 
 def explain(options):

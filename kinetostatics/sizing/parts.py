@@ -12,7 +12,7 @@ from ..numbers import checks
 from ..numbers.units import to_si
 from ..solution.scene import Scene
 from ..solution.sections import Bar
-from . import bearings, foundation, play, scene_springs, sections, springs
+from . import foundation, play, scene_springs, sections, springs
 
 BAR = tuple(inspect.signature(Bar).parameters)
 """Options that describe the bar of a link."""
@@ -52,10 +52,6 @@ def _units(numbers):
 
 MASSES = ("m", "kg")
 KINDS = {
-    "bearing": Kind(bearings.bearing, bearings.Bearing, _units(bearings.NUMBERS), (bearings.bearing,)),
-    "plain bearing": Kind(
-        bearings.plain_bearing, bearings.PlainBearing, _units(bearings.NUMBERS), (bearings.plain_bearing,)
-    ),
     "bar": Kind(
         _bar_strength,
         sections.BarStrength,
@@ -130,9 +126,14 @@ class Part:
         """The part's size, a `Sized`, from a solution."""
         return KINDS[self.kind].size(solution, **self.options)
 
+    @property
+    def rows(self):
+        """Row of each number of its size by name: unit, meaning, formula."""
+        return KINDS[self.kind].result.ROWS
+
     def number(self, number, ratio=False):
         """A number of its size as output of `sweep`, `tolerances` and `design.optimise`: "hours" of a bearing."""
-        rows = KINDS[self.kind].result.ROWS
+        rows = self.rows
         checks.require(self.name, checks.choice("number", number, tuple(rows)))
         return SolutionNumber(f"{self.name}.{number}", partial(_number, self, number), rows[number].unit, ratio)
 

@@ -282,6 +282,8 @@ class CaseTable(Table):
     """How numbers spread, by path."""
     design: dict[str, dict] = Field(default_factory=dict)
     """By name, what is to be found: [design.NAME]."""
+    sizing: dict[str, dict] = Field(default_factory=dict)
+    """By name, a part that the forces size: [sizing.NAME], with its kind and the options of its function in `ks.sizing`."""
 
 
 VARIANTS = {

@@ -77,6 +77,7 @@ def _contents(subject, progress):
     progress("certainty")
     contents |= {"certainty": tables.certainty(subject), "losses": tables.losses(subject)}
     progress("drive")
+    contents["parts"] = tables.parts(subject)
     runs, contents["drive"], reasons = tables.drive_tables(subject)
     contents["inputs"] = tables.inputs(subject)
     progress("formulas")

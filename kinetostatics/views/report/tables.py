@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...casefile.case import sizing_table
 from ...casefile.reading import require
 from ...casefile.variant import run_under_motors
 from ...cycle.comparison import Comparison, Row, left_out
@@ -395,6 +396,23 @@ def shares(subject):
                 continue
             tables.append(table_of_frame(found.frame(), f"{machine.name}: {found.label}", found.note))
     return tables
+
+
+def parts(subject):
+    """Tables of the parts of the case, with what needs a look."""
+    if subject.case is None or not subject.case.sizing:
+        return []
+    solutions = {name: subject.case.solve(name) for name in subject.machines}
+    found = sizing_table(subject.case.sizing, solutions)
+    shown = []
+    for name, part in subject.case.sizing.items():
+        own = found.loc[name].rename_axis("number")
+        meanings = {number: f"{row.meaning}; {row.formula}" for number, row in part.rows.items()}
+        own = texts_of(own).assign(formula=[meanings[number] for number in own.index])
+        notes = [note.partition(", ")[2] for note in found.attrs["notes"] if note.startswith(f"{name}, ")]
+        rows = [list(row) for row in own.itertuples()]
+        shown.append(Table(f"{name}: {part.kind}", ["number", *own.columns], rows, 2, "; ".join(notes)))
+    return shown
 
 
 def losses(subject):
