@@ -41,14 +41,13 @@ def helical_spring(spring, ax=None):
     wrong = f"spring must be a HelicalSpring, as of ks.sizing.helical_spring, got {checks.shown(spring)}"
     few = None if ax is None or len(np.ravel(ax)) == 2 else f"ax must be 2 Axes, got {checks.shown(ax)}"
     checks.require("helical_spring", None if isinstance(spring, HelicalSpring) else wrong, few)
-    two: Any = ax
-    if ax is None:
-        two = plt.subplots(1, 2, layout="constrained", figsize=(8.4, 4.2), width_ratios=(1.6, 1.0))[1]
+    options: dict[str, Any] = {"layout": "constrained", "figsize": (8.4, 4.2), "width_ratios": (1.6, 1.0)}
+    two = plt.subplots(1, 2, **options)[1] if ax is None else ax
     haigh, drawing = np.ravel(two)
     mean, alternating = spring.mean_stress / 1e6, spring.alternating_stress / 1e6
     means = np.array([0.0, spring.endurance[0], spring.ultimate_stress])
-    kind = "peened" if spring.peened else "not peened"
-    haigh.plot(means / 1e6, spring.alternating_limit(means) / 1e6, color=INK, label=f"endless life, {kind}")
+    label = f"endless life, {'' if spring.peened else 'not '}peened"
+    haigh.plot(means / 1e6, spring.alternating_limit(means) / 1e6, color=INK, label=label)
     ends = spring.set_stress / 1e6 * np.array([1.0, spring.stress(1.0, "Wahl") / spring.stress(1.0)])
     haigh.plot([0.0, ends[0]], [ends[1], 0.0], color=STEEL, ls="--", label="set")
     start, grown = spring.initial_stress / 1e6, spring.fatigue_safety
@@ -60,13 +59,13 @@ def helical_spring(spring, ax=None):
     haigh.legend(frameon=False, fontsize="small", loc="upper right")
     sizes = [1e3 * getattr(spring, name) for name in ("wire_diameter", "coil_diameter", "free_length", "solid_length")]
     draw_spring(drawing, spring, [text.format(size) for text, size in zip(LABELS, sizes, strict=True)])
-    several = f"{spring.springs} springs, " if spring.springs > 1 else ""
-    drawing.set_title(f"{several}{spring.active_turns:.3g} active turns, mm", fontsize="medium")
+    title = f"{spring.springs} \N{MULTIPLICATION SIGN} {spring.active_turns:.3g} active turns, mm"
+    drawing.set_title(title, fontsize="medium")
     return two
 
 
 def draw_spring(ax, spring, names):
-    """A spring at its free length beside its solid length; names of wire, coil, free and solid length."""
+    """A spring at its free length; names of wire and coil diameter, free and solid length."""
     wire, coil, turns = spring.wire_diameter, spring.coil_diameter, spring.active_turns
     free, solid, side = spring.free_length, spring.solid_length, 0.5 * (coil + wire)
     ends = np.array([0.0, 1.0, 1.0 + turns, 2.0 + turns])
