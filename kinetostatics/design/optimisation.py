@@ -106,7 +106,7 @@ def optimise(
     )
     task = parse_task(scene_of(source), minimise, maximise, limits, reference, angles, parts=parts)
     quantities = [item.quantity for item in task.outputs if isinstance(item, Output)]
-    problem = Problem(source, vary, quantities, reference, angles, engine)
+    problem = Problem(source, vary, quantities or ["balancing_torque"], reference, angles, engine)
     begins = _starting_designs(problem, starts, seed, begin)
     reported = (*task.outputs, *(limit.output for limit in problem.table_limits))
     return best_design(problem, task, begins, reported, robust, progress)

@@ -34,16 +34,18 @@ class Kind(NamedTuple):
     result: Any
     units: Mapping[str, Any]
     functions: tuple[Callable, ...]
+    given: tuple[str, ...] = ("solution",)
 
     @property
     def options(self):
-        """Name of each option, and whether a part must give it."""
-        found = {}
-        for function in self.functions:
-            for name, item in list(inspect.signature(function).parameters.items()):
-                if name not in ("solution", "scene", "bar", "options", "crank_speed"):
-                    found[name] = item.default is item.empty
-        return found
+        """Name of each option, and whether a part must give it; `given` arguments come from elsewhere."""
+        signatures = [inspect.signature(function).parameters for function in self.functions]
+        return {
+            name: item.default is item.empty
+            for own in signatures
+            for name, item in own.items()
+            if name not in self.given
+        }
 
 
 def _units(numbers):
@@ -57,11 +59,16 @@ KINDS = {
         sections.BarStrength,
         _units(sections.NUMBERS) | {"masses": MASSES},
         (sections.bar_strength, Bar),
+        ("solution", "bar"),
     ),
     "pin": Kind(sections.pin_strength, sections.PinStrength, _units(sections.NUMBERS), (sections.pin_strength,)),
     "play": Kind(play.contact_loss, play.ContactLoss, _units(play.NUMBERS), (play.contact_loss,)),
     "spring": Kind(
-        _spring, springs.HelicalSpring, _units(springs.NUMBERS), (scene_springs.spring_for, springs.helical_spring)
+        _spring,
+        scene_springs.BalancingSpring,
+        _units(springs.NUMBERS),
+        (scene_springs.spring_for, springs.helical_spring),
+        ("scene", "options", "stiffness", "travel", "crank_speed"),
     ),
     "mount": Kind(
         foundation.mount,
@@ -117,10 +124,8 @@ class Part:
             return [problem]
         known = KINDS[kind].options
         wrong = [checks.choice("option", name, tuple(known)) for name in options]
-        return [
-            *filter(None, wrong),
-            *(f"{name} is missing" for name, need in known.items() if need - (name in options)),
-        ]
+        missing = [f"{name} is missing" for name, needed in known.items() if needed and name not in options]
+        return [*filter(None, wrong), *missing]
 
     def of(self, solution):
         """The part's size, a `Sized`, from a solution."""
