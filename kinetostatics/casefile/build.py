@@ -61,7 +61,7 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
             path, meant = f"{prefix}{names.get(name, name)}{label}", _unit_or_rule(field)
             if isinstance(value, tables.Table):
                 inner = places_by_path(value, f"{path}.")
-            elif hasattr(meant, "numbers"):
+            elif hasattr(meant, "numbers") and value is not None:
                 inner = {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
             elif meant is not None and isinstance(value, tuple):
                 names_of_pair = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
@@ -197,7 +197,8 @@ def _friction_pair(table, joint, mechanism):
 
 def _chain(table, tabulated):
     """Mechanism of a variant with a list of groups."""
-    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length))
+    shaft = table.crank_plane, table.crank_couple_unbalance, table.bearings, table.drive_end
+    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length), *shaft)
     # direction of a cam with a law: the first guide with a slider at A
     ahead = (part for part in table.groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
     angle = next(map(build_guide, ahead), Guide()).guide_angle

@@ -3,14 +3,16 @@
 A `Pin` is a further joint fixed to a link, for more groups to hang on: ternary links, second throws, articulated rods.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
+
+import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
-from .group import EMPTY, FRAME, Bar, Declaration, Group, Output, Part, Point, Resolved
+from .group import EMPTY, FRAME, PLANE, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
@@ -20,6 +22,20 @@ ORIGIN = Joint((0.0, 0.0), None, None)
 def ray(angle):
     """Unit vector of the crank."""
     return (cos(angle), sin(angle))
+
+
+class BearingsRule(checks.Pair):
+    """Rule of two positions along the crankshaft, the smaller one first."""
+
+    def quick(self, value):
+        found = super().quick(value)
+        return found if found is checks.UNDECIDED or found[0] < found[1] else checks.UNDECIDED
+
+    def check(self, value, field=""):
+        found, problem = super().check(value, field)
+        if problem is None and all(map(checks.has_known_values, found)) and not np.all(found[0] < found[1]):
+            problem = f"{field} must be (left, right) with left < right, got {checks.shown(found)}"
+        return found, problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +50,19 @@ class Crank(checks.Checked, Part):
         O to A, m; arrays of shape (designs, 1) make a batch.
     link : Link
         Mass properties; reference joint O, along the crank ray.
+    plane : float or array, optional
+        Position of its mass centre along the crankshaft, m; by default 0. See `machine.planes`.
+    couple_unbalance : (along, across), optional
+        Sum of m (z - plane) (along, across) over its masses, kg m2: 0 if its mass lies in one plane.
+    bearings : (left, right), optional
+        Positions of two main bearings, m, the smaller one first: the reactions at O of a shaft that stands on both.
+    drive_end : "right" or "left"
+        Where the drive takes hold of the shaft, beyond all throws; "right" is the end of large positions.
 
     Raises
     ------
     ParameterError
-        The length is not finite, or not greater than 0.
+        The length is not finite, or not greater than 0; the bearings are not a pair in order.
 
     Examples
     --------
@@ -51,14 +75,27 @@ class Crank(checks.Checked, Part):
 
     length: Any = None
     link: Link = Link()
+    plane: Any = None
+    couple_unbalance: Any = None
+    bearings: Any = None
+    drive_end: str = "right"
 
     RULES = checks.Rules(
         "crank",
         length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
         link=checks.InstanceOf(Link, "a Link"),
+        plane=PLANE,
+        couple_unbalance=checks.Optional(checks.Pair("kg*m**2", parts=("along", "across"))),
+        bearings=checks.Optional(BearingsRule("m", parts=("left", "right"))),
+        drive_end=checks.Word(("right", "left")),
     )
 
-    PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
+    PATHS: ClassVar = {
+        "length": "crank_length",
+        "link": "crank",
+        "plane": "crank_plane",
+        "couple_unbalance": "crank_couple_unbalance",
+    }
     references: ClassVar = {"crank": "O"}
     hangs_on = ()
     TRUSTED = True
@@ -80,6 +117,20 @@ class Crank(checks.Checked, Part):
             return Declaration(joints, pairs=pairs)
         return Declaration(
             joints | {"A": Point("crank", self.length)}, (Bar("O", "A", "crank", self.length),), pairs=pairs
+        )
+
+    def with_weight(self, mass, place, plane=0.0):
+        """The crank with a point mass (kg) fixed to it at a place (along, across) in a plane, m."""
+        if mass == 0:
+            return self
+        own, z = self.link.mass, number_or_zero(self.plane)
+        offset = own * mass / (own + mass) * (plane - z)
+        couple = zip(self.couple_unbalance or (0.0, 0.0), self.link.centre, place, strict=True)
+        return replace(
+            self,
+            link=self.link.joined(mass, place),
+            plane=(own * z + mass * plane) / (own + mass),
+            couple_unbalance=tuple(part + offset * (new - old) for part, old, new in couple),
         )
 
     @property
@@ -124,6 +175,8 @@ class Pin(checks.Checked, Group):
         From the link's reference joint (see `Link`) along its direction and across it, a quarter turn
         counter-clockwise, m; on the frame (x, y) from O.
     name : str
+    plane : float or array, optional
+        Position of a pin of the crank along the crankshaft, m, and of the groups on it; see `machine.planes`.
 
     Raises
     ------
@@ -145,11 +198,14 @@ class Pin(checks.Checked, Group):
     on: str
     at: Any
     name: str = "C"
+    plane: Any = None
 
     TRUSTED = True
-    PATHS: ClassVar = {"at": "pin_"}
+    PATHS: ClassVar = {"at": "pin_", "plane": "pin_plane_"}
     hangs_on, outputs = (), EMPTY
-    RULES = checks.Rules("pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name())
+    RULES = checks.Rules(
+        "pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name(), plane=PLANE
+    )
 
     @property
     def label(self):

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ...machine.crank import Crank
 from ...machine.friction import COEFFICIENT
 from ...machine.groups.lever import LeverGroup
 from ...machine.groups.rocker import RockerGroup
@@ -13,7 +14,7 @@ from ...machine.loads import ProcessForce
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable
-from .parts import Groups, Loads, value_reader
+from .parts import Groups, Loads, field_of, value_reader
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
@@ -36,6 +37,9 @@ LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rul
 Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
 Reaction = Annotated[Any, BeforeValidator(value_reader(ProcessForce.RULES.rules["reaction"]))]
 Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
+Plane, CoupleUnbalance, Bearings, DriveEnd = (
+    field_of(Crank.RULES.rules[name]) for name in ("plane", "couple_unbalance", "bearings", "drive_end")
+)
 
 
 class SpringTable(Table):
@@ -125,6 +129,14 @@ class ChainVariant(MechanismVariant):
     """What messages call the mechanism."""
     crank_length: Length | None = None
     """O to A; left out where a cam roller sits on a slotted crank."""
+    crank_plane: Plane | None = None  # type: ignore[valid-type]
+    """Position of the crank's mass centre along the crankshaft."""
+    crank_couple_unbalance: CoupleUnbalance | None = None  # type: ignore[valid-type]
+    """Sum of mass times distance from that plane times (along, across)."""
+    bearings: Bearings | None = None  # type: ignore[valid-type]
+    """Positions of the left and right main bearing along the crankshaft."""
+    drive_end: DriveEnd = "right"  # type: ignore[valid-type]
+    """End of the crankshaft that is driven."""
     groups: Groups
     """A table for each group, in the order in which motion flows: [[common.groups]]."""
 
