@@ -33,6 +33,10 @@ GUIDE_KEYS = ("guide_angle", "guide_offset")
 """Keys that two points of the guide replace."""
 
 
+PLANE_KEYS = ("plane", "crank_plane", "crank_couple_unbalance", "bearings")
+"""Keys of positions along the crankshaft: they vary only where they are given, as in scenes."""
+
+
 class NumberPlace(NamedTuple):
     """Place of a number in a validated table: fields and item indices from the outermost, and its SI unit."""
 
@@ -48,6 +52,8 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
+        if value is None and name in PLANE_KEYS:
+            continue
         if isinstance(value, tuple) and value and isinstance(value[0], tables.Table):
             inner = _places_in_list(table, value)
         elif isinstance(value, dict):
@@ -61,7 +67,7 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
             path, meant = f"{prefix}{names.get(name, name)}{label}", _unit_or_rule(field)
             if isinstance(value, tables.Table):
                 inner = places_by_path(value, f"{path}.")
-            elif hasattr(meant, "numbers") and value is not None:
+            elif hasattr(meant, "numbers"):
                 inner = {f"{path}.{part}": NumberPlace(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
             elif meant is not None and isinstance(value, tuple):
                 names_of_pair = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")

@@ -1,6 +1,6 @@
 """Counterweights on links: the mechanism with them, masses, arms, limits, and their effect on forces and torque."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from ..cycle.extremes import extremes
 from ..cycle.rounding import zeroed
 from ..errors import ParameterError
+from ..machine.group import CRANK
 from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
@@ -27,6 +28,7 @@ COUNTERWEIGHT_RULES = {
     "largest_mass": MASS,
     "largest_arm": LENGTH,
     "keep_out": LENGTH,
+    "plane": checks.Optional(checks.Number("m")),
 }
 UNBALANCE_RULE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lone=True)}
 
@@ -48,6 +50,8 @@ class Counterweight:
         Limits, kg and m.
     keep_out : float, optional
         Radius around the reference joint that it must stay outside of, m.
+    plane : float, optional
+        Position along the crankshaft of a counterweight on the crank, m; by default that of the link's mass centre.
 
     Raises
     ------
@@ -70,6 +74,7 @@ class Counterweight:
     largest_mass: float | None = None
     largest_arm: float | None = None
     keep_out: float | None = None
+    plane: float | None = None
 
     def __post_init__(self):
         given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
@@ -253,6 +258,10 @@ def counterweight(mechanism, link, unbalance, weight):
     (4.0, -0.05)
     """
     problem = checks.choice("link", link, tuple(mechanism.links))
+    if problem is None and weight.plane is not None and (link != CRANK or weight.whole_link):
+        problem = (
+            f"a plane is for a counterweight that is added to the crank, got {link}, whole_link={weight.whole_link}"
+        )
     found = checks.check_values("counterweight", UNBALANCE_RULE, {"unbalance": unbalance}, problem)["unbalance"]
     bare = mechanism.links[link]
     wanted = np.array(found, dtype=float)
@@ -269,7 +278,11 @@ def counterweight(mechanism, link, unbalance, weight):
     else:
         mass, place = weight.placed(wanted)
     checks.require("counterweight", *weight.problems(link, mass, float(np.hypot(*place))))
-    return Balanced(mechanism, mechanism.with_link(link, bare.joined(mass, place)), {link: (mass, place)})
+    if weight.plane is None:
+        changed = mechanism.with_link(link, bare.joined(mass, place))
+    else:
+        changed = replace(mechanism, crank=mechanism.crank.with_weight(mass, place, weight.plane))
+    return Balanced(mechanism, changed, {link: (mass, place)})
 
 
 def _signed_distance(place):
