@@ -64,7 +64,11 @@ DOORS = {
         | {"plane": (0.125, "m")},
         {},
     ),
-    "Dyad": (ks.Dyad, {"length1": (0.5, "m"), "length2": (0.25, "m"), "plane": (0.125, "m")}, {"on": ("B", "C"), "pin": "D"}),
+    "Dyad": (
+        ks.Dyad,
+        {"length1": (0.5, "m"), "length2": (0.25, "m"), "plane": (0.125, "m")},
+        {"on": ("B", "C"), "pin": "D"},
+    ),
     "LeverGroup": (ks.LeverGroup, {"pivot": ((0.5, 0.25), "m"), "offset": (0.125, "m"), "plane": (0.125, "m")}, {}),
     "CylinderGroup": (ks.CylinderGroup, {"pivot": ((0.5, 0.25), "m"), "plane": (0.125, "m")}, {}),
     "YokeGroup": (ks.YokeGroup, {"slot_angle": (1.0, "rad"), "plane": (0.125, "m")}, {"guide": GUIDE}),
