@@ -37,7 +37,12 @@ DOORS = {
     "Link": (ks.Link, {"mass": (2.0, "kg"), "centre": ((0.5, 0.25), "m"), "inertia": (0.5, "kg*m**2")}, {}),
     "Crank": (
         ks.Crank,
-        {"length": (0.5, "m"), "plane": (0.125, "m"), "bearings": ((-0.5, 0.5), "m")}
+        {"length": (0.5, "m"), "bearings": ((-0.5, 0.5), "m")},
+        {},
+    ),
+    "Rotor": (
+        ks.Rotor,
+        {"mass": (2.0, "kg"), "centre": ((0.5, 0.25), "m"), "inertia": (0.5, "kg*m**2"), "plane": (0.125, "m")}
         | {"couple_unbalance": ((0.5, 0.25), "kg*m**2")},
         {},
     ),
@@ -455,7 +460,7 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "drive_end", "left", "right"),
+    *("precision", "device", "reaction", "left", "right"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",

@@ -14,7 +14,7 @@ from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
 from ..machine.cams import cams
 from ..machine.cams.roller import Roller
-from ..machine.crank import Crank
+from ..machine.crank import Crank, Rotor
 from ..machine.friction import friction_kind
 from ..machine.guide import Guide
 from ..machine.links import Link
@@ -33,7 +33,7 @@ GUIDE_KEYS = ("guide_angle", "guide_offset")
 """Keys that two points of the guide replace."""
 
 
-PLANE_KEYS = ("plane", "crank_plane", "crank_couple_unbalance", "bearings")
+PLANE_KEYS = ("plane", "couple_unbalance", "bearings")
 """Keys of positions along the crankshaft: they vary only where they are given, as in scenes."""
 
 
@@ -162,7 +162,8 @@ def build_link(table, length=None):
                 "distance there"
             )
         centre = (length / 2, 0.0)
-    return Link(table.mass, centre, table.inertia)
+    given = {name: value for name in PLANE_KEYS if (value := getattr(table, name, None)) is not None}
+    return (Rotor if given else Link)(table.mass, centre, table.inertia, **given)
 
 
 def build_guide(table):
@@ -203,8 +204,7 @@ def _friction_pair(table, joint, mechanism):
 
 def _chain(table, tabulated):
     """Mechanism of a variant with a list of groups."""
-    shaft = table.crank_plane, table.crank_couple_unbalance, table.bearings, table.drive_end
-    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length), *shaft)
+    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length), table.bearings)
     # direction of a cam with a law: the first guide with a slider at A
     ahead = (part for part in table.groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
     angle = next(map(build_guide, ahead), Guide()).guide_angle

@@ -372,7 +372,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     pins = {name: complex(*point[1:]) for name, point in mechanism.joints.items() if point.link == crank}
     own, planes = mechanism.links[crank], mechanism.planes
     force = own.mass * complex(*own.centre)
-    couple = planes[crank] * force + complex(*(mechanism.crank.couple_unbalance or (0.0, 0.0)))
+    couple = planes[crank] * force + complex(*(own.couple_unbalance or (0.0, 0.0)))
     bars = {bar.link: bar for bar in mechanism.couplers}
     for name, link in mechanism.links.items():
         if (pin := mechanism.references[name]) not in pins or name == crank:

@@ -1,6 +1,6 @@
 """Counterweights on links: the mechanism with them, masses, arms, limits, and their effect on forces and torque."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from ..cycle.extremes import extremes
 from ..cycle.rounding import zeroed
 from ..errors import ParameterError
+from ..machine.crank import Rotor
 from ..machine.group import CRANK
 from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
@@ -281,7 +282,7 @@ def counterweight(mechanism, link, unbalance, weight):
     if weight.plane is None:
         changed = mechanism.with_link(link, bare.joined(mass, place))
     else:
-        changed = replace(mechanism, crank=mechanism.crank.with_weight(mass, place, weight.plane))
+        changed = mechanism.with_link(link, Rotor.of(bare).joined(mass, place, weight.plane))
     return Balanced(mechanism, changed, {link: (mass, place)})
 
 

@@ -3,7 +3,7 @@
 A `Pin` is a further joint fixed to a link, for more groups to hang on: ternary links, second throws, articulated rods.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,6 +22,55 @@ ORIGIN = Joint((0.0, 0.0), None, None)
 def ray(angle):
     """Unit vector of the crank."""
     return (cos(angle), sin(angle))
+
+
+@dataclass(frozen=True, eq=False)
+class Rotor(Link):
+    """Mass properties of a crank with masses in several planes along the crankshaft.
+
+    Parameters
+    ----------
+    mass, centre, inertia
+        As for `Link`.
+    plane : float or array
+        Position of the mass centre along the crankshaft, m.
+    couple_unbalance : (along, across)
+        Sum of m (z - plane) (along, across) over its masses, kg m2: 0 if all lie in one plane.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.Rotor(3.0, centre=0.25).joined(1.0, (-0.75, 0.0), plane=0.5)  # a counterweight 0.5 m beside it
+    Rotor(mass=4.0, centre=(0.0, 0.0), inertia=0.75, plane=0.125, couple_unbalance=(-0.375, 0.0))
+    """
+
+    plane: Any = 0.0
+    couple_unbalance: Any = (0.0, 0.0)
+
+    RULES = checks.Rules(
+        "Rotor",
+        **Link.RULES.rules,
+        plane=checks.Number("m"),
+        couple_unbalance=checks.Pair("kg*m**2", parts=("along", "across")),
+    )
+
+    @staticmethod
+    def of(link):
+        """A link as a rotor, by default in the plane 0."""
+        return link if isinstance(link, Rotor) else Rotor(link.mass, link.centre, link.inertia)
+
+    def joined(self, mass, place, plane=None):
+        """The rotor with a point mass (kg) fixed to it at place (along, across) in a plane, m, by default its own."""
+        if mass == 0:
+            return self
+        whole, z = self.mass + mass, self.plane if plane is None else plane
+        offset = self.mass * mass / whole * (z - self.plane)
+        couple = zip(self.couple_unbalance, self.centre, place, strict=True)
+        body = super().joined(mass, place)
+        centre = (self.mass * self.plane + mass * z) / whole
+        return Rotor(
+            whole, body.centre, body.inertia, centre, tuple(part + offset * (new - old) for part, old, new in couple)
+        )
 
 
 class BearingsRule(checks.Pair):
@@ -49,15 +98,9 @@ class Crank(checks.Checked, Part):
     length : float or array, optional
         O to A, m; arrays of shape (designs, 1) make a batch.
     link : Link
-        Mass properties; reference joint O, along the crank ray.
-    plane : float or array, optional
-        Position of its mass centre along the crankshaft, m; by default 0. See `machine.planes`.
-    couple_unbalance : (along, across), optional
-        Sum of m (z - plane) (along, across) over its masses, kg m2: 0 if its mass lies in one plane.
+        Mass properties; reference joint O, along the crank ray. A `Rotor` has masses in several planes.
     bearings : (left, right), optional
-        Positions of two main bearings, m, the smaller one first: the reactions at O of a shaft that stands on both.
-    drive_end : "right" or "left"
-        Where the drive takes hold of the shaft, beyond all throws; "right" is the end of large positions.
+        Positions of two main bearings along the crankshaft, m, the smaller one first (``reaction("O", at="left")``).
 
     Raises
     ------
@@ -75,27 +118,16 @@ class Crank(checks.Checked, Part):
 
     length: Any = None
     link: Link = Link()
-    plane: Any = None
-    couple_unbalance: Any = None
     bearings: Any = None
-    drive_end: str = "right"
 
     RULES = checks.Rules(
         "crank",
         length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
         link=checks.InstanceOf(Link, "a Link"),
-        plane=PLANE,
-        couple_unbalance=checks.Optional(checks.Pair("kg*m**2", parts=("along", "across"))),
         bearings=checks.Optional(BearingsRule("m", parts=("left", "right"))),
-        drive_end=checks.Word(("right", "left")),
     )
 
-    PATHS: ClassVar = {
-        "length": "crank_length",
-        "link": "crank",
-        "plane": "crank_plane",
-        "couple_unbalance": "crank_couple_unbalance",
-    }
+    PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
     references: ClassVar = {"crank": "O"}
     hangs_on = ()
     TRUSTED = True
@@ -117,20 +149,6 @@ class Crank(checks.Checked, Part):
             return Declaration(joints, pairs=pairs)
         return Declaration(
             joints | {"A": Point("crank", self.length)}, (Bar("O", "A", "crank", self.length),), pairs=pairs
-        )
-
-    def with_weight(self, mass, place, plane=0.0):
-        """The crank with a point mass (kg) fixed to it at a place (along, across) in a plane, m."""
-        if mass == 0:
-            return self
-        own, z = self.link.mass, number_or_zero(self.plane)
-        offset = own * mass / (own + mass) * (plane - z)
-        couple = zip(self.couple_unbalance or (0.0, 0.0), self.link.centre, place, strict=True)
-        return replace(
-            self,
-            link=self.link.joined(mass, place),
-            plane=(own * z + mass * plane) / (own + mass),
-            couple_unbalance=tuple(part + offset * (new - old) for part, old, new in couple),
         )
 
     @property

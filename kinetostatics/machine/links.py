@@ -114,6 +114,7 @@ class Link(checks.Checked):
     mass: Any = 0.0
     centre: Any = (0.0, 0.0)
     inertia: Any = 0.0
+    plane = couple_unbalance = None
 
     RULES = checks.Rules(
         "Link",

@@ -172,7 +172,7 @@ class Mechanism(Batched):
         throws = self.throws
         groups = [group.on_crank(throws) for group in self.groups]
         vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
-        if any(group.plane is not None for group in groups):
+        if len(groups) > 1 and any(group.plane is not None for group in groups):
             checks.require(self.name, *plane_problems(self))
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
         if names is None or names not in _VALID_NAMES:
@@ -220,8 +220,7 @@ class Mechanism(Batched):
     @property
     def has_planes(self):
         """Whether a part has a plane: then there are rocking moment and torques of the shaft."""
-        crank = self.crank.plane, self.crank.couple_unbalance
-        return any(part is not None for part in (*crank, *(group.plane for group in self.groups)))
+        return any(part.plane is not None for part in (self.crank.link, *self.groups))
 
     @property
     def on_shaft(self):

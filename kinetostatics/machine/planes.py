@@ -6,7 +6,7 @@ rocks the frame, the reactions of two bearings and the torque between throws do 
 
     group     its `plane`; else that of the pin of the crank, or of the group, that it hangs on; else 0
     pin       of the crank: its `plane`, or free for groups of several planes, as A is; of another link: that link's
-    crank     its `plane`, that of its mass centre; else 0
+    crank     that of its mass centre if its link is a `Rotor`; else 0
 
 A group moves in the plane of what it hangs on: pins do not tilt. So a group on another one, or on a pin with a plane,
 may repeat that plane, and no other is accepted. Weight and loads on a link act in its plane.
@@ -39,7 +39,7 @@ def _stated(groups):
 
 def planes_by_link(mechanism):
     """Position along the crankshaft by link, m; a number, or an array of designs."""
-    found = {CRANK: number_or_zero(mechanism.crank.plane)}
+    found = {CRANK: number_or_zero(mechanism.crank.link.plane)}
     for group, stated in _stated(mechanism.groups):
         found |= dict.fromkeys(group.links, stated[0] if stated else 0.0)
     return found

@@ -283,9 +283,9 @@ class Dynamics(Motion):
         """Moment about x and y through O of the inertia of all moving masses on the frame, (2, ..., N), N m."""
         return self.as_vector(shaft.rocking_moment(self))
 
-    def shaft_torque(self, group):
+    def shaft_torque(self, group, drive="right"):
         """Torque in the crankshaft beside the throw of a group, by its first link, (..., N), N m."""
-        return self._scalar(shaft.shaft_torque(self, group))
+        return self._scalar(shaft.shaft_torque(self, group, drive))
 
     def ground_force(self, place=None):
         """Force of the machine on the frame at a place by name, (2, ..., N), N; None: the sum of all."""

@@ -61,7 +61,7 @@ def rocking_moment(state):
 
 def _couple_of_crank(state):
     """Sum of z times inertia force over the crank, beyond that of its mass centre, N m; None without couple."""
-    couple = state.mechanism.crank.couple_unbalance
+    couple = state.mechanism.crank.link.couple_unbalance
     lever = couple and arm(state.placement.links[CRANK].direction, *map(present, couple))
     if lever is None:
         return None
@@ -87,15 +87,16 @@ def bearing_reaction(state, joint, at):
     return right if at == "right" else subtract_vectors(state.resolved.reactions[joint], right)
 
 
-def shaft_torque(state, group):
+def shaft_torque(state, group, drive):
     """Torque in the shaft beside the throw of a group, on the side of the drive, N m; None if it is 0."""
     mechanism = state.mechanism
     require_planes(mechanism, SHAFT_TORQUE.replace("_", " "))
-    if problem := checks.choice(f"{mechanism.name}: group on the crank", group, mechanism.on_shaft):
+    problem = checks.choice(f"{mechanism.name}: group on the crank", group, mechanism.on_shaft)
+    if problem := problem or checks.choice(f"{mechanism.name}: drive", drive, ("left", "right")):
         raise QuantityError(problem)
     here, total = present(mechanism.planes[group]), None
     for z, wrench in _loads_on_shaft(state):
-        nearer = minus(here, z) if mechanism.crank.drive_end == "right" else minus(z, here)
+        nearer = minus(here, z) if drive == "right" else minus(z, here)
         share = 1.0 if z is here or nearer is None else 0.5 + 0.5 * sign(nearer)
         total = plus(total, product(share, wrench.moment))
     return minus(None, total)

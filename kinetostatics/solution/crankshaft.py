@@ -3,6 +3,7 @@
 from typing import Any
 
 from ..machine.group import ROCKING, SHAFT_TORQUE
+from ..mechanics.quantities import of_scene
 from ..mechanics.shaft import require_bearings, require_planes
 
 
@@ -10,8 +11,8 @@ class CrankshaftResults:
     """Results of a machine whose groups have positions along the crankshaft (`machine.planes`)."""
 
     mechanism: Any
+    dynamics: Any
     _found: Any
-    _look_up: Any
     _warn_of_growth: Any
 
     @property
@@ -44,17 +45,19 @@ class CrankshaftResults:
         require_planes(self.mechanism, ROCKING.replace("_", " "))
         return self._found(ROCKING)
 
-    def shaft_torque(self, group):
+    def shaft_torque(self, group, drive="right"):
         """Torque in the crankshaft beside the throw of a group, on the side of the drive, (..., N), N m.
 
-        Counter-clockwise positive, from the part toward the drive (``Crank(drive_end=)``) on the part toward the free
-        end. Beside the throw nearest to the drive it is the balancing torque, less what friction in the main bearings
-        takes. The largest of all is the torque that the shaft has to carry.
+        Counter-clockwise positive, from the part toward the drive on the part toward the free end. Beside the throw
+        nearest to the drive it is the balancing torque, less what friction in the main bearings takes. The quantities
+        "shaft_torque coupler2" ... of extremes and sweeps have the drive on the right.
 
         Parameters
         ----------
         group : str
             First link of a group on the crank or a pin of it, such as "coupler2".
+        drive : "right" or "left"
+            Where the drive takes hold of the shaft, beyond all throws; "right" is the end of large positions.
 
         Raises
         ------
@@ -74,9 +77,10 @@ class CrankshaftResults:
         >>> bool(abs(s.reaction("O", at="left") + s.reaction("O", at="right") - s.reaction("O")).max() < 1e-9)
         True
         """
-        require_planes(self.mechanism, SHAFT_TORQUE.replace("_", " "))
-        self._look_up("group on the crank", group, dict.fromkeys(self.mechanism.on_shaft))
-        return self._read(f"{SHAFT_TORQUE} {group}")
+        name = f"{SHAFT_TORQUE} {group}"
+        if drive != "right" or name not in of_scene(self):
+            return self.dynamics.shaft_torque(group, drive)
+        return self._read(name)
 
     def _at_bearing(self, joint, at):
         require_bearings(self.mechanism, joint, at)

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ...machine.crank import Crank
+from ...machine.crank import Crank, Rotor
 from ...machine.friction import COEFFICIENT
 from ...machine.groups.lever import LeverGroup
 from ...machine.groups.rocker import RockerGroup
@@ -37,9 +37,8 @@ LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rul
 Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
 Reaction = Annotated[Any, BeforeValidator(value_reader(ProcessForce.RULES.rules["reaction"]))]
 Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
-Plane, CoupleUnbalance, Bearings, DriveEnd = (
-    field_of(Crank.RULES.rules[name]) for name in ("plane", "couple_unbalance", "bearings", "drive_end")
-)
+Bearings = field_of(Crank.RULES.rules["bearings"])
+Plane, CoupleUnbalance = (field_of(Rotor.RULES.rules[name]) for name in ("plane", "couple_unbalance"))
 
 
 class SpringTable(Table):
@@ -120,6 +119,13 @@ class MechanismVariant(Table):
     """A table for each joint that rubs, by its name: O, A, B, guide, slot, cam."""
 
 
+class RotorTable(LinkTable):
+    plane: Plane | None = None  # type: ignore[valid-type]
+    """Position of the mass centre along the crankshaft."""
+    couple_unbalance: CoupleUnbalance | None = None  # type: ignore[valid-type]
+    """Sum of mass times distance from that plane times (along, across)."""
+
+
 class ChainVariant(MechanismVariant):
     """A crank and whatever groups hang on it."""
 
@@ -129,14 +135,10 @@ class ChainVariant(MechanismVariant):
     """What messages call the mechanism."""
     crank_length: Length | None = None
     """O to A; left out where a cam roller sits on a slotted crank."""
-    crank_plane: Plane | None = None  # type: ignore[valid-type]
-    """Position of the crank's mass centre along the crankshaft."""
-    crank_couple_unbalance: CoupleUnbalance | None = None  # type: ignore[valid-type]
-    """Sum of mass times distance from that plane times (along, across)."""
+    crank: RotorTable = RotorTable()
+    """Mass properties, from O along the crank."""
     bearings: Bearings | None = None  # type: ignore[valid-type]
     """Positions of the left and right main bearing along the crankshaft."""
-    drive_end: DriveEnd = "right"  # type: ignore[valid-type]
-    """End of the crankshaft that is driven."""
     groups: Groups
     """A table for each group, in the order in which motion flows: [[common.groups]]."""
 
