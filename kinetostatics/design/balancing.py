@@ -361,6 +361,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     share = checks.single_numbers(owner, reciprocating=(reciprocating, "1", {}))["reciprocating"]
     _require_masses(mechanism)
     given = {"left": left, "right": right}
+    checks.require(owner, *(_weight_problem(name, weight) for name, weight in given.items()))
     checks.require(
         owner,
         None if 0.0 <= share <= 1.0 else f"reciprocating must lie between 0 and 1, got {share:g}",

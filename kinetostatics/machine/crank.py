@@ -59,6 +59,9 @@ class Rotor(Link):
         """A link as a rotor, by default in the plane 0."""
         return link if isinstance(link, Rotor) else Rotor(link.mass, link.centre, link.inertia)
 
+    def without_mass(self):
+        return Rotor(plane=self.plane)
+
     def joined(self, mass, place, plane=None):
         """The rotor with a point mass (kg) fixed to it at place (along, across) in a plane, m, by default its own."""
         if mass == 0:

@@ -123,6 +123,10 @@ class Link(checks.Checked):
         inertia=checks.Number("kg*m**2", low=0.0),
     )
 
+    def without_mass(self):
+        """The link without mass and inertia, in its plane."""
+        return Link()
+
     def joined(self, mass, place):
         """The link with a point mass (kg) fixed to it at place (along, across), m."""
         if mass == 0:

@@ -78,16 +78,12 @@ class CrankshaftResults:
         True
         """
         name = f"{SHAFT_TORQUE} {group}"
-        if drive != "right" or name not in of_scene(self):
-            return self.dynamics.shaft_torque(group, drive)
-        return self._read(name)
+        known = drive == "right" and name in of_scene(self)
+        return self._found(name) if known else self.dynamics.shaft_torque(group, drive)
 
     def _at_bearing(self, joint, at):
+        """Reaction of a main bearing."""
         require_bearings(self.mechanism, joint, at)
-        return self._read(f"{joint} {at}")
-
-    def _read(self, name):
-        """A quantity, with a warning where it grows without bound."""
-        found = self._found(name)
-        self._warn_of_growth(name, found)
+        found = self._found(f"{joint} {at}")
+        self._warn_of_growth(f"{joint} {at}", found)
         return found

@@ -100,7 +100,7 @@ class Solution(Certainty, CrankshaftResults, Motion):
     Methods
     -------
     reaction(joint, at), scalar(name), pressure(name), pin_load(joint), inertia_force(link), ground_force(place)
-    friction_at(joint), friction_loss_at(joint), shaft_torque(group)
+    friction_at(joint), friction_loss_at(joint), shaft_torque(group, drive)
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
