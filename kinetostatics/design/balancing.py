@@ -26,7 +26,16 @@ from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .linkage import crank_sliders, four_bar_shape
 
-__all__ = ["Balanced", "Counterweight", "counterweight", "full", "in_two_planes", "optimal", "partial"]
+__all__ = [
+    "Balanced",
+    "BalancedInPlanes",
+    "Counterweight",
+    "counterweight",
+    "full",
+    "in_two_planes",
+    "optimal",
+    "partial",
+]
 
 NAMED_RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}
 

@@ -21,7 +21,7 @@ from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
-from .hodographs import hodograph, hodographs
+from .hodographs import hodograph, hodographs, rocking_moment
 
 __all__ = [
     "acceleration_error",
@@ -49,6 +49,7 @@ __all__ = [
     "model_ladder",
     "over_turn",
     "pressure_angle",
+    "rocking_moment",
     "shaking_force",
     "shares",
     "sweep_map",

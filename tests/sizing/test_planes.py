@@ -289,6 +289,16 @@ def test_extremes_sweeps_programs_and_cases(tmp_path):
     assert "rocking" in s.explain("rocking_moment", 0.3).text
 
 
+def test_hodograph_of_the_couple_has_its_largest_value():
+    s = ks.Scene(in_line(), SPEED).solve(36)
+    ax = ks.plots.rocking_moment(s)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("rocking moment about x [N m]", "rocking moment about y [N m]")
+    drawn = np.hypot(*ax.lines[0].get_data())
+    assert drawn.max() == pytest.approx(ks.extremes(s, "rocking_moment").largest)
+    with pytest.raises(KinetostaticsError):
+        ks.plots.rocking_moment(PLAIN)
+
+
 def test_batches_of_planes_and_bearings():
     planes = np.array([[0.1], [0.2], [-0.3]])
     rod = ks.SliderGroup(0.2, slider=ks.Link(2.0), plane=planes)
