@@ -321,6 +321,15 @@ class BalancedInPlanes(Balanced):
     ----------
     in_planes : tuple of (plane, mass, (along, across))
         Left and right one, m and kg; `counterweights` has the two together.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05, ks.Link(2.0, 0.02)), (ks.SliderGroup(0.2, plane=0.1),))
+    >>> left, right = (ks.Counterweight(mass=0.5, plane=z) for z in (-0.2, 0.2))
+    >>> found = ks.balancing.in_two_planes(pump, left=left, right=right)
+    >>> [round(float(along), 6) for _, _, (along, _) in found.in_planes], found.added_mass
+    ([-0.04, -0.04], 1.0)
     """
 
     in_planes: tuple = ()
