@@ -134,6 +134,8 @@ class Balanced:
         Before, and with its counterweights, ready for `solve`.
     counterweights : dict of link to (mass, (along, across))
         kg and m.
+    in_planes : tuple of (plane, mass, (along, across))
+        Those of `in_two_planes`, with their positions along the crankshaft, m.
 
     Examples
     --------
@@ -151,6 +153,7 @@ class Balanced:
     bare: Mechanism
     mechanism: Mechanism
     counterweights: dict = field(default_factory=dict)
+    in_planes: tuple = ()
 
     @property
     def ratio(self):

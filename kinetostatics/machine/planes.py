@@ -46,15 +46,11 @@ def planes_by_link(mechanism):
 
 
 def plane_problems(mechanism):
-    """Yield the problem of each part whose plane is no number, or is not that of what it hangs on."""
+    """Yield the problem of each part whose plane is not that of what it hangs on."""
     for group, stated in _stated(mechanism.groups):
-        kind = type(group).__name__
-        numbers = [checks.Number("m").check(plane, "plane") for plane in stated]
-        if problem := next((problem for _, problem in numbers if problem), None):
-            yield f"{kind}: {problem}"
-            continue
-        values = [value for value, _ in numbers if checks.has_known_values(value)]
+        values = list(filter(checks.has_known_values, stated))
         if other := [value for value in values[1:] if not np.array_equal(values[0], value)]:
+            kind = type(group).__name__
             what = next(iter(group.links), getattr(group, "name", kind))
             yield (
                 f"{kind}: {what} has plane {checks.shown(values[0])} m, but what it hangs on has plane "

@@ -1,57 +1,38 @@
 """The crankshaft: rocking moment of the machine, reactions of two bearings, torque between throws.
 
-Each group acts in its plane, at a position z along the shaft (`machine.planes`). With the inertia force F_i of each
-link, those of springs included, and the masses m_j of the crank at z_j,
+Each group acts in its plane, at a position z along the shaft (`machine.planes`). The inertia forces F_i of all links and
+springs have the moment
 
-    rocking moment    (M_x, M_y) = sum of z_i k x F_i = (-sum z_i F_iy, sum z_i F_ix)
+    (M_x, M_y) = sum of z_i k x F_i = (-sum z_i F_iy, sum z_i F_ix)
 
-is the moment of the inertia of all moving masses on the frame about the axes x and y through O in the plane z = 0,
-right-handed, with k along z. About the plane z0 it is M - z0 k x F with the shaking force F: the same where F vanishes.
-
-The shaft is statically determinate on its two bearings at z1 < z2. With the forces P_i of the groups on the crank, its
-own inertia and weight,
+on the frame, about the axes x and y through O in the plane z = 0, right-handed, k along z. The shaft is statically
+determinate on bearings at z1 < z2. With the forces P_i of groups on the crank, its own inertia and weight,
 
     R_right = -sum of P_i (z_i - z1) / (z2 - z1),    R_left = R_O - R_right
 
-The torque in the shaft beside a throw, on the side of the drive, moves all throws from there to the free end: minus the
-sum of their moments about O. Friction in the main bearings, belts and gears are left out, and bearings do not bend the
-shaft. Source of the couples: J. P. den Hartog, *Mechanical Vibrations*, 1956, chapter 5.
+The torque in the shaft beside a throw is minus the sum of the moments about O of all loads from there to the free end.
+Friction in main bearings, belts and gears are left out. Source of the couples: J. P. den Hartog, *Mechanical
+Vibrations*, 1956, chapter 5.
 """
 
 from functools import reduce
 
 from ..errors import QuantityError
-from ..machine.group import CRANK, ROCKING, SHAFT_TORQUE
+from ..machine.group import CRANK
 from ..machine.links import Wrench, acceleration_of, arm, first_at, present, second_at
 from ..numbers import checks
 from ..numbers.arithmetic import sign
 from ..numbers.planar import add_vectors, left, minus, plus, product, scale_vector, subtract_vectors
 
 
-def require_planes(mechanism, name):
-    """Raise `QuantityError` for a rocking moment or shaft torque of a mechanism without planes."""
+def _require_planes(mechanism):
     if not mechanism.has_planes:
-        raise QuantityError(
-            f"{mechanism.name}: no part has a plane, so there is no {name}; give positions along the crankshaft, "
-            "as in ks.SliderGroup(..., plane=0.1) or ks.Pin(..., plane=0.1)"
-        )
-
-
-def require_bearings(mechanism, joint, at):
-    """Raise `QuantityError` for the reaction of a bearing that the crank does not have."""
-    problem = checks.choice(f"{mechanism.name}: reaction at a bearing of joint", joint, ("O",))
-    problem = problem or checks.choice(f"{mechanism.name}: at", at, ("left", "right"))
-    if problem is None and mechanism.crank.bearings is None:
-        problem = (
-            f"{mechanism.name}: the crank has no bearings; give their positions, ks.Crank(..., bearings=(-0.4, 0.4))"
-        )
-    if problem:
-        raise QuantityError(problem)
+        raise QuantityError(f"{mechanism.name}: no part has a plane; give one, as in ks.SliderGroup(..., plane=0.1)")
 
 
 def rocking_moment(state):
     """Moment of the inertia of all moving masses on the frame about x and y through O, (x, y), N m; None without."""
-    require_planes(state.mechanism, ROCKING.replace("_", " "))
+    _require_planes(state.mechanism)
     planes = state.mechanism.planes
     forces = [(name, wrench.force) for name, wrench in state.inertia.items()] + state.spring_inertia
     moments = (scale_vector(present(planes[name]), force) for name, force in forces)
@@ -79,8 +60,14 @@ def _loads_on_shaft(state):
 
 def bearing_reaction(state, joint, at):
     """Force of a main bearing, "left" or "right", on the crank, (x, y), N."""
-    require_bearings(state.mechanism, joint, at)
-    first, second = state.mechanism.crank.bearings
+    mechanism = state.mechanism
+    problem = checks.choice(f"{mechanism.name}: joint with main bearings", joint, ("O",))
+    problem = problem or checks.choice(f"{mechanism.name}: at", at, ("left", "right"))
+    if problem is None and mechanism.crank.bearings is None:
+        problem = f"{mechanism.name}: the crank has no bearings; give ks.Crank(..., bearings=(-0.4, 0.4))"
+    if problem:
+        raise QuantityError(problem)
+    first, second = mechanism.crank.bearings
     moments = (scale_vector(minus(z, present(first)), wrench.force) for z, wrench in _loads_on_shaft(state))
     total = reduce(add_vectors, moments, _couple_of_crank(state))
     right = scale_vector(-1.0 / (second - first), total)
@@ -90,7 +77,7 @@ def bearing_reaction(state, joint, at):
 def shaft_torque(state, group, drive):
     """Torque in the shaft beside the throw of a group, on the side of the drive, N m; None if it is 0."""
     mechanism = state.mechanism
-    require_planes(mechanism, SHAFT_TORQUE.replace("_", " "))
+    _require_planes(mechanism)
     problem = checks.choice(f"{mechanism.name}: group on the crank", group, mechanism.on_shaft)
     if problem := problem or checks.choice(f"{mechanism.name}: drive", drive, ("left", "right")):
         raise QuantityError(problem)

@@ -363,7 +363,7 @@ def cam_saw():
         (lambda: MIXED.shaft_torque("coupler", drive="top"), "'top'"),
         (lambda: PLAIN.reaction("O", at="left"), "the crank has no bearings"),
         (lambda: FLAT.reaction("O", at="middle"), "'middle'"),
-        (lambda: FLAT.reaction("A", at="left"), "reaction at a bearing"),
+        (lambda: FLAT.reaction("A", at="left"), "joint with main bearings"),
         (lambda: ks.Counterweight(arm=0.1, plane=np.nan), "plane must be finite"),
         (lambda: ks.balancing.counterweight(PLAIN.mechanism, "slider", 0.1, WEIGHTS["left"]), "a plane is for"),
         (lambda: ks.balancing.in_two_planes(in_line(), left=1.0, right=None), "left must be a Counterweight"),
