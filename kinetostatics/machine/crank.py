@@ -12,7 +12,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
-from .group import EMPTY, FRAME, PLANE, Bar, Declaration, Group, Output, Part, Point, Resolved
+from .group import EMPTY, FRAME, PLANE, POSITION, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
@@ -50,7 +50,7 @@ class Rotor(Link):
     RULES = checks.Rules(
         "Rotor",
         **Link.RULES.rules,
-        plane=checks.Number("m"),
+        plane=POSITION,
         couple_unbalance=checks.Pair("kg*m**2", parts=("along", "across")),
     )
 
@@ -78,6 +78,9 @@ class Rotor(Link):
 
 class BearingsRule(checks.Pair):
     """Rule of two positions along the crankshaft, the smaller one first."""
+
+    def __post_init__(self):
+        object.__setattr__(self, "rule", POSITION)
 
     def quick(self, value):
         return checks.UNDECIDED

@@ -86,8 +86,9 @@ ROCKING, SHAFT_TORQUE = "rocking_moment", "shaft_torque"
 """Quantities of a mechanism with planes: the moment, and first word of the torques in its crankshaft."""
 BEARINGS = {"O left": "left", "O right": "right"}
 """Quantities of a crankshaft on two bearings: the reactions at O by the bearing."""
-PLANE = checks.Optional(checks.Number("m"))
-"""Rule of the position of a group or pin along the crankshaft."""
+POSITION = checks.Number("m", usual=checks.PLAUSIBLE_BY_UNIT["m"])
+PLANE = checks.Optional(POSITION)
+"""Rules of a position along the crankshaft, and of that of a group or pin."""
 RESERVED = (
     "balancing_torque_by_power",
     "shaking_force",

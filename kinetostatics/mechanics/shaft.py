@@ -1,6 +1,6 @@
 """The crankshaft: rocking moment of the machine, reactions of two bearings, torque between throws.
 
-Each group acts in its plane, at a position z along the shaft (`machine.planes`). The inertia forces F_i of all links and
+Each group acts in its plane, at a position z along the shaft (`machine.planes`). The inertia forces F_i of links and
 springs have the moment
 
     (M_x, M_y) = sum of z_i k x F_i = (-sum z_i F_iy, sum z_i F_ix)

@@ -321,6 +321,15 @@ def test_reactions_of_bearings_grow_where_that_of_o_does():
 # Hostile
 
 
+@every("slip", [{"pin": 100.0}, {"rod": 100.0}, {"bearings": (-200.0, 200.0)}, {"crank": ks.Rotor(1.0, plane=20.0)}])
+def test_millimetres_along_the_shaft_are_asked_about(slip):
+    pin = ks.Pin(on="crank", at=(0.05, 0.0), name="C", plane=slip.get("pin"))
+    rod = ks.SliderGroup(0.2, slider=ks.Link(2.0), on="C", plane=slip.get("rod"))
+    made = ks.Mechanism("slip", ks.Crank(None, slip.get("crank", ks.Link()), slip.get("bearings")), (pin, rod))
+    with pytest.warns(ks.HintWarning, match="is it in mm"):
+        ks.Scene(made, 10.0).solve(8)
+
+
 ROD = {"slider": ks.Link(2.0)}
 PLAIN = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(2.0)), 10.0).solve(8)
 FLAT = ks.Scene(ks.Mechanism("flat", ks.Crank(0.05, bearings=(-1, 1)), (ks.SliderGroup(0.2, **ROD),)), 10.0).solve(8)
