@@ -449,6 +449,40 @@ def play():
     ax.text(0.55, -0.35, "journal", ha="center", va="center", fontsize="small")
     ax.set_aspect("equal")
     ax.margins(0.06)
+    return figure
+
+
+def planes():
+    """A crankshaft of four throws on two bearings: planes of the throws, forces of the cylinders, drive end."""
+    figure, ax = plt.subplots()
+    places, ends, radii = (-1.5, -0.5, 0.5, 1.5), (-2.2, 2.2), (0.55, -0.55, 0.55, -0.55)
+    ax.plot([-2.7, 2.9], [0, 0], color=INK, lw=0.5, ls="-.")
+    line = [(ends[0] - 0.2, 0.0)]
+    for z, radius in zip(places, radii, strict=True):
+        line += [(z - 0.2, 0.0), (z - 0.2, radius), (z + 0.2, radius), (z + 0.2, 0.0)]
+    ax.plot(*np.transpose([*line, (2.75, 0.0)]), color=STEEL, lw=5, solid_joinstyle="round")
+    for z, name in zip(ends, ("left", "right"), strict=True):
+        ax.plot([z, z], [-0.2, -0.1], color=INK, lw=0.8)
+        ax.fill([z - 0.14, z + 0.14, z + 0.14, z - 0.14], [-0.1, -0.1, 0.1, 0.1], fc="0.85", ec=INK, lw=0.8, zorder=5)
+        ax.plot(*strokes.hatched_line(np.array([z - 0.25, -0.2]), np.array([z + 0.25, -0.2]), 0.07), color=INK, lw=0.8)
+        arrow(ax, np.array([z, -0.85]), np.array([z, -0.36]), f"$R_{{{name}}}$", tail=True)
+    for number, (z, radius) in enumerate(zip(places, radii, strict=True), 1):
+        ax.plot([z, z], [radius, 1.0], color=INK, lw=0.5)
+        tips = (0.78, 1.35) if number % 2 else (1.35, 0.78)
+        arrow(ax, *(np.array([z, tip]) for tip in tips), f"$F_{number}$", LOAD, tail=number % 2 == 0)
+    for level, z, name in ((-1.05, places[0], "$z_1 < 0$"), (-1.05, places[3], "$z_4$")):
+        ax.plot([z, z], [-0.62, level], color=INK, lw=0.5)
+        ax.annotate("", (0, level), (z, level), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+        ax.text(0.5 * z, level + 0.08, name, ha="center")
+    ax.plot([0, 0], [-1.3, 0.0], color=INK, lw=0.5, ls="--")
+    ax.text(0.0, -1.4, "z = 0", ha="center", va="center")
+    arrow(ax, np.array([2.75, -0.6]), np.array([3.25, -0.6]), "z", INK)
+    ax.text(2.8, 0.14, "drive", ha="center")
+    ax.text(0.0, 0.2, "torque", ha="center", fontsize="small", color=ACCENT)
+    ax.plot([0, 0], [-0.12, 0.12], color=ACCENT, lw=1.4)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.04)
     ax.axis("off")
     return figure
 
@@ -488,6 +522,7 @@ DRAWINGS = {
     "../parts/foundation": (foundation, (6.4, 3.2)),
     "../parts/play": (play, (4.4, 3.6)),
     "../parts/springs": (springs, (6.4, 3.0)),
+    "../parts/planes": (planes, (6.4, 3.2)),
 }
 """How each is drawn, and its size in inches."""
 

@@ -41,6 +41,7 @@ from .machine.cams.roller import Face as Face
 from .machine.cams.roller import Roller as Roller
 from .machine.crank import Crank as Crank
 from .machine.crank import Pin as Pin
+from .machine.crank import Rotor as Rotor
 from .machine.followers.swinging import SwingingFollower as SwingingFollower
 from .machine.followers.translating import FlatFollower as FlatFollower
 from .machine.followers.translating import RollerFollower as RollerFollower

@@ -35,7 +35,17 @@ SHAPE = {"guide_angle": (0.5, "rad"), "guide_offset": (0.0625, "m")}
 SHAFT = {"transmission": (4.0, "1"), "inertia": (0.5, "kg*m**2")}
 DOORS = {
     "Link": (ks.Link, {"mass": (2.0, "kg"), "centre": ((0.5, 0.25), "m"), "inertia": (0.5, "kg*m**2")}, {}),
-    "Crank": (ks.Crank, {"length": (0.5, "m")}, {}),
+    "Crank": (
+        ks.Crank,
+        {"length": (0.5, "m"), "bearings": ((-0.5, 0.5), "m")},
+        {},
+    ),
+    "Rotor": (
+        ks.Rotor,
+        {"mass": (2.0, "kg"), "centre": ((0.5, 0.25), "m"), "inertia": (0.5, "kg*m**2"), "plane": (0.125, "m")}
+        | {"couple_unbalance": ((0.5, 0.25), "kg*m**2")},
+        {},
+    ),
     "Guide": (ks.Guide, {"angle": (0.5, "rad"), "guide_offset": (0.25, "m")}, {}),
     "Guide.exact": (ks.Guide, {"exact": ((0.6, 0.8), "1")}, {"angle": None}),
     "Guide.at": (ks.Guide.at, SHAPE, {}),
@@ -52,22 +62,30 @@ DOORS = {
         | {"cam_youngs_modulus": (1e11, "Pa"), "cam_poissons_ratio": (0.25, "1")},
         {},
     ),
-    "SliderGroup": (ks.SliderGroup, {"coupler_length": (0.5, "m")}, {"guide": GUIDE}),
+    "SliderGroup": (ks.SliderGroup, {"coupler_length": (0.5, "m"), "plane": (0.125, "m")}, {"guide": GUIDE}),
     "RockerGroup": (
         ks.RockerGroup,
-        {"coupler_length": (0.5, "m"), "rocker_length": (0.5, "m"), "pivot": ((0.5, 0.25), "m")},
+        {"coupler_length": (0.5, "m"), "rocker_length": (0.5, "m"), "pivot": ((0.5, 0.25), "m")}
+        | {"plane": (0.125, "m")},
         {},
     ),
-    "Dyad": (ks.Dyad, {"length1": (0.5, "m"), "length2": (0.25, "m")}, {"on": ("B", "C"), "pin": "D"}),
-    "LeverGroup": (ks.LeverGroup, {"pivot": ((0.5, 0.25), "m"), "offset": (0.125, "m")}, {}),
-    "CylinderGroup": (ks.CylinderGroup, {"pivot": ((0.5, 0.25), "m")}, {}),
-    "YokeGroup": (ks.YokeGroup, {"slot_angle": (1.0, "rad")}, {"guide": GUIDE}),
-    "Pin": (ks.Pin, {"at": ((0.5, 0.25), "m")}, {"on": "coupler", "name": "C"}),
+    "Dyad": (
+        ks.Dyad,
+        {"length1": (0.5, "m"), "length2": (0.25, "m"), "plane": (0.125, "m")},
+        {"on": ("B", "C"), "pin": "D"},
+    ),
+    "LeverGroup": (ks.LeverGroup, {"pivot": ((0.5, 0.25), "m"), "offset": (0.125, "m"), "plane": (0.125, "m")}, {}),
+    "CylinderGroup": (ks.CylinderGroup, {"pivot": ((0.5, 0.25), "m"), "plane": (0.125, "m")}, {}),
+    "YokeGroup": (ks.YokeGroup, {"slot_angle": (1.0, "rad"), "plane": (0.125, "m")}, {"guide": GUIDE}),
+    "Pin": (ks.Pin, {"at": ((0.5, 0.25), "m"), "plane": (0.125, "m")}, {"on": "coupler", "name": "C"}),
     "SwingingFollower": (
         ks.SwingingFollower,
-        {"arm_length": (0.25, "m"), "pivot": ((0.5, 0.25), "m")},
+        {"arm_length": (0.25, "m"), "pivot": ((0.5, 0.25), "m"), "plane": (0.125, "m")},
         {"cam": ks.laws.cosine(0.1, 1.0)},
     ),
+    "RollerFollower": (ks.RollerFollower, {"plane": (0.125, "m")}, {"cam": ks.laws.cosine(0.1, 1.0)}),
+    "FlatFollower": (ks.FlatFollower, {"plane": (0.125, "m")}, {"cam": ks.laws.cosine(0.1, 1.0)}),
+    "CamRoller": (ks.CamRoller, {"plane": (0.125, "m")}, {"cam": ks.cams.Circle(0.5)}),
     "crank_slider": (ks.crank_slider, {"crank_length": (0.5, "m"), "coupler_length": (2.0, "m"), **SHAPE}, {}),
     "cam_crank_slider": (ks.cam_crank_slider, {"coupler_length": (2.0, "m"), **SHAPE}, {"cam": ks.cams.Circle(0.5)}),
     "four_bar": (
@@ -252,7 +270,13 @@ DOORS = {
         {"mass": (2.0, "kg"), "largest_mass": (4.0, "kg"), "largest_arm": (0.5, "m"), "keep_out": (0.25, "m")},
         {},
     ),
-    "Counterweight.arm": (ks.balancing.Counterweight, {"arm": (0.5, "m")}, {}),
+    "Counterweight.arm": (ks.balancing.Counterweight, {"arm": (0.5, "m"), "plane": (0.125, "m")}, {}),
+    "in_two_planes": (
+        ks.balancing.in_two_planes,
+        {"reciprocating": (0.5, "1")},
+        {"mechanism": PUMP}
+        | {name: ks.balancing.Counterweight(mass=2.0, plane=z) for name, z in (("left", -0.5), ("right", 0.5))},
+    ),
     "counterweight": (
         ks.balancing.counterweight,
         {"unbalance": (0.5, "kg*m")},
@@ -436,7 +460,7 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "spring"),
+    *("precision", "device", "reaction", "spring", "left", "right"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",

@@ -14,7 +14,7 @@ from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
 from ..machine.cams import cams
 from ..machine.cams.roller import Roller
-from ..machine.crank import Crank
+from ..machine.crank import Crank, Rotor
 from ..machine.friction import friction_kind
 from ..machine.guide import Guide
 from ..machine.links import Link
@@ -33,6 +33,10 @@ GUIDE_KEYS = ("guide_angle", "guide_offset")
 """Keys that two points of the guide replace."""
 
 
+PLANE_KEYS = ("plane", "couple_unbalance", "bearings")
+"""Keys of positions along the crankshaft: they vary only where they are given, as in scenes."""
+
+
 class NumberPlace(NamedTuple):
     """Place of a number in a validated table: fields and item indices from the outermost, and its SI unit."""
 
@@ -48,6 +52,8 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
+        if value is None and name in PLANE_KEYS:
+            continue
         if isinstance(value, tuple) and value and isinstance(value[0], tables.Table):
             inner = _places_in_list(table, value)
         elif isinstance(value, dict):
@@ -156,7 +162,8 @@ def build_link(table, length=None):
                 "distance there"
             )
         centre = (length / 2, 0.0)
-    return Link(table.mass, centre, table.inertia)
+    given = {name: value for name in PLANE_KEYS if (value := getattr(table, name, None)) is not None}
+    return (Rotor if given else Link)(table.mass, centre, table.inertia, **given)
 
 
 def build_guide(table):
@@ -197,7 +204,7 @@ def _friction_pair(table, joint, mechanism):
 
 def _chain(table, tabulated):
     """Mechanism of a variant with a list of groups."""
-    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length))
+    crank = Crank(table.crank_length, build_link(table.crank, table.crank_length), table.bearings)
     # direction of a cam with a law: the first guide with a slider at A
     ahead = (part for part in table.groups if getattr(part, "on", "") == "A" and hasattr(part, "guide_angle"))
     angle = next(map(build_guide, ahead), Guide()).guide_angle

@@ -5,6 +5,9 @@ Full balancing makes all static moments vanish; partial balancing, with one coun
 
     (h1 / L_OA) / (h2 / L_AB)      1: no shaking force across the guide     0: nearly none along it
                                    1/2: least overall, by the mower study (Kotov 2024)
+
+Two counterweights on the crank, in planes z1 and z2, take rotating force and couple away: with the rotating unbalances
+u_i in the planes z_i, w1 + w2 = -sum of u_i and z1 w1 + z2 w2 = -sum of z_i u_i (`in_two_planes`).
 """
 
 from dataclasses import dataclass, replace
@@ -23,7 +26,15 @@ from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .linkage import crank_sliders, four_bar_shape
 
-__all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
+__all__ = [
+    "Balanced",
+    "Counterweight",
+    "counterweight",
+    "full",
+    "in_two_planes",
+    "optimal",
+    "partial",
+]
 
 NAMED_RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}
 
@@ -299,6 +310,82 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
 
 def _weight_problem(name, weight):
     return None if isinstance(weight, Counterweight) else f"{name} must be a Counterweight, got {weight!r}"
+
+
+def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
+    """Mechanism with two counterweights on the crank that balance its rotating masses: their force and their couple.
+
+    Rotating masses are the crank's own; of each coupler on a crank pin the part (1 - s/l) of its mass m, with its
+    centre s from the pin on the length l; each block on a crank pin. Of the reciprocating masses, sliders and the rest
+    of their couplers, a share may be balanced too, at the cost of as much force across the guide.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        With planes of its groups.
+    left, right : Counterweight
+        Each with its `plane`, and its mass or arm; here an arm is a distance, without sign.
+    reciprocating : float
+        Share of the reciprocating masses, 0 to 1; 1/2 leaves the least first harmonic of one cylinder.
+
+    Returns
+    -------
+    Balanced
+        Left and right one stand in `in_planes`, the two together in `counterweights`.
+
+    Raises
+    ------
+    ParameterError
+        A counterweight has no plane, both have the same, or its limits are broken; the share is not from 0 to 1; the
+        mechanism has no mass, is a batch, or moves its pin at a varying distance from O.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05, ks.Link(2.0, 0.02)), (ks.SliderGroup(0.2, plane=0.1),))
+    >>> left, right = (ks.Counterweight(arm=0.05, plane=z) for z in (-0.1, 0.3))
+    >>> found = ks.balancing.in_two_planes(pump, left=left, right=right)
+    >>> [(plane, round(mass, 6)) for plane, mass, _ in found.in_planes]  # the crank is in the plane 0
+    [(-0.1, 0.6), (0.3, 0.2)]
+    """
+    owner = "balancing in two planes"
+    share = checks.single_numbers(owner, reciprocating=(reciprocating, "1", {}))["reciprocating"]
+    _require_masses(mechanism)
+    given = {"left": left, "right": right}
+    checks.require(owner, *(_weight_problem(name, weight) for name, weight in given.items()))
+    checks.require(
+        owner,
+        None if 0.0 <= share <= 1.0 else f"reciprocating must lie between 0 and 1, got {share:g}",
+        *(f"{name} needs a plane" for name, weight in given.items() if weight.plane is None),
+        "left and right have the same plane" if left.plane == right.plane is not None else None,
+        "the pin of a cam roller runs at a varying distance from O" if mechanism.led_by_ground else None,
+    )
+    (crank,) = mechanism.crank.links
+    pins = {name: complex(*point[1:]) for name, point in mechanism.joints.items() if point.link == crank}
+    own, planes = mechanism.links[crank], mechanism.planes
+    force = own.mass * complex(*own.centre)
+    couple = planes[crank] * force + complex(*(own.couple_unbalance or (0.0, 0.0)))
+    bars = {bar.link: bar for bar in mechanism.couplers}
+    for name, link in mechanism.links.items():
+        if (pin := mechanism.references[name]) not in pins or name == crank:
+            continue
+        bar = bars.get(name)
+        away = complex(*link.centre) / bar.length if bar else 0.0
+        unbalance = link.mass * (1.0 - away)
+        if bar and (slider := mechanism.joints[bar.end].link) in mechanism.guides:
+            unbalance += share * (link.mass * away.real + mechanism.links[slider].mass)
+        force += unbalance * pins[pin]
+        couple += planes[name] * unbalance * pins[pin]
+    second = (left.plane * force - couple) / (right.plane - left.plane)
+    changed, weights = mechanism, []
+    for weight, needed in ((left, -force - second), (right, second)):
+        arm = None if weight.arm is None else np.copysign(weight.arm, needed.real)
+        made = counterweight(changed, crank, (needed.real, needed.imag), replace(weight, arm=arm))
+        weights.append((weight.plane, *made.counterweights[crank]))
+        changed = made.mechanism
+    mass = sum(weight for _, weight, _ in weights)
+    place = tuple(-np.array([force.real, force.imag]) / mass) if mass else (0.0, 0.0)
+    return Balanced(mechanism, changed, {crank: (mass, place)}, tuple(weights))
 
 
 def _set_static_moment(mechanism, link, moment, weight):

@@ -8,6 +8,8 @@ import numpy as np
 from ..cycle.extremes import extremes
 from ..cycle.rounding import zeroed
 from ..errors import ParameterError
+from ..machine.crank import Rotor
+from ..machine.group import CRANK
 from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
@@ -27,6 +29,7 @@ COUNTERWEIGHT_RULES = {
     "largest_mass": MASS,
     "largest_arm": LENGTH,
     "keep_out": LENGTH,
+    "plane": checks.Optional(checks.Number("m")),
 }
 UNBALANCE_RULE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lone=True)}
 
@@ -48,6 +51,8 @@ class Counterweight:
         Limits, kg and m.
     keep_out : float, optional
         Radius around the reference joint that it must stay outside of, m.
+    plane : float, optional
+        Position along the crankshaft of a counterweight on the crank, m; by default that of the link's mass centre.
 
     Raises
     ------
@@ -70,6 +75,7 @@ class Counterweight:
     largest_mass: float | None = None
     largest_arm: float | None = None
     keep_out: float | None = None
+    plane: float | None = None
 
     def __post_init__(self):
         given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
@@ -128,6 +134,8 @@ class Balanced:
         Before, and with its counterweights, ready for `solve`.
     counterweights : dict of link to (mass, (along, across))
         kg and m.
+    in_planes : tuple of (plane, mass, (along, across))
+        Those of `in_two_planes`, with their positions along the crankshaft, m.
 
     Examples
     --------
@@ -145,6 +153,7 @@ class Balanced:
     bare: Mechanism
     mechanism: Mechanism
     counterweights: dict = field(default_factory=dict)
+    in_planes: tuple = ()
 
     @property
     def ratio(self):
@@ -253,6 +262,10 @@ def counterweight(mechanism, link, unbalance, weight):
     (4.0, -0.05)
     """
     problem = checks.choice("link", link, tuple(mechanism.links))
+    if problem is None and weight.plane is not None and (link != CRANK or weight.whole_link):
+        problem = (
+            f"a plane is for a counterweight that is added to the crank, got {link}, whole_link={weight.whole_link}"
+        )
     found = checks.check_values("counterweight", UNBALANCE_RULE, {"unbalance": unbalance}, problem)["unbalance"]
     bare = mechanism.links[link]
     wanted = np.array(found, dtype=float)
@@ -269,7 +282,11 @@ def counterweight(mechanism, link, unbalance, weight):
     else:
         mass, place = weight.placed(wanted)
     checks.require("counterweight", *weight.problems(link, mass, float(np.hypot(*place))))
-    return Balanced(mechanism, mechanism.with_link(link, bare.joined(mass, place)), {link: (mass, place)})
+    if weight.plane is None:
+        changed = mechanism.with_link(link, bare.joined(mass, place))
+    else:
+        changed = mechanism.with_link(link, Rotor.of(bare).joined(mass, place, weight.plane))
+    return Balanced(mechanism, changed, {link: (mass, place)})
 
 
 def _signed_distance(place):

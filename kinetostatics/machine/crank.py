@@ -6,11 +6,13 @@ A `Pin` is a further joint fixed to a link, for more groups to hang on: ternary 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
-from .group import EMPTY, FRAME, Bar, Declaration, Group, Output, Part, Point, Resolved
+from .group import EMPTY, FRAME, PLANE, POSITION, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
@@ -20,6 +22,74 @@ ORIGIN = Joint((0.0, 0.0), None, None)
 def ray(angle):
     """Unit vector of the crank."""
     return (cos(angle), sin(angle))
+
+
+@dataclass(frozen=True, eq=False)
+class Rotor(Link):
+    """Mass properties of a crank with masses in several planes along the crankshaft.
+
+    Parameters
+    ----------
+    mass, centre, inertia
+        As for `Link`.
+    plane : float or array
+        Position of the mass centre along the crankshaft, m.
+    couple_unbalance : (along, across)
+        Sum of m (z - plane) (along, across) over its masses, kg m2: 0 if all lie in one plane.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.Rotor(3.0, centre=0.25).joined(1.0, (-0.75, 0.0), plane=0.5)  # a counterweight 0.5 m beside it
+    Rotor(mass=4.0, centre=(0.0, 0.0), inertia=0.75, plane=0.125, couple_unbalance=(-0.375, 0.0))
+    """
+
+    plane: Any = 0.0
+    couple_unbalance: Any = (0.0, 0.0)
+
+    RULES = checks.Rules(
+        "Rotor",
+        **Link.RULES.rules,
+        plane=POSITION,
+        couple_unbalance=checks.Pair("kg*m**2", parts=("along", "across")),
+    )
+
+    @staticmethod
+    def of(link):
+        """A link as a rotor, by default in the plane 0."""
+        return link if isinstance(link, Rotor) else Rotor(link.mass, link.centre, link.inertia)
+
+    def without_mass(self):
+        return Rotor(plane=self.plane)
+
+    def joined(self, mass, place, plane=None):
+        """The rotor with a point mass (kg) fixed to it at place (along, across) in a plane, m, by default its own."""
+        if mass == 0:
+            return self
+        whole, z = self.mass + mass, self.plane if plane is None else plane
+        offset = self.mass * mass / whole * (z - self.plane)
+        couple = zip(self.couple_unbalance, self.centre, place, strict=True)
+        body = super().joined(mass, place)
+        centre = (self.mass * self.plane + mass * z) / whole
+        return Rotor(
+            whole, body.centre, body.inertia, centre, tuple(part + offset * (new - old) for part, old, new in couple)
+        )
+
+
+class BearingsRule(checks.Pair):
+    """Rule of two positions along the crankshaft, the smaller one first."""
+
+    def __post_init__(self):
+        object.__setattr__(self, "rule", POSITION)
+
+    def quick(self, value):
+        return checks.UNDECIDED
+
+    def check(self, value, field=""):
+        found, problem = super().check(value, field)
+        if problem is None and all(map(checks.has_known_values, found)) and not np.all(found[0] < found[1]):
+            problem = f"{field} must be (left, right) with left < right, got {checks.shown(found)}"
+        return found, problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +103,14 @@ class Crank(checks.Checked, Part):
     length : float or array, optional
         O to A, m; arrays of shape (designs, 1) make a batch.
     link : Link
-        Mass properties; reference joint O, along the crank ray.
+        Mass properties; reference joint O, along the crank ray. A `Rotor` has masses in several planes.
+    bearings : (left, right), optional
+        Positions of two main bearings along the crankshaft, m, the smaller one first (``reaction("O", at="left")``).
 
     Raises
     ------
     ParameterError
-        The length is not finite, or not greater than 0.
+        The length is not finite, or not greater than 0; the bearings are not a pair in order.
 
     Examples
     --------
@@ -51,11 +123,13 @@ class Crank(checks.Checked, Part):
 
     length: Any = None
     link: Link = Link()
+    bearings: Any = None
 
     RULES = checks.Rules(
         "crank",
         length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
         link=checks.InstanceOf(Link, "a Link"),
+        bearings=checks.Optional(BearingsRule("m", parts=("left", "right"))),
     )
 
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
@@ -124,6 +198,8 @@ class Pin(checks.Checked, Group):
         From the link's reference joint (see `Link`) along its direction and across it, a quarter turn
         counter-clockwise, m; on the frame (x, y) from O.
     name : str
+    plane : float or array, optional
+        Position of a pin of the crank along the crankshaft, m, and of the groups on it; see `machine.planes`.
 
     Raises
     ------
@@ -145,11 +221,14 @@ class Pin(checks.Checked, Group):
     on: str
     at: Any
     name: str = "C"
+    plane: Any = None
 
     TRUSTED = True
-    PATHS: ClassVar = {"at": "pin_"}
+    PATHS: ClassVar = {"at": "pin_", "plane": "pin_plane_"}
     hangs_on, outputs = (), EMPTY
-    RULES = checks.Rules("pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name())
+    RULES = checks.Rules(
+        "pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name(), plane=PLANE
+    )
 
     @property
     def label(self):

@@ -33,8 +33,9 @@ and, where it has them,
     relative_radius(name, placement, side)  radius of the relative curvature of a contact, by the sign of its force
 
 *Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links; ``on`` and ``pin``, names of joints;
-``label``, the ending of names of links and forces where a mechanism has two of the kind. ``PATHS`` renames fields in
-paths such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
+``label``, the ending of names of links and forces where a mechanism has two of the kind; ``plane``, its position along
+the crankshaft, or None (`machine.planes`), by the rule `PLANE`. ``PATHS`` renames fields in paths
+such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
 r''``, which need not be arithmetic: engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
 ``+ - * /`` and `numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers and
 on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds it).
@@ -81,10 +82,19 @@ TRAVELS = ("_position", "_velocity", "_acceleration")
 """Endings of the quantities of a slider."""
 GROUND = "ground"
 """Sum of the forces on the frame, and first word of the name of each."""
+ROCKING, SHAFT_TORQUE = "rocking_moment", "shaft_torque"
+"""Quantities of a mechanism with planes: the moment, and first word of the torques in its crankshaft."""
+BEARINGS = {"O left": "left", "O right": "right"}
+"""Quantities of a crankshaft on two bearings: the reactions at O by the bearing."""
+POSITION = checks.Number("m", usual=checks.PLAUSIBLE_BY_UNIT["m"])
+PLANE = checks.Optional(POSITION)
+"""Rules of a position along the crankshaft, and of that of a group or pin."""
 RESERVED = (
     "balancing_torque_by_power",
     "shaking_force",
     "shaking_moment",
+    ROCKING,
+    *BEARINGS,
     "reduced_inertia",
     "reduced_inertia_slope",
     "kinetic_energy",
@@ -127,7 +137,8 @@ class Output(NamedTuple):
 class Resolved(NamedTuple):
     """Reactions (vectors) and scalars by name, and the wrenches that other links must supply.
 
-    `demands` holds by joint the force and couple through it, by link a wrench about its reference joint.
+    `demands` holds by joint the force and couple through it, by link a wrench about its reference joint; those of a
+    whole mechanism, by the first link of a group, what the group demands of the crank about O.
     """
 
     reactions: dict[str, Any]
@@ -303,6 +314,8 @@ class Part:
 class Group(Part):
     """Structural group: how it is placed and resolved, besides its tables; see the module."""
 
+    plane: Any = None
+    """Position along the crankshaft, m; None: that of what it hangs on (`machine.planes`)."""
     LAW = ("r", "m")
     """Letter and unit of what a curve in the field `cam` gives."""
     passage, is_close = "", False
@@ -391,9 +404,9 @@ class Group(Part):
 
 
 def rules_of_parts(links, *names):
-    """Rules of a group's fields for links, names of joints, and the label."""
+    """Rules of a group's fields for links, names of joints, the label and the plane."""
     rules: dict[str, Any] = dict.fromkeys(links, checks.InstanceOf(Link, "a Link"))
-    return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True)}
+    return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True), "plane": PLANE}
 
 
 def separation(placement, first, second):

@@ -114,6 +114,7 @@ class Link(checks.Checked):
     mass: Any = 0.0
     centre: Any = (0.0, 0.0)
     inertia: Any = 0.0
+    plane = couple_unbalance = None
 
     RULES = checks.Rules(
         "Link",
@@ -121,6 +122,10 @@ class Link(checks.Checked):
         centre=checks.Pair("m", parts=("along", "across"), lone=True),
         inertia=checks.Number("kg*m**2", low=0.0),
     )
+
+    def without_mass(self):
+        """The link without mass and inertia, in its plane."""
+        return Link()
 
     def joined(self, mass, place):
         """The link with a point mass (kg) fixed to it at place (along, across), m."""

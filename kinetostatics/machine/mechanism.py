@@ -19,12 +19,13 @@ from ..numbers.planar import minus, subtract_vectors
 from . import plausibility
 from .crank import Crank
 from .friction import friction_kind
-from .group import FRAME, GROUND, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
+from .group import BEARINGS, CRANK, FRAME, GROUND, MEMBERS, RATES, RESERVED, SHAFT_TORQUE, TRAVELS, Group, Resolved
 from .kinematic_state import margin, place
 from .links import Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
+from .planes import plane_problems, planes_by_link
 
-NAME = checks.Name()
+NAME, NOTHING = checks.Name(), Wrench(None, None)
 
 
 class GroupsRule:
@@ -171,6 +172,8 @@ class Mechanism(Batched):
         throws = self.throws
         groups = [group.on_crank(throws) for group in self.groups]
         vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
+        if len(groups) > 1 and any(group.plane is not None for group in groups):
+            checks.require(self.name, *plane_problems(self))
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
         if names is None or names not in _VALID_NAMES:
             checks.require(self.name, *name_problems(self.parts))
@@ -209,6 +212,23 @@ class Mechanism(Batched):
         """Whether forces may far exceed the balancing torque, which then follows from powers."""
         return any(group.passes or group.is_close for group in self.groups)
 
+    @cached_property
+    def planes(self):
+        """Position along the crankshaft by link, m."""
+        return planes_by_link(self)
+
+    @property
+    def has_planes(self):
+        """Whether a part has a plane: then there are rocking moment and torques of the shaft."""
+        return any(part.plane is not None for part in (self.crank.link, *self.groups))
+
+    @property
+    def on_shaft(self):
+        """First link of each group on the crank or a pin of it."""
+        joints = {name for name, point in self.joints.items() if name == "O" or point.link == CRANK}
+        groups = (group for group in self.groups if group.links and not joints.isdisjoint(group.hangs_on))
+        return tuple(next(iter(group.links)) for group in groups)
+
     @property
     def led_by_ground(self):
         """Groups that a cam fixed to the frame leads."""
@@ -222,8 +242,10 @@ class Mechanism(Batched):
         parts = [group for group in self.groups if group.passes]
         if not parts or name == "balancing_torque":
             return False
-        name = name.removeprefix(f"{GROUND} ")
-        return name == GROUND or any(name in part.outputs for part in (self.crank, *parts))
+        name = "O" if name in BEARINGS else name.removeprefix(f"{GROUND} ")
+        if name == GROUND or name.startswith(SHAFT_TORQUE):
+            return True
+        return any(name in part.outputs for part in (self.crank, *parts))
 
     @cached_property
     def change_points(self):
@@ -334,6 +356,9 @@ class Mechanism(Batched):
                 link, wrench = name, demand
                 if name not in self.links:
                     link, wrench = wrench_at(placement, self.joints[name], *demand)
+                if link == CRANK:
+                    group = next(iter(part.links), CRANK)
+                    found.demands[group] = found.demands.get(group, NOTHING).plus(wrench)
                 if link != FRAME:
                     own = loads[link]
                     loads[link] = Wrench(subtract_vectors(own.force, wrench.force), minus(own.moment, wrench.moment))

@@ -43,7 +43,7 @@ from ..numbers.planar import (
     scale_vector,
     subtract_vectors,
 )
-from . import energy_contact, ground
+from . import energy_contact, ground, shaft
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
 from .motion import Motion, coordinates
@@ -215,12 +215,14 @@ class Dynamics(Motion):
         """Change of the forces by one more pass over friction, relative to the largest of a group, (..., N)."""
         return self._scalar(reduce(larger, self._friction_list("residuals"), 0.0))
 
-    def reaction(self, joint):
-        """Reaction at a joint, (2, ..., N), N.
+    def reaction(self, joint, at=None):
+        """Reaction at a joint, (2, ..., N), N; `at`: of the main bearing "left" or "right" alone.
 
         Its sign follows from its pair: it acts on the `link` of a `machine.links.Turning` or `Sliding`;
         `machine.group.Part.outputs` puts that into words, and the kernel `resolve` of the group keeps to it.
         """
+        if at is not None:
+            return self.as_vector(shaft.bearing_reaction(self, joint, at))
         return self.as_vector(self._look_up("reaction", joint, self.resolved.reactions))
 
     def scalar(self, name):
@@ -264,11 +266,26 @@ class Dynamics(Motion):
             plus(moment(self.placement.links[name].joint.position, wrench.force), wrench.moment)
             for name, wrench in self.inertia.items()
         ]
-        for name, mass in spring_masses(self.loads).items():
-            joint = self.placement.links[name].joint
-            force = scale_vector(-mass.shaking, acceleration_of(joint.first, joint.second, *self.accelerating))
-            moments.append(moment(joint.position, force))
+        moments += [moment(self.placement.links[name].joint.position, force) for name, force in self.spring_inertia]
         return self._scalar(reduce(plus, moments))
+
+    @property
+    def spring_inertia(self):
+        """Pairs of a slider and the inertia force of its springs on the frame, N."""
+        joints = [(name, mass, self.placement.links[name].joint) for name, mass in spring_masses(self.loads).items()]
+        return [
+            (name, scale_vector(-mass.shaking, acceleration_of(joint.first, joint.second, *self.accelerating)))
+            for name, mass, joint in joints
+        ]
+
+    @property
+    def rocking_moment(self):
+        """Moment about x and y through O of the inertia of all moving masses on the frame, (2, ..., N), N m."""
+        return self.as_vector(shaft.rocking_moment(self))
+
+    def shaft_torque(self, group, drive="right"):
+        """Torque in the crankshaft beside the throw of a group, by its first link, (..., N), N m."""
+        return self._scalar(shaft.shaft_torque(self, group, drive))
 
     def ground_force(self, place=None):
         """Force of the machine on the frame at a place by name, (2, ..., N), N; None: the sum of all."""

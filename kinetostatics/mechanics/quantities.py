@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
-from ..machine.group import GROUND, TRAVELS
+from ..machine.group import BEARINGS, GROUND, ROCKING, SHAFT_TORQUE, TRAVELS
 from ..machine.links import Turning
 from ..machine.supports import places
 from ..numbers import checks
@@ -77,6 +77,10 @@ def of_mechanism(mechanism) -> dict[str, Quantity]:
             add(name, outputs[name].unit, methodcaller("scalar", name))
     for name, unit in WHOLE.items():
         add(name, unit, attrgetter(name), name == "shaking_force", "whole")
+    if mechanism.has_planes:
+        add(ROCKING, "N m", attrgetter(ROCKING), True, "whole")
+        for name in mechanism.on_shaft:
+            add(f"{SHAFT_TORQUE} {name}", "N m", methodcaller(SHAFT_TORQUE, name), label=f"shaft torque, {name}")
     for name, unit in ENERGIES.items():
         add(name, unit, attrgetter(name), kind="energy")
     for slider in mechanism.guides:
@@ -90,6 +94,8 @@ def of_mechanism(mechanism) -> dict[str, Quantity]:
     for name, output in outputs.items():
         if output.vector:
             add(name, output.unit, methodcaller("reaction", name), True, "reaction", f"reaction {name}")
+    for name, side in BEARINGS.items() if mechanism.crank.bearings is not None else ():
+        add(name, "N", methodcaller("reaction", "O", side), True, "reaction", f"reaction {name}")
     for link in mechanism.links:
         for ending, unit in RATES.items():
             add(link + ending, unit, methodcaller(ending[1:], link), kind="rate", owner=link)

@@ -285,6 +285,11 @@ _NUMERIC_SOURCE = """
         field_{name} = {of_array}(field_{name}, leaves)
     elif field_{name} is not None:
         field_{name} = by_type[type(field_{name})](field_{name}, leaves)"""
+_READ_SOURCE, _, _TYPE_SOURCE = _NUMERIC_SOURCE.partition("item.{name}")
+_ABSENT_SOURCE = (
+    f"{_READ_SOURCE}item.{{name}}\n    if field_{{name}} is not None:{_TYPE_SOURCE.replace('    ', '        ')}"
+)
+"""The same for a field that is None by default: whether it is given comes first."""
 
 
 def _dataclass_flattener(kind):
@@ -295,9 +300,11 @@ def _dataclass_flattener(kind):
     """
     over_angles = getattr(kind, "OVER_ANGLES", ())
     source = "def flattened(item, leaves):\n    append = leaves.numbers.append"
+    absent = [field.name for field in fields(kind) if field.default is None]
     for name, structural in field_kinds(kind):
         of_array = "of_table" if name in over_angles else "of_constants"
-        source += (_STRUCTURAL_SOURCE if structural else _NUMERIC_SOURCE).format(name=name, of_array=of_array)
+        numeric = _ABSENT_SOURCE if name in absent else _NUMERIC_SOURCE
+        source += (_STRUCTURAL_SOURCE if structural else numeric).format(name=name, of_array=of_array)
     source += f"\n    return (kind, {' '.join(f'field_{field.name},' for field in fields(kind))})"
     scope = {"kind": kind, "NUMBER": NUMBER, "CONSTANT_TYPES": _CONSTANT_TYPES, "by_type": _FLATTENERS}
     scope |= {"by_content": _flatten_by_content, "of_table": _flatten_array, "of_constants": _flatten_constants}

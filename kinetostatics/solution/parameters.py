@@ -213,17 +213,20 @@ def passage_paths(places, mechanism, groups):
 
 
 class PlausibleNumber(NamedTuple):
-    """A number of a structure of scenes whose rule has usual values, by its place among the leaves."""
+    """A number of a structure of scenes whose rule has usual values, by its place among the leaves.
+
+    `is_in_extent`: whether it counts among the lengths of the mechanism together.
+    """
 
     path: str
     leaf: int
     usual: PlausibleRange
-    is_of_mechanism: bool
+    is_in_extent: bool
 
 
 def scene_plausibility_test(kind):
     """Fast test of a structure, see `plausibility_test`; it looks at all lengths of the mechanism together."""
-    numbers = (item for item in kind.answer(plausible_numbers) if not (item.is_of_mechanism and item.usual.unit == "m"))
+    numbers = (item for item in kind.answer(plausible_numbers) if not item.is_in_extent)
     return plausibility_test(kind, [(item.leaf, item.usual) for item in numbers])
 
 
@@ -236,7 +239,8 @@ def plausible_numbers(kind):
     for path, place in paths.places_by_path(ones).items():
         leaf, usual = place.value(numbered), plausible_range_of(place.rule)
         if isinstance(leaf, LeafIndex) and usual:
-            found.append(PlausibleNumber(path, leaf, usual, place.steps[0] == "mechanism"))
+            is_length = place.rule.usual is None and usual.unit == "m"  # positions along the shaft have their own
+            found.append(PlausibleNumber(path, leaf, usual, is_length and place.steps[0] == "mechanism"))
     return found
 
 

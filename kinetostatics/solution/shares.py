@@ -29,7 +29,6 @@ from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..machine.friction import NO_FRICTION, frictions_by_joint
 from ..machine.group import GROUND
-from ..machine.links import Link
 from ..machine.loads import Force, Gravity, spring_masses
 from ..mechanics import jamming
 from ..mechanics.load_values import numbered_titles
@@ -227,8 +226,8 @@ def _linear_quantity(solution, name) -> tuple[str, Quantity]:
 def sources_alone(solution):
     """By source: the machine with this source alone, all other masses and loads zero; without friction."""
     weightless = solution.mechanism
-    for name in weightless.links:
-        weightless = weightless.with_link(name, Link())
+    for name, link in weightless.links.items():
+        weightless = weightless.with_link(name, link.without_mass())
     heavy = {name: link for name, link in solution.mechanism.links.items() if _has_inertia(link)}
     found: dict[str, tuple[Any, tuple[Any, ...]]]
     found = {f"inertia of {name}": (weightless.with_link(name, link), ()) for name, link in heavy.items()}
@@ -252,7 +251,8 @@ def machines_without(solution):
     for name, link in made.links.items():
         if _has_inertia(link):
             kept = (weights[name],) if name in weights else ()
-            found[f"inertia of {name}"] = {"mechanism": made.with_link(name, Link()), "loads": (*solution.loads, *kept)}
+            rest = made.with_link(name, link.without_mass())
+            found[f"inertia of {name}"] = {"mechanism": rest, "loads": (*solution.loads, *kept)}
     for name, weight in weights.items():
         found[f"weight of {name}"] = {"loads": (*solution.loads, replace(weight, value=-weight.value))}
     for title, item in _titled_loads(solution):

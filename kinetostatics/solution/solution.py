@@ -31,6 +31,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked, replace_unchecked
 from .certainty import Certainty
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
+from .crankshaft import CrankshaftResults
 from .ground import Ground
 from .parameters import (
     crank_angles,
@@ -60,7 +61,7 @@ def _scalar(name, text):
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, WithSections, Motion):
+class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
     Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
@@ -92,15 +93,15 @@ class Solution(Certainty, WithSections, Motion):
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
     guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
-    shaking_force, shaking_moment, ground
+    shaking_force, shaking_moment, rocking_moment, ground
     reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
     friction_loss, friction_torque, friction_margin, friction_residual, converged, losses, efficiency
     condition, largest_force_term, largest_torque_term
 
     Methods
     -------
-    reaction(joint), scalar(name), pressure(name), pin_load(joint), inertia_force(link), ground_force(place)
-    friction_at(joint), friction_loss_at(joint)
+    reaction(joint, at), scalar(name), pressure(name), pin_load(joint), inertia_force(link), ground_force(place)
+    friction_at(joint), friction_loss_at(joint), shaft_torque(group, drive)
     position(point), velocity(point), acceleration(point)
     rate(link), angular_acceleration(link)
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
@@ -243,11 +244,11 @@ class Solution(Certainty, WithSections, Motion):
         """Names of the joint reactions."""
         return tuple(name for name, output in self.mechanism.outputs.items() if output.vector)
 
-    def reaction(self, joint):
+    def reaction(self, joint, at=None):
         """Reaction at a joint, (2, ..., N), N; infinite at a change point that is passed, with a ConditionWarning.
 
         "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
-        on slider.
+        on slider. `at` "left" or "right": the part of "O" that one of the main bearings takes (``Crank(bearings=)``).
 
         Examples
         --------
@@ -257,7 +258,7 @@ class Solution(Certainty, WithSections, Motion):
         >>> print(f"{s.reaction('guide')[1, 90]:.0f} N")  # upward, by the ground on the slider at 90 deg
         702 N
         """
-        return self._force("reaction", joint, True)
+        return self._force("reaction", joint, True) if at is None else self._at_bearing(joint, at)
 
     @property
     def scalars(self):

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..errors import QuantityError
-from ..machine.group import GROUND
+from ..machine.group import GROUND, ROCKING
 from ..machine.supports import places
 from ..mechanics.quantities import of_scene
 from ..numbers.checks import choice, require, single_numbers
@@ -88,6 +88,33 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
     ax.set_ylabel(f"{shown}, {ways[1]} [{unit}]")
     if len(given) > 1 or isinstance(solutions, Mapping):
         ax.legend(frameon=False)
+    return ax
+
+
+def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
+    """Hodograph of the rocking moment: the curve that its vector (about x, about y) draws over the turn.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        Of machines with planes along the crankshaft.
+    ax, marks, counted
+        As for `hodograph`.
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05), (ks.SliderGroup(0.2, slider=ks.Link(2.0), plane=0.1),))
+    >>> ks.plots.rocking_moment(ks.Scene(pump, 200.0).solve(90)).get_ylabel()
+    'rocking moment about y [N m]'
+    """
+    ax = hodograph(solutions, ROCKING, ax, marks, counted)
+    for name, way in (("xlabel", "x"), ("ylabel", "y")):
+        ax.set(**{name: ax.properties()[name].replace(f", {way}", f" about {way}")})
     return ax
 
 

@@ -21,7 +21,7 @@ from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
-from .hodographs import hodograph, hodographs
+from .hodographs import hodograph, hodographs, rocking_moment
 from .sizing_mount import mount
 from .sizing_play import contact_loss
 from .sizing_sections import sections
@@ -56,6 +56,7 @@ __all__ = [
     "mount",
     "over_turn",
     "pressure_angle",
+    "rocking_moment",
     "sections",
     "shaking_force",
     "shares",

@@ -32,7 +32,7 @@ WRONG = {
     "empty": (LOAD, "variants.a.loads[1].kind is missing; allowed: 'spring'"),
     "key misspelt": (
         GROUP + 'kind = "pin"\non = "crank"\nat = ["1 m", "0 m"]\nnam = "Q"',
-        "variants.a.groups[2].nam is not a key here; did you mean 'name'? (allowed: kind, on, at, name)",
+        "variants.a.groups[2].nam is not a key here; did you mean 'name'? (allowed: kind, on, at, name, plane)",
     ),
     "key of another kind": (
         FORCE + 'between = ["A", "B"]',

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.group import GROUND, RESERVED
+from kinetostatics.machine.group import BEARINGS, GROUND, RESERVED, ROCKING
 from kinetostatics.mechanics.quantities import of_mechanism
 from support.every import every
 from support.no_numbers import BAD
@@ -250,7 +250,7 @@ def test_no_name_is_lost_in_silence(seed):
         links, joints, outputs = (sum(counts) for counts in zip((1, 2, 2), *map(COUNTS.get, kinds), strict=True))
         assert (len(chain.links), len(chain.joints), len(chain.outputs)) == (links, joints, outputs)
         travels, measured = 3 * len(chain.guides), sum(kind in ("lever", "cylinder") for kind in kinds)
-        whole = len({*RESERVED} - {GROUND})  # that belongs to the scene
+        whole = len({*RESERVED} - {GROUND, ROCKING, *BEARINGS})  # of a scene; of planes and bearings
         assert len(of_mechanism(chain)) == outputs + whole + travels + measured + 2 * links
     assert made
     assert refused

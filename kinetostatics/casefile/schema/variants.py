@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ...machine.crank import Crank, Rotor
 from ...machine.friction import COEFFICIENT
 from ...machine.groups.lever import LeverGroup
 from ...machine.groups.rocker import RockerGroup
@@ -13,7 +14,7 @@ from ...machine.loads import ProcessForce
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable
-from .parts import Groups, Loads, value_reader
+from .parts import Groups, Loads, field_of, value_reader
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
@@ -36,6 +37,8 @@ LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rul
 Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
 Reaction = Annotated[Any, BeforeValidator(value_reader(ProcessForce.RULES.rules["reaction"]))]
 Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
+Bearings = field_of(Crank.RULES.rules["bearings"])
+Plane, CoupleUnbalance = (field_of(Rotor.RULES.rules[name]) for name in ("plane", "couple_unbalance"))
 
 
 class SpringTable(Table):
@@ -116,6 +119,13 @@ class MechanismVariant(Table):
     """A table for each joint that rubs, by its name: O, A, B, guide, slot, cam."""
 
 
+class RotorTable(LinkTable):
+    plane: Plane | None = None  # type: ignore[valid-type]
+    """Position of the mass centre along the crankshaft."""
+    couple_unbalance: CoupleUnbalance | None = None  # type: ignore[valid-type]
+    """Sum of mass times distance from that plane times (along, across)."""
+
+
 class ChainVariant(MechanismVariant):
     """A crank and whatever groups hang on it."""
 
@@ -125,6 +135,10 @@ class ChainVariant(MechanismVariant):
     """What messages call the mechanism."""
     crank_length: Length | None = None
     """O to A; left out where a cam roller sits on a slotted crank."""
+    crank: RotorTable = RotorTable()
+    """Mass properties, from O along the crank."""
+    bearings: Bearings | None = None  # type: ignore[valid-type]
+    """Positions of the left and right main bearing along the crankshaft."""
     groups: Groups
     """A table for each group, in the order in which motion flows: [[common.groups]]."""
 

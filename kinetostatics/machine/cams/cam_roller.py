@@ -16,7 +16,7 @@ from ...numbers.arithmetic import atan, sign, sqrt
 from ...numbers.parameter_tree import come_from_one_class
 from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
-from ..group import FRAME, Declaration, Group, Output, Point, Resolved
+from ..group import FRAME, PLANE, Declaration, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..laws.law import turn_angles
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
@@ -82,6 +82,8 @@ class CamRoller(checks.Checked, Group):
         Block with roller; reference joint A, axis along the crank ray.
     roller : Roller, optional
         Size and material of the roller, for the contact pressure.
+    plane : float or array, optional
+        Position along the crankshaft, m.
 
     Raises
     ------
@@ -101,13 +103,16 @@ class CamRoller(checks.Checked, Group):
     cam: Any
     block: Link = Link()
     roller: Roller | None = None
+    plane: Any = None
 
     TRUSTED = True
+    PATHS: ClassVar = {"plane": "block_plane"}
     RULES = checks.Rules(
         "cam roller",
         cam=checks.HasMembers(("polar",), "one of ks.cams or alike"),
         block=checks.InstanceOf(Link, "a Link"),
         roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
+        plane=PLANE,
     )
 
     LINKS: ClassVar = {"block": "joint"}

@@ -18,7 +18,7 @@ from ...numbers.planar import curvature, left, scale_vector, subtract_vectors
 from ..cams.cam import Cam
 from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
-from ..group import Group, Output
+from ..group import PLANE, Group, Output
 from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
 from ..links import CamDriven
 
@@ -161,7 +161,7 @@ class LawRule:
         return (value, f"{field}: {problem}") if problem else (FollowerLaw(value), None)
 
 
-RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_empty=True)}
+RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_empty=True), "plane": PLANE}
 
 
 class Follower(checks.Checked, Group):

@@ -107,6 +107,8 @@ class SwingingFollower(follower.Follower):
         Names of the roller centre and of the pivot.
     label : str
         Appended to the names of link and forces of a second swinging follower in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
@@ -143,6 +145,7 @@ class SwingingFollower(follower.Follower):
     pivot_name: str = "Q"
     label: str = ""
     roller: Roller | None = None
+    plane: Any = None
 
     def _pivot_apart(self):
         """Yield the problem of a pivot at O."""
@@ -153,7 +156,7 @@ class SwingingFollower(follower.Follower):
     LINKS: ClassVar = {"arm": "pivot_name"}
     TRUSTED = True
     LAW = ("beta", "rad")
-    PATHS: ClassVar = {"pivot": "follower_pivot"}
+    PATHS: ClassVar = {"pivot": "follower_pivot", "plane": "arm_plane"}
     RULES = checks.Rules(
         "swinging follower",
         _pivot_apart,

@@ -55,7 +55,7 @@ class GuidedFollower(Follower):
     LINKS: ClassVar = {"follower": "pin"}
     LAW = ("s", "m")
     MOTIONS: ClassVar[dict[str, Output]]
-    PATHS: ClassVar = {"guide": ""}
+    PATHS: ClassVar = {"guide": "", "plane": "follower_plane"}
     forces: ClassVar[Any]
 
     @property
@@ -127,6 +127,8 @@ class RollerFollower(GuidedFollower):
         Name of the roller centre.
     label : str
         Appended to the names of link and forces of a second roller follower in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
@@ -157,6 +159,7 @@ class RollerFollower(GuidedFollower):
     """
 
     roller: Roller | None = None
+    plane: Any = None
 
     TRUSTED = True
     RULES = checks.Rules(
@@ -225,6 +228,8 @@ class FlatFollower(GuidedFollower):
         Name of the point of the face on the guide.
     label : str
         Appended to the names of link and forces of a second follower in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
     face : Face, optional
         Width and material of the face, for its contact pressure.
 
@@ -253,6 +258,7 @@ class FlatFollower(GuidedFollower):
     """
 
     face: Face | None = None
+    plane: Any = None
 
     TRUSTED = True
     RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.InstanceOf(Face, "a Face")))

@@ -188,6 +188,8 @@ class LeverGroup(RPRGroup):
         Reference joint `on`, along the slot as the lever; it turns with it.
     label : str
         Appended to the names of links and forces of a second lever group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. The words are for a group on A or another pin of the crank,
         as for `slotted_lever`.
@@ -228,10 +230,11 @@ class LeverGroup(RPRGroup):
     pivot_name: str = "O2"
     label: str = ""
     assembly: int = 1
+    plane: Any = None
     LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
     LEVER, BLOCK, PAIR = "lever", "block", "slot"
     TRUSTED = True
-    PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
+    PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset", "plane": "lever_plane"}
     KINDS: ClassVar = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
     """Crank a, distance d from O to the pivot, offset o of the slot."""
     RULES = checks.Rules(
@@ -281,6 +284,8 @@ class CylinderGroup(RPRGroup):
         Reference joint `pivot_name`, along the cylinder toward the rod's pin.
     label : str
         Appended to the names of links and forces of a second cylinder group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
 
     Raises
     ------
@@ -307,11 +312,12 @@ class CylinderGroup(RPRGroup):
     cylinder: Link = Link()
     pivot_name: str = "O2"
     label: str = ""
+    plane: Any = None
 
     LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
     LEVER, BLOCK, PAIR = "cylinder", "rod", "cylinder"
     TRUSTED = is_rod = True
-    PATHS: ClassVar = {"pivot": "cylinder_pivot"}
+    PATHS: ClassVar = {"pivot": "cylinder_pivot", "plane": "rod_plane"}
     assembly: ClassVar = 1
     RULES = checks.Rules(
         "cylinder group",

@@ -199,6 +199,8 @@ class RockerGroup(Branch, RRRGroup):
         Names of the joint it hangs on and of the joints it adds.
     label : str
         Appended to the names of links and forces of a second rocker group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
 
     Raises
     ------
@@ -230,13 +232,14 @@ class RockerGroup(Branch, RRRGroup):
     pin: str = "B"
     pivot_name: str = "O2"
     label: str = ""
+    plane: Any = None
     toggle: str = field(default="", init=False, repr=False)
     """Axis of the toggle that it makes with a slider."""
 
     LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
     LENGTHS = "coupler and rocker lengths"
     TRUSTED = True
-    PATHS: ClassVar = {"pivot": "rocker_pivot"}
+    PATHS: ClassVar = {"pivot": "rocker_pivot", "plane": "coupler_plane"}
     KINDS: ClassVar = {
         "": "none",
         FAR: "a + d = b + h",
@@ -336,6 +339,8 @@ class Dyad(RRRGroup):
         Reference joints are those they hang on, directions run from there to the pin.
     label : str
         Appended to the names of links and forces of a second dyad in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
 
     Raises
     ------
@@ -366,11 +371,12 @@ class Dyad(RRRGroup):
     dyad1: Link = Link()
     dyad2: Link = Link()
     label: str = ""
+    plane: Any = None
 
     LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
     LENGTHS = "the lengths of {} and {}"
     TRUSTED = is_rigid_triangle = True
-    PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length"}
+    PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length", "plane": "dyad1_plane"}
     RULES = checks.Rules(
         "dyad",
         length1=checks.Number("m", low=0.0, strict=True),

@@ -131,6 +131,8 @@ class SliderGroup(checks.Checked, Branch, Group):
         Names of the joint it hangs on and of the joint it adds.
     label : str
         Appended to the names of links and forces of a second slider group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
 
     Raises
     ------
@@ -159,9 +161,10 @@ class SliderGroup(checks.Checked, Branch, Group):
     on: str = "A"
     pin: str = "B"
     label: str = ""
+    plane: Any = None
     LINKS: ClassVar = {"coupler": "on", "slider": "pin"}
     TRUSTED = True
-    PATHS: ClassVar = {"guide": ""}
+    PATHS: ClassVar = {"guide": "", "plane": "coupler_plane"}
     KINDS: ClassVar = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
     """Crank a, coupler l, offset e of the guide."""
     kernels = change_points.slid, near_dead_centre.slid

@@ -97,6 +97,8 @@ class YokeGroup(checks.Checked, Group):
         Reference joint `on`, along the slot; it does not turn.
     label : str
         Appended to the names of links and forces of a second yoke group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
 
     Raises
     ------
@@ -126,6 +128,7 @@ class YokeGroup(checks.Checked, Group):
     slider: Link = Link()
     block: Link = Link()
     label: str = ""
+    plane: Any = None
 
     def _parallel_slot_problem(self):
         """Yield the problem of designs whose slot is parallel to the guide."""
@@ -141,7 +144,7 @@ class YokeGroup(checks.Checked, Group):
 
     LINKS: ClassVar = {"block": "on", "slider": "pin"}
     TRUSTED = True
-    PATHS: ClassVar = {"guide": ""}
+    PATHS: ClassVar = {"guide": "", "plane": "block_plane"}
     RULES = checks.Rules(
         "yoke group",
         _parallel_slot_problem,

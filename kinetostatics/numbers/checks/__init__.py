@@ -27,6 +27,7 @@ from .messages import (
     truth,
 )
 from .rules import (
+    PLAUSIBLE_BY_UNIT,
     UNDECIDED,
     Checked,
     HasMembers,

@@ -363,16 +363,25 @@ class Rules:
 
     def __init__(self, owner, also=None, **rules):
         self.owner, self.also, self.rules = owner, also, rules
-        self._quick = tuple((field, rule.quick) for field, rule in rules.items())
+        optional = {field: rule.rule.quick for field, rule in rules.items() if isinstance(rule, Optional)}
+        self._quick = tuple((field, rule.quick) for field, rule in rules.items() if field not in optional)
+        self._quick_if_given = tuple(optional.items())
 
     def are_well(self, values):
         """Whether all values by field are certainly right; replaces them by the values to keep."""
         for field, quick in self._quick:
             value = values[field]
             kept = quick(value)
-            if kept is UNDECIDED:
-                return False
             if kept is not value:
+                if kept is UNDECIDED:
+                    return False
+                values[field] = kept
+        for field, quick in self._quick_if_given:
+            value = values[field]
+            if value is not None:
+                kept = quick(value)
+                if kept is UNDECIDED:
+                    return False
                 values[field] = kept
         return True
 
