@@ -296,7 +296,7 @@ def _read_parts(tables, problems):
     """Parts by name of the tables in the file; appends their faults to `problems`."""
     from ..sizing.parts import read_part
 
-    found = {}
+    found: dict[str, typing.Any] = {}
     for name, raw in tables.items():
         part, wrong = read_part(name, raw)
         found |= {} if part is None else {name: part}
@@ -308,7 +308,9 @@ def sizing_table(parts, solutions):
     """Table of `Case.sizing_table` of parts and solutions by name."""
     import pandas as pd
 
-    found, notes, units = {}, [], {}
+    found: dict[tuple[str, str, str], float] = {}
+    units: dict[tuple[str, str], str] = {}
+    notes = []
     for name, solution in solutions.items():
         for key, part in parts.items():
             units |= {(key, number): row.unit for number, row in part.rows.items()}

@@ -2,6 +2,7 @@
 from .foundation import Mount as Mount
 from .foundation import block_for as block_for
 from .foundation import mount as mount
+from .parts import Part as Part
 from .play import ContactLoss as ContactLoss
 from .play import contact_loss as contact_loss
 from .result import Sized as Sized

@@ -68,6 +68,8 @@ BY_KEY: dict[str, list[Any]] = {
     "pivot": [["0 mm", "-240 mm"]],
     "pivot_name": ["O3"],
     "points": [9],
+    "bearings": [["-400 mm", "400 mm"]],
+    "couple_unbalance": [["0.1 kg m^2", "0 kg m^2"]],
     "poissons_ratio": [0.3],
     "radius": ["300 mm"],
     "ratio": ["across", {"mean |balancing torque|": "6.77"}],
@@ -102,6 +104,7 @@ HEADINGS = {
     "motor": "[common.drive.motor]",
     "drive": "[common.drive]",
     "robust": "[design.best.robust]",
+    "sizing": "[sizing.main_bearing]",
 }
 """What tables begin with that are too long for a line."""
 BY_UNIT = (

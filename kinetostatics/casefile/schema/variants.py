@@ -297,7 +297,7 @@ class CaseTable(Table):
     design: dict[str, dict] = Field(default_factory=dict)
     """By name, what is to be found: [design.NAME]."""
     sizing: dict[str, dict] = Field(default_factory=dict)
-    """By name, a part that the forces size: [sizing.NAME], with its kind and the options of its function in `ks.sizing`."""
+    """By name, a part that forces size: [sizing.NAME], with its kind and the arguments of its function."""
 
 
 VARIANTS = {
