@@ -108,21 +108,12 @@ class ContactLoss(Sized):
     effective_mass: float
     least_force: float
     least_normal: float
-
-    @property
-    def lost_angle(self):
-        return float(sum(abs(flight.stop - flight.start) for flight in self.flights))
-
-    @property
-    def impact_speed(self):
-        return max((flight.speed for flight in self.flights), default=0.0)
-
-    @property
-    def impact_energy(self):
-        return max((flight.energy for flight in self.flights), default=0.0)
+    lost_angle: float
+    impact_speed: float
+    impact_energy: float
 
 
-def contact_loss(solution, joint, clearance, damping=0.1):
+def contact_loss(solution, joint, clearance, damping=0.05):
     """Whether a joint with play knocks: where its journal leaves the bearing and how hard it lands, by a screen.
 
     The journal is a pendulum in the turning force of the machine without play (Earles and Wu, *J. Eng. Ind.* 99(2),
@@ -139,7 +130,7 @@ def contact_loss(solution, joint, clearance, damping=0.1):
         Radial play c, half the difference of the diameters, m.
     damping : float
         Of the journal's oscillation about the direction of the force, relative to critical; divided by 1 + index^2,
-        so that a force that turns fast does not take the journal along.
+        so that a force that turns fast does not take the journal along. A loss that another damping ends is marginal.
 
     Returns
     -------
@@ -165,7 +156,7 @@ def contact_loss(solution, joint, clearance, damping=0.1):
     >>> with warnings.catch_warnings(action="ignore"):
     ...     found = ks.sizing.contact_loss(ks.solve(pump, 0.0, crank_speed=100.0), "B", clearance=2e-5)
     >>> print(f"index {found.index:.3f}, least normal force {found.least_normal:.0f} N")
-    index 76.061, least normal force -16 N
+    index 76.061, least normal force -18 N
     """
     owner, given = "contact_loss", {"clearance": clearance, "damping": damping}
     checks.require(owner, checks.solution("solution", solution))
@@ -209,7 +200,9 @@ def _judged(play, joint, reversals, angle):
         if not flights or play.sense * (start[0] - flights[-1].stop) >= 0.0:
             flights.append(play.flight(*start))
     curves = angle, size, normal, lag, np.where(np.isin(angle, reversals), np.inf, index)
-    numbers = *peaks, float(mass / play.scale), float(size.min()), least
+    lost = sum(abs(flight.stop - flight.start) for flight in flights)
+    hardest = np.max([(0.0, 0.0), *(flight[2:] for flight in flights)], axis=0).tolist()
+    numbers = *peaks, float(mass / play.scale), float(size.min()), least, float(lost), *hardest
     return ContactLoss(tuple(notes), joint, play.period, tuple(reversals.tolist()), tuple(flights), *curves, *numbers)
 
 

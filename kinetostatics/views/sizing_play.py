@@ -10,6 +10,8 @@ LARGEST_SHOWN = 1.3
 """Limit of the force axis over the largest force without play: beyond it the pendulum is no longer the journal."""
 LARGEST_INDEX = 10.0
 """Limit of the index axis."""
+NAMED = 0.33
+"""Energy of an impact, relative to the largest, from which it is written."""
 
 
 def contact_loss(result, ax=None):
@@ -49,8 +51,10 @@ def contact_loss(result, ax=None):
         ends = np.degrees([flight.start, flight.stop])
         for turns in (-1.0, 0.0, 1.0):  # a flight may pass the end of the period
             ax.axvspan(*(ends + turns * np.degrees(result.period)), color=ACCENT, alpha=0.25, lw=0)
-        place, at_top = np.mod(ends.mean(), np.degrees(result.period)), ax.get_xaxis_transform()
-        ax.text(place, 0.97, f"{flight.energy:.2g} J", rotation=90, va="top", transform=at_top)
+        if flight.energy > NAMED * result.impact_energy:
+            place, at_top = np.mod(ends.mean(), np.degrees(result.period)), ax.get_xaxis_transform()
+            paper = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}
+            ax.text(place, 0.97, f"{flight.energy:.2g} J", ha="center", va="top", transform=at_top, bbox=paper)
     for angle in np.degrees(result.reversals):
         ax.axvline(angle, color=ACCENT, lw=0.8, ls=":")
     ax.set(xlim=(0.0, np.degrees(result.period)), xlabel=FROM_X.axis, ylabel=f"force [{unit}]")
@@ -59,6 +63,6 @@ def contact_loss(result, ax=None):
     beside.set_ylim(0.0, min(LARGEST_INDEX, 1.3 * max(1.0, result.index)))
     beside.set_ylabel("index [1]", color=LOAD)
     index = f"{result.index:.2f}" if np.isfinite(result.index) else "infinite"
-    ax.set_title(f"joint {result.joint}: index {index}, largest impact {result.impact_energy:.2g} J")
-    ax.legend(frameon=False, loc="upper center")
+    ax.set_title(f"joint {result.joint}: index {index}, largest impact {result.impact_energy:.2g} J", pad=22.0)
+    ax.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=2)
     return ax
