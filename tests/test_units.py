@@ -28,6 +28,7 @@ GUIDE = ks.Guide.at(0.0)
 ANGLES = np.radians(np.arange(0.0, 360.0, 8.0))
 NOISE = 1e-4 * np.random.default_rng(0).standard_normal(ANGLES.size)
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15)), 1.0, loads=ks.Gravity())
+RODDED = ks.Scene(ks.crank_slider(0.05, 0.2, coupler=ks.Link(1.2, 0.1, 0.004), slider=ks.Link(1.0)), 100.0)
 RUN = ks.drive.steady(SCENE, MOTOR, flywheel=0.05)
 
 SEGMENT = {"start": (0.25, "m"), "end": (0.5, "m"), "angle": (1.0, "rad")}
@@ -243,6 +244,94 @@ DOORS = {
     "flywheel": (ks.drive.flywheel, {"fluctuation": (0.125, "1")}, {"scene": SCENE}),
     "run.with_flywheel": (RUN.with_flywheel, {"inertia": (0.5, "kg*m**2")}, {}),
     "run.flywheel_for": (RUN.flywheel_for, {"fluctuation": (0.0625, "1")}, {}),
+    "Bar": (
+        ks.Bar,
+        {
+            "area": (0.0625, "m**2"),
+            "modulus": (0.0625, "m**3"),
+            "mass": (1.0, "kg"),
+            "second_moment": (0.0625, "m**4"),
+            "youngs_modulus": (2.0e11, "Pa"),
+        },
+        {},
+    ),
+    "pin_strength": (
+        ks.sizing.pin_strength,
+        {"diameter": (0.0625, "m"), "width": (0.125, "m"), "shear_planes": (2.0, "1")},
+        {"solution": SOLVED, "joint": "B"},
+    ),
+    "mount": (
+        ks.sizing.mount,
+        {
+            "mass": (1000.0, "kg"),
+            "stiffness": (1e6, "N/m"),
+            "damping": (0.125, "1"),
+        },
+        {"solution": SOLVED},
+    ),
+    "mount.turning": (
+        ks.sizing.mount,
+        {"inertia": (50.0, "kg*m**2"), "centre": ((0.0, 0.5), "m")},
+        {"solution": SOLVED, "mass": 1000.0, "stiffness": [1e6, 1e6, 1e5], "damping": [0.1, 0.1, 0.1]},
+    ),
+    "bar_strength": (
+        ks.sizing.bar_strength,
+        {"ultimate": (6e8, "Pa"), "endurance": (2e8, "Pa"), "yield_strength": (3.5e8, "Pa")},
+        {"solution": RODDED.solve(4), "link": "coupler", "bar": ks.Bar(6e-4, 3e-6, (), None, 6e-8, 2.06e11)},
+    ),
+    "contact_loss": (
+        ks.sizing.contact_loss,
+        {"clearance": (1e-4, "m"), "damping": (0.125, "1")},
+        {"solution": RODDED.solve(4), "joint": "B"},
+    ),
+    "SpringMaterial": (
+        ks.sizing.SpringMaterial,
+        {
+            "strength": (1.9e9, "Pa"),
+            "exponent": (0.125, "1"),
+            "thinnest": (0.0005, "m"),
+            "thickest": (0.0625, "m"),
+            "shear_modulus": (78.5e9, "Pa"),
+            "youngs_modulus": (206e9, "Pa"),
+            "set_share": (0.5, "1"),
+            "density": (7850.0, "kg/m**3"),
+            "unpeened": ((379e6, 241e6), "Pa"),
+            "peened": ((534e6, 398e6), "Pa"),
+        },
+        {"name": "own"},
+    ),
+    "HelicalSpring": (
+        ks.sizing.HelicalSpring,
+        {
+            "wire_diameter": (0.0078125, "m"),
+            "coil_diameter": (0.0625, "m"),
+            "active_turns": (6.0, "1"),
+            "travel": (0.0625, "m"),
+            "preload": (500.0, "N"),
+            "crank_speed": (2.0, "rad/s"),
+            "end_factor": (0.5, "1"),
+        },
+        {},
+    ),
+    "block_for": (
+        ks.sizing.block_for,
+        {"v_rms": (0.0625, "m/s"), "tuning": (0.5, "1"), "damping": (0.125, "1")},
+        {"solution": SOLVED},
+    ),
+    "helical_spring": (
+        ks.sizing.helical_spring,
+        {
+            "stiffness": (20e3, "N/m"),
+            "travel": (0.0625, "m"),
+            "preload": (800.0, "N"),
+            "allowed_stress": (4e8, "Pa"),
+            "safety": (1.5, "1"),
+            "index": (8.0, "1"),
+            "crank_speed": (2.0, "rad/s"),
+            "end_factor": (0.5, "1"),
+        },
+        {},
+    ),
     "contact": (
         ks.design.contact,
         {
@@ -460,7 +549,8 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "spring", "left", "right"),
+    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks"),
+    *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",
@@ -515,13 +605,23 @@ RESULTS |= {
     "Variant",
 }
 RESULTS |= {"Comparison", "DrivenComparison", "EnergyFlow", "Extremes", "Losses", "Needs", "PrincipalPoints", "Program"}
-RESULTS |= {"ResolutionCheck", "Shares", "Tolerances", "Uncertainty"}
+RESULTS |= {
+    "Sections",
+    "Sized",
+    "BalancingSpring",
+    "ContactLoss",
+    "Mount",
+    "ResolutionCheck",
+    "Shares",
+    "Tolerances",
+    "Uncertainty",
+}
 """Classes that the library makes itself."""
 
 
 def callables():
     """Every public function and class by name."""
-    rooms = (ks, ks.cams, ks.laws, ks.drive, ks.design, ks.balancing, ks.linkage, ks.designs, ks.plots)
+    rooms = (ks, ks.cams, ks.laws, ks.drive, ks.design, ks.balancing, ks.linkage, ks.designs, ks.plots, ks.sizing)
     for room in rooms:
         for name in getattr(room, "__all__", dir(room)):
             item = getattr(room, name)

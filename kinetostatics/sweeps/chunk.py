@@ -241,12 +241,12 @@ def dry_run(job, designs, engines):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
             missed = scenes[0].check_resolution().hints
+            for item in job.numbers:
+                item.value(scenes[0], scenes[-1])
         except QuantityError:
             raise
         except Exception:
             continue
-        for item in job.numbers:
-            item.value(scenes[0], scenes[-1])
         checks.require("sweep", *problems)
         hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in (*scene_hints(solutions[0]), *missed))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
