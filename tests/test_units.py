@@ -457,6 +457,15 @@ SLOW = {
     "plots.animation": (ks.plots.animation, {"interval": (40.0, "ms")}, {"solution": SOLVED}),
     "plots.hodograph": (ks.plots.hodograph, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
     "plots.hodographs": (ks.plots.hodographs, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
+    "plots.rocking_moment": (
+        ks.plots.rocking_moment,
+        {"marks": (40.0, "deg")},
+        {
+            "solutions": ks.Scene(
+                ks.Mechanism("pump", ks.Crank(0.05), (ks.SliderGroup(0.2, slider=ks.Link(2.0), plane=0.1),)), 10.0
+            ).solve(8)
+        },
+    ),
     "plots.cam_curvature": (ks.plots.cam_curvature, {"roller_radius": (0.0625, "m")}, {"cams": CAM}),
     "plots.cam_pressure_angle": (ks.plots.cam_pressure_angle, {"largest": (0.5, "rad")}, {"cams": CAM}),
     "plots.cam_profile": (

@@ -403,9 +403,22 @@ class Group(Part):
         return ()
 
 
+class LinkRule(checks.InstanceOf):
+    """Rule of the link of a group, which lies in one plane; a rotor is for the crank."""
+
+    def check(self, value, field=""):
+        found, problem = super().check(value, field)
+        if problem is None and found.plane is not None:
+            problem = f"{field} must be a Link: a Rotor is for the crank, and a group has its own plane"
+        return found, problem
+
+
+LINK = LinkRule(Link, "a Link")
+
+
 def rules_of_parts(links, *names):
     """Rules of a group's fields for links, names of joints, the label and the plane."""
-    rules: dict[str, Any] = dict.fromkeys(links, checks.InstanceOf(Link, "a Link"))
+    rules: dict[str, Any] = dict.fromkeys(links, LINK)
     return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True), "plane": PLANE}
 
 

@@ -355,6 +355,8 @@ def cam_saw():
         (lambda: ks.YokeGroup(plane=np.array([0.1, 0.2])), "plane must be a number or an array"),
         (lambda: ks.Rotor(1.0, plane=np.inf), "plane must be finite"),
         (lambda: ks.Rotor(1.0, couple_unbalance=0.1), "couple_unbalance must be a pair"),
+        (lambda: ks.SliderGroup(0.2, slider=ks.Rotor(1.0)), "slider must be a Link: a Rotor is for the crank"),
+        (lambda: ks.CamRoller(ks.cams.Circle(0.1), block=ks.Rotor(1.0)), "block must be a Link"),
         (lambda: ks.Crank(0.1, bearings=(0.4, 0.4)), "bearings must be (left, right) with left < right"),
         (lambda: ks.Crank(0.1, bearings=(0.4, -0.4)), "bearings must be (left, right) with left < right"),
         (lambda: ks.Crank(0.1, bearings=(np.array([[0.0], [1.0]]), 0.5)), "left < right"),

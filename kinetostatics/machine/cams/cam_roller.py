@@ -16,7 +16,7 @@ from ...numbers.arithmetic import atan, sign, sqrt
 from ...numbers.parameter_tree import come_from_one_class
 from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
-from ..group import FRAME, PLANE, Declaration, Group, Output, Point, Resolved
+from ..group import FRAME, LINK, PLANE, Declaration, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..laws.law import turn_angles
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
@@ -110,7 +110,7 @@ class CamRoller(checks.Checked, Group):
     RULES = checks.Rules(
         "cam roller",
         cam=checks.HasMembers(("polar",), "one of ks.cams or alike"),
-        block=checks.InstanceOf(Link, "a Link"),
+        block=LINK,
         roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
         plane=PLANE,
     )

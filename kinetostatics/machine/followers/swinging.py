@@ -29,7 +29,7 @@ from ...numbers.planar import (
     subtract_vectors,
 )
 from ..cams.roller import Roller
-from ..group import FRAME, Bar, Declaration, Output, Point, Resolved
+from ..group import FRAME, LINK, Bar, Declaration, Output, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
 from . import follower
 
@@ -164,7 +164,7 @@ class SwingingFollower(follower.Follower):
         arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
         pivot=checks.Pair("m", "follower pivot"),
         assembly=checks.Sign(),
-        arm=checks.InstanceOf(Link, "a Link"),
+        arm=LINK,
         pivot_name=checks.Name(),
         roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
     )

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
 from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, Roller
-from ..group import EMPTY, FRAME, Declaration, Output, Point, Resolved
+from ..group import EMPTY, FRAME, LINK, Declaration, Output, Point, Resolved
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
 from .follower import RULES, Follower
@@ -38,7 +38,7 @@ TERMS = {
 GUIDED_RULES = {
     **RULES,
     "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
-    "follower": checks.InstanceOf(Link, "a Link"),
+    "follower": LINK,
 }
 
 
