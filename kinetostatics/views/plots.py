@@ -22,10 +22,12 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs
+from .sizing_bearings import bearing
 
 __all__ = [
     "acceleration_error",
     "animation",
+    "bearing",
     "before_and_after",
     "cam_curvature",
     "cam_force",
