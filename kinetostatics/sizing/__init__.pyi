@@ -1,4 +1,7 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
+from .bearings import bearing as bearing
+from .bearings import equivalent_load as equivalent_load
+from .bearings import plain_bearing as plain_bearing
 from .foundation import Mount as Mount
 from .foundation import block_for as block_for
 from .foundation import mount as mount

@@ -12,7 +12,7 @@ from ..numbers import checks
 from ..numbers.units import to_si
 from ..solution.scene import Scene
 from ..solution.sections import Bar
-from . import foundation, play, scene_springs, sections, springs
+from . import bearings, foundation, play, scene_springs, sections, springs
 
 BAR = tuple(inspect.signature(Bar).parameters)
 """Options that describe the bar of a link."""
@@ -54,6 +54,10 @@ def _units(numbers):
 
 MASSES = ("m", "kg")
 KINDS = {
+    "bearing": Kind(bearings.bearing, bearings.Bearing, _units(bearings.NUMBERS), (bearings.bearing,)),
+    "plain bearing": Kind(
+        bearings.plain_bearing, bearings.PlainBearing, _units(bearings.NUMBERS), (bearings.plain_bearing,)
+    ),
     "bar": Kind(
         _bar_strength,
         sections.BarStrength,

@@ -204,7 +204,7 @@ def _draw(ax, given, name, marks, counted, on=None, styles=None):
         whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[key], 0.02 * max(extents.values()))
-        _write_angles(ax, solution, curve, rows, near, counted, color if len(named) > 1 else INK)
+        write_angles(ax, solution, curve, rows, near, counted, color if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
@@ -223,7 +223,7 @@ def _extents(curves, most):
     return {name: min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()}
 
 
-def _write_angles(ax, solution, curve, rows, near, counted, color):
+def write_angles(ax, solution, curve, rows, near, counted, color):
     """Write the crank angles of rows at points of a curve; points nearer than `near` share a label."""
     period = np.degrees(solution.period)
     degrees = counted(np.degrees(solution.crank_angle)[rows], period) % period

@@ -22,6 +22,7 @@ from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs, rocking_moment
+from .sizing_bearings import bearing
 from .sizing_mount import mount
 from .sizing_play import contact_loss
 from .sizing_sections import sections
@@ -30,6 +31,7 @@ from .sizing_springs import helical_spring
 __all__ = [
     "acceleration_error",
     "animation",
+    "bearing",
     "before_and_after",
     "cam_curvature",
     "cam_force",

@@ -1,0 +1,358 @@
+"""Bearings of pins: equivalent load and rating life by relative rotation, rings, pressure and pv of plain bearings.
+
+A rolling bearing is worn by the turning of its rings against each other, so its load counts by their relative rotation
+w_rel, the difference of the two links' rates (ISO 281:2007; Harris and Kotzalas, *Rolling Bearing Analysis*, 2006):
+
+    P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, travelled either way
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..cycle.extremes import extrema, largest_of
+from ..cycle.means import TERM_ROUNDING, closed_turn, means
+from ..cycle.piecewise import Pieces
+from ..errors import ParameterError
+from ..machine.cams.profile import POSITIVE
+from ..machine.group import FRAME
+from ..machine.links import CamDriven, Turning
+from ..machine.loads import TURN
+from ..machine.supports import Joining, pairs_of
+from ..mechanics.pair_forces import pair_forces
+from ..numbers import checks
+from ..numbers.planar import left, rotate_back
+from .result import Row, Sized, warn_of_notes
+
+NUMBERS = {
+    **dict.fromkeys(("capacity", "static_capacity"), ("N", POSITIVE)),
+    "exponent": ("1", {"low": 1.0}),
+    **dict.fromkeys(("diameter", "width"), ("m", POSITIVE)),
+}
+ROLLER, BALL_EXPONENT = "roller", 3.0
+"""Name of a cam's roller, as a bearing and as the ring that turns with it; p of ball bearings, and 10/3 of rollers."""
+LEAST_SHARES = 0.01, 0.02
+"""Least load over C at which balls, and rollers, roll and do not slide (SKF, *Rolling bearings*, 2018)."""
+POINT_SHARE = np.pi / 4
+"""Share of point load where a turning load is as large as a fixed one: the mean of a half rosette."""
+FEW_ELEMENTS = 12
+"""Rolling elements of a small bearing: below an oscillation of 2 pi/12 the tracks of neighbours may not overlap."""
+MAX_LOAD_SHARE = 0.5
+"""P over C up to which ISO 281 rates the life."""
+MIN_TURNS = 1e-9
+"""Turns of a pin in a turn of the crank, and net share of its travel, that are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class BearingPin:
+    """Pin in a bearing between two links: the load acts on `link`, its opposite on `against`; `radius` of a roller."""
+
+    name: str
+    joining: Joining
+    radius: Any = None
+
+    @property
+    def rings(self):
+        """The two links, that on which the load acts first."""
+        return (ROLLER if self.rolls else self.joining.link, self.joining.link if self.rolls else self.joining.against)
+
+    @property
+    def rolls(self):
+        return isinstance(self.joining.pair, CamDriven)
+
+    def load(self, at):
+        """Load on the first ring, (2, N), N; of a roller without mass the opposite of the cam's force."""
+        force = at.as_vector(pair_forces(at, self.name, self.joining)[self.name].force)
+        return -force if self.rolls else force
+
+    def rotation(self, at):
+        """Rate of the first ring less that of the other, relative to the crank speed, (N,)."""
+        first = self._rolling(at) if self.rolls else _rate(at, self.rings[0])
+        return (first - _rate(at, self.rings[1])) / at.crank_speed + np.zeros(at.shape)
+
+    def _rolling(self, at):
+        """Rate of a roller that rolls on its cam without sliding, rad/s."""
+        led = self.joining.pair
+        velocity, turning = at.velocity(led.joint), _rate(at, led.body)
+        if led.body != FRAME:
+            base = at.mechanism.references[led.body]
+            velocity = velocity - at.velocity(base) - turning * left(at.position(led.joint) - at.position(base))
+        side = np.where(at.scalar(led.force) > 0.0, -1.0, 1.0) * np.sign(at.crank_speed)
+        return turning + side * np.hypot(*velocity) / self.radius
+
+    def in_rings(self, at):
+        """Load on each ring in its own axes, (2, 2, N), N; NaN for those of a roller, which never repeat."""
+        found = np.stack([self.load(at), -self.load(at)])
+        for row, ring in enumerate(self.rings):
+            if ring == ROLLER:
+                found[row] = np.nan
+            elif ring != FRAME:
+                found[row] = np.stack(np.broadcast_arrays(*rotate_back(found[row], at.placement.links[ring].direction)))
+        return found
+
+
+def _rate(at, link):
+    return 0.0 if link == FRAME else at.rate(link)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Bearing(Sized):
+    """Rolling bearing of a pin, as `ks.sizing.bearing` returns it; `pin` has its rings, load and relative rotation."""
+
+    ROWS: ClassVar = {
+        "equivalent_load": Row("N", "constant load of the same life", "(int F^p |w_rel| / int |w_rel|)^(1/p), ISO 281"),
+        "largest_load": Row("N", "over the turn", "|F|"),
+        "smallest_load": Row("N", "over the turn", "|F|"),
+        "needed_load": Row("N", "least load to roll without sliding", "0.01 C ball, 0.02 C roller (SKF 2018)"),
+        "relative_turns": Row(
+            "1", "of the rings, both ways, in a turn of the crank", "int |w_rel| dphi / (2 pi omega)"
+        ),
+        "life_turns": Row("1", "turns of the crank that 90 % outlive", "1e6 (C/P)^p / relative turns, ISO 281"),
+        "life_hours": Row("h", "at the crank speed of the solution", "life_turns 2 pi/(3600 omega)"),
+        "oscillation": Row("rad", "amplitude of a pin that swings, inf of one that turns", "half its range"),
+        "static_safety": Row("1", "against indentation", "C0/largest load, ISO 76:2006"),
+        "point_share": Row("1", "of the ring on the first link; 1 point load", "|mean of F| / mean of |F|, its axes"),
+        "point_share_against": Row("1", "of the ring on the other link", "|mean of F| / mean of |F|, its axes"),
+    }
+    solution: Any
+    pin: BearingPin
+    equivalent_load: float
+    largest_load: float
+    smallest_load: float
+    needed_load: float
+    relative_turns: float
+    life_turns: float
+    life_hours: float
+    oscillation: float
+    static_safety: float
+    point_share: float
+    point_share_against: float
+
+    @property
+    def ring_loads(self):
+        """Load of each ring by its link, "point" or "circumferential or indeterminate"; empty without load (DIN 5425-1).
+
+        Point load where its share exceeds pi/4: a fixed load then exceeds one that turns. Other rings fit tightly.
+        """
+        shares = (self.point_share, self.point_share_against) if self.largest_load else ()
+        words = ("point" if share > POINT_SHARE else "circumferential or indeterminate" for share in shares)
+        return dict(zip(self.pin.rings, words, strict=False))
+
+
+def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
+    """Rolling bearing of a pin under the load of the turn: equivalent load, rating life, static safety, rings.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its crank angles do not matter.
+    joint : str
+        A reaction of a pin, "O", "A" ...; "roller" is the pin of a cam's roller without mass, which rolls on the cam
+        ("cam roller", "contact2 roller" ... of several).
+    capacity, static_capacity : float
+        Basic dynamic and static load rating C, C0, N.
+    exponent : float
+        p, 10/3 of roller bearings, 3 of ball bearings.
+
+    Returns
+    -------
+    Bearing
+
+    Raises
+    ------
+    ParameterError
+        A number is not positive; no such pin, or one that never turns; a roller without radius; gaps; several designs;
+        a crank at rest; a load without bound.
+
+    Warns
+    -----
+    HintWarning
+        The pin swings too little (false brinelling), the load falls below what rolling takes, or exceeds the ratings.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63").solve("plain", 4)
+    >>> found = ks.sizing.bearing(saw, "A", capacity=600e3, static_capacity=1e6)
+    >>> print(f"{found.equivalent_load / 1e3:.2f} kN, {found.life_hours:.0f} h")
+    198.35 kN, 2085 h
+    >>> found.ring_loads
+    {'coupler': 'circumferential or indeterminate', 'crank': 'point'}
+    """
+    values = {"capacity": capacity, "static_capacity": static_capacity, "exponent": exponent}
+    numbers, pin, turn = _prepared("bearing", solution, joint, values)
+    rating, static, power = numbers.values()
+    least, most = _loads("bearing", solution, joint, pin)
+    load, turns, turned, low, high, *shares = _integrals(pin, turn, most, power)
+    if turns < MIN_TURNS:
+        raise ParameterError(f"bearing: at {joint} {' and '.join(pin.rings)} turn together, so nothing rolls there")
+    swing = 0.5 * (high - low) if abs(turned) < MIN_TURNS * turns * turn.period else np.inf
+    needed = LEAST_SHARES[int(power > BALL_EXPONENT)] * rating
+    with np.errstate(divide="ignore", over="ignore"):
+        life = 1e6 * (np.float64(rating) / load) ** power / turns
+        safety = np.float64(static) / most
+    hours = life * TURN / (3600.0 * abs(float(np.mean(solution.crank_speed))))
+    notes = []
+    if swing < TURN / FEW_ELEMENTS:
+        words = f"{joint} swings by +-{np.degrees(swing):.3g} deg: with fewer than {TURN / swing:.0f} rolling elements"
+        notes.append(f"{words} their tracks do not overlap, a danger of false brinelling")
+    if least < needed:
+        words = f"the load at {joint} falls to {least:.0f} N, below the {needed:.0f} N"
+        notes.append(f"{words} that rolling elements need, so they may slide")
+    if most > static or load > MAX_LOAD_SHARE * rating:
+        notes.append(f"the load at {joint} exceeds C0 or its equivalent C/2, so the life by ISO 281 does not hold")
+    found = (load, most, least, needed, turns, life, hours, swing, safety, *shares)
+    return warn_of_notes("bearing", Bearing(tuple(notes), solution, pin, *map(float, found)))
+
+
+def _prepared(owner, solution, joint, values):
+    """Options as floats, the `BearingPin`, and the turn, after all checks."""
+    checks.require(owner, checks.solution("solution", solution))
+    pairs = pairs_of(solution.mechanism)
+    pins = {name: BearingPin(name, found) for name, found in pairs.items() if isinstance(found.pair, Turning)}
+    cams = {name: found for name, found in pairs.items() if isinstance(found.pair, CamDriven) and not found.pair.flat}
+    for name, found in cams.items():
+        rubs = solution.friction.get(name)
+        radius = solution.mechanism.rollers.get(found.pair.joint) if rubs is None else rubs.roller_radius
+        pins[ROLLER if len(cams) == 1 else f"{name} {ROLLER}"] = BearingPin(name, found, radius)
+    given = {name: (value, *NUMBERS[name]) for name, value in values.items()}
+    numbers = checks.single_numbers(owner, checks.choice("pin joint", joint, tuple(pins)), **given)
+    turn, pin = closed_turn(solution, owner), pins[joint]
+    slow = None if np.all(solution.crank_speed) else "the crank stands, so no pin turns; solve it at its crank speed"
+    lacks = f"the turning of {joint} follows from its radius; give the follower or CamRoller a ks.Roller"
+    checks.require(owner, slow, lacks if pin.rolls and pin.radius is None else None)
+    return numbers, pin, turn
+
+
+def _loads(owner, solution, joint, pin):
+    """Smallest and largest load over the turn, N."""
+    found = extrema(solution, (lambda at: np.hypot(*pin.load(at))) if pin.rolls else pin.name)
+    if not np.isfinite(found.range).all():
+        raise ParameterError(f"{owner}: the load at {joint} grows without bound, so no bearing carries it")
+    least, most = map(float, found.range)
+    rounding = TERM_ROUNDING * float(np.max(solution.sampled.even.largest_force_term))
+    return (least if least > rounding else 0.0), most
+
+
+def _integrals(pin, turn, most, power):
+    """Equivalent load, turns and angle turned, smallest and largest angle, and shares of point load of both rings."""
+    scale = most or 1.0
+
+    def curves(angle):
+        at = turn.at.moved_to(turn.clear(angle))
+        rings, rotation = np.nan_to_num(pin.in_rings(at) / scale), pin.rotation(at)
+        size, travel = np.hypot(*pin.load(at)) / scale, np.abs(rotation)
+        return np.stack([size**power * travel, travel, rotation, size, *rings.reshape(4, -1)])
+
+    at = turn.at.moved_to(turn.angle[turn.usable])
+    rounding, fast = TERM_ROUNDING * float(np.max(at.largest_force_term)) / scale, np.abs(pin.rotation(at)).max()
+    floor = np.array([power * rounding * fast, *[TERM_ROUNDING * max(fast, 1.0)] * 2, *[rounding] * 5])
+    mean, _, pieces, values = means(curves, turn, floor)
+    place, piece = pieces.zeros(values[2, :, 1:-1])
+    parts = Pieces(np.union1d(pieces.edges, pieces.angle_at(piece, place)), pieces.count)
+    moves = parts.whole(curves(parts.angle.ravel())[2].reshape(parts.angle.shape))
+    angle = np.cumsum([0.0, *moves])
+    with np.errstate(invalid="ignore"):
+        load = scale * np.power(mean[0] / mean[1], 1.0 / power) if most else 0.0
+        shares = np.hypot(*mean[4:].reshape(2, 2).T) / mean[3]
+    return load, np.abs(moves).sum() / turn.period, angle[-1], angle.min(), angle.max(), *shares
+
+
+def equivalent_load(loads, shares, exponent=10 / 3):
+    """Constant load of the same life as loads in steps, N.
+
+    Parameters
+    ----------
+    loads : sequence of float
+        N, not negative.
+    shares : sequence of float
+        Turns of the bearing under each, or time at the same speed, in any unit.
+    exponent : float
+        p, 10/3 of roller bearings, 3 of ball bearings.
+
+    Returns
+    -------
+    float
+        (sum F^p n / sum n)^(1/p), ISO 281.
+
+    Raises
+    ------
+    ParameterError
+        A number is negative, the lists differ in length, or no share is positive.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> round(ks.sizing.equivalent_load([650, 750, 250], [30, 10, 20], exponent=3))
+    597
+    """
+    found, problems = [], []
+    for name, unit, value in (("loads", "N", loads), ("shares", "", shares)):
+        values, problem = checks.Series(unit, "", 1).check(value, name)
+        numbers = np.ravel(values) if problem is None else np.zeros(0)
+        found.append(numbers)
+        problems += [problem, f"{name} must not be negative, got {numbers.min():g}" if np.any(numbers < 0.0) else None]
+    if not any(problems) and (found[0].size != found[1].size or not np.any(found[1])):
+        problems.append("shares must be as many as loads, one of them greater than 0")
+    power = checks.single_numbers("equivalent_load", *problems, exponent=(exponent, *NUMBERS["exponent"]))["exponent"]
+    largest = found[0].max() or 1.0
+    return float(largest * np.average((found[0] / largest) ** power, weights=found[1]) ** (1.0 / power))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlainBearing(Sized):
+    """Plain bearing of a pin over the turn; means are over time."""
+
+    ROWS: ClassVar = {
+        "largest_pressure": Row("Pa", "on the projected area", "F/(d b)"),
+        "largest_speed": Row("m/s", "sliding speed", "|w_rel| d/2"),
+        "largest_pv": Row("Pa*m/s", "at one crank angle", "F/(d b) |w_rel| d/2 (Shigley 2015, chapter 12)"),
+        "mean_pv": Row("Pa*m/s", "times friction coefficient and area the heat, W", "mean of F/(d b) |w_rel| d/2"),
+    }
+    largest_pressure: float
+    largest_speed: float
+    largest_pv: float
+    mean_pv: float
+
+
+def plain_bearing(solution, joint, *, diameter, width):
+    """Pressure, sliding speed and pv of a plain bearing over the turn.
+
+    Parameters
+    ----------
+    solution, joint
+        As for `bearing`; a pin that never turns has pv = 0.
+    diameter, width : float
+        m.
+
+    Returns
+    -------
+    PlainBearing
+
+    Raises
+    ------
+    ParameterError
+        As for `bearing`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.5)), 0.0, crank_speed=100.0)
+    >>> ks.sizing.plain_bearing(s, "B", diameter=0.02, width=0.03)
+    <PlainBearing: largest_pressure 1562500 Pa, largest_speed 0.25 m/s, largest_pv 390630 Pa*m/s, mean_pv 159280 Pa*m/s>
+    """
+    numbers, pin, turn = _prepared("plain_bearing", solution, joint, {"diameter": diameter, "width": width})
+    _, most = _loads("plain_bearing", solution, joint, pin)
+    arm, area = 0.5 * numbers["diameter"], numbers["diameter"] * numbers["width"]
+
+    def speed(at):
+        return arm * pin.rotation(at) * at.crank_speed
+
+    def pv(at):
+        return np.hypot(*pin.load(at)) / area * np.abs(speed(at))
+
+    fast = max(map(abs, extrema(solution, speed).range))
+    rounding = TERM_ROUNDING * float(np.max(turn.even.largest_force_term)) / area * fast
+    (mean,), *_ = means(lambda angle: pv(turn.at.moved_to(turn.clear(angle)))[None], turn, rounding)
+    return PlainBearing((), most / area, float(fast), float(largest_of(extrema(solution, pv))[0]), float(mean))
