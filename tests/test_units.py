@@ -255,6 +255,17 @@ DOORS = {
         },
         {},
     ),
+    "bearing": (
+        ks.sizing.bearing,
+        {"capacity": (1e5, "N"), "static_capacity": (2e5, "N"), "exponent": (3.0, "1")},
+        {"solution": SOLVED, "joint": "A"},
+    ),
+    "plain_bearing": (
+        ks.sizing.plain_bearing,
+        {"diameter": (0.0625, "m"), "width": (0.0625, "m")},
+        {"solution": SOLVED, "joint": "A"},
+    ),
+    "equivalent_load": (ks.sizing.equivalent_load, {"exponent": (3.0, "1")}, {"loads": [1.0, 2.0], "shares": [1, 1]}),
     "pin_strength": (
         ks.sizing.pin_strength,
         {"diameter": (0.0625, "m"), "width": (0.125, "m"), "shear_planes": (2.0, "1")},
@@ -559,7 +570,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("precision", "device", "reaction", "spring", "left", "right", "result", "marks"),
-    *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind"),
+    *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",

@@ -131,7 +131,7 @@ class Bearing(Sized):
 
     @property
     def ring_loads(self):
-        """Load of each ring by its link, "point" or "circumferential or indeterminate"; empty without load (DIN 5425-1).
+        """Load of each ring by link: "point", "circumferential or indeterminate" (DIN 5425-1); empty without load.
 
         Point load where its share exceeds pi/4: a fixed load then exceeds one that turns. Other rings fit tightly.
         """
