@@ -140,7 +140,7 @@ def test_every_figure_function_has_an_example():
     figures = {name: getattr(ks.plots, name) for name in ks.plots.__all__}
     assert all(">>>" in inspect.getdoc(figure) for figure in figures.values())
     without_axes = {name for name, figure in figures.items() if "ax" not in inspect.signature(figure).parameters}
-    assert without_axes == {"before_and_after", "hodographs"}
+    assert without_axes == {"bearing", "before_and_after", "hodographs", "mount"}
 
 
 def test_only_figures_are_listed():

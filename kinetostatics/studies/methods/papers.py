@@ -381,7 +381,7 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     elif kinds == [CamRoller, SliderGroup] and type(groups[0].cam) in cams:
         first, second = groups
         cam = _convert(cams[type(first.cam)], first.cam)
-        made = [RollerByAngles(cam, first.block, first.roller, sign), _convert(SliderByAsin, second)]
+        made = [RollerByAngles(cam, first.block, first.roller, first.plane, sign), _convert(SliderByAsin, second)]
     else:
         raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
     return replace(solution, mechanism=replace(mechanism, groups=tuple(made)), engine=KERNELS)
