@@ -1,9 +1,8 @@
 """Bearings of pins: equivalent load and rating life by relative rotation, rings, pressure and pv of plain bearings.
 
-A rolling bearing is worn by the turning of its rings against each other, so its load counts by their relative rotation
-w_rel, the difference of the two links' rates (ISO 281:2007; Harris and Kotzalas, *Rolling Bearing Analysis*, 2006):
+Loads count by the relative rotation w_rel of the rings (ISO 281:2007; Harris, *Rolling Bearing Analysis*, 2006):
 
-    P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, travelled either way
+    P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, both ways
 """
 
 from dataclasses import dataclass
@@ -32,16 +31,11 @@ NUMBERS = {
 }
 ROLLER, BALL_EXPONENT = "roller", 3.0
 """Name of a cam's roller, as a bearing and as the ring that turns with it; p of ball bearings, and 10/3 of rollers."""
-LEAST_SHARES = 0.01, 0.02
-"""Least load over C at which balls, and rollers, roll and do not slide (SKF, *Rolling bearings*, 2018)."""
-POINT_SHARE = np.pi / 4
-"""Share of point load where a turning load is as large as a fixed one: the mean of a half rosette."""
-FEW_ELEMENTS = 12
-"""Rolling elements of a small bearing: below an oscillation of 2 pi/12 the tracks of neighbours may not overlap."""
-MAX_LOAD_SHARE = 0.5
-"""P over C up to which ISO 281 rates the life."""
-MIN_TURNS = 1e-9
-"""Turns of a pin in a turn of the crank, and net share of its travel, that are rounding."""
+LEAST_SHARES, MAX_SHARE = (0.01, 0.02), 0.5
+"""Least load over C at which balls, and rollers, do not slide (SKF, 2018); P over C up to which ISO 281 rates life."""
+POINT_SHARE, FEW_ELEMENTS, MIN_TURNS = np.pi / 4, 12, 1e-9
+"""Share of point load where a turning load is as large as a fixed one; rolling elements of a small bearing; turns of a
+pin in a turn of the crank, and net share of its travel, that are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,9 +99,7 @@ class Bearing(Sized):
         "largest_load": Row("N", "over the turn", "|F|"),
         "smallest_load": Row("N", "over the turn", "|F|"),
         "needed_load": Row("N", "least load to roll without sliding", "0.01 C ball, 0.02 C roller (SKF 2018)"),
-        "relative_turns": Row(
-            "1", "of the rings, both ways, in a turn of the crank", "int |w_rel| dphi / (2 pi omega)"
-        ),
+        "relative_turns": Row("1", "of the rings, both ways, in one of the crank", "int |w_rel| dphi / (2 pi omega)"),
         "life_turns": Row("1", "turns of the crank that 90 % outlive", "1e6 (C/P)^p / relative turns, ISO 281"),
         "life_hours": Row("h", "at the crank speed of the solution", "life_turns 2 pi/(3600 omega)"),
         "oscillation": Row("rad", "amplitude of a pin that swings, inf of one that turns", "half its range"),
@@ -146,12 +138,11 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     Parameters
     ----------
     solution : Solution
-        Of one design; its crank angles do not matter.
     joint : str
-        A reaction of a pin, "O", "A" ...; "roller" is the pin of a cam's roller without mass, which rolls on the cam
-        ("cam roller", "contact2 roller" ... of several).
+        Reaction of a pin, "O", "A" ...; "roller" is the pin of a massless roller that rolls on its cam ("cam roller",
+        "contact2 roller" ... of several).
     capacity, static_capacity : float
-        Basic dynamic and static load rating C, C0, N.
+        Dynamic and static load rating C, C0, N.
     exponent : float
         p, 10/3 of roller bearings, 3 of ball bearings.
 
@@ -162,13 +153,12 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     Raises
     ------
     ParameterError
-        A number is not positive; no such pin, or one that never turns; a roller without radius; gaps; several designs;
-        a crank at rest; a load without bound.
+        No such pin, or it never turns, or its roller has no radius; gaps; a batch; a crank at rest; an unbounded load.
 
     Warns
     -----
     HintWarning
-        The pin swings too little (false brinelling), the load falls below what rolling takes, or exceeds the ratings.
+        False brinelling of a pin that swings too little; a load too small for rolling, or beyond the ratings.
 
     Examples
     --------
@@ -200,7 +190,7 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     if least < needed:
         words = f"the load at {joint} falls to {least:.0f} N, below the {needed:.0f} N"
         notes.append(f"{words} that rolling elements need, so they may slide")
-    if most > static or load > MAX_LOAD_SHARE * rating:
+    if most > static or load > MAX_SHARE * rating:
         notes.append(f"the load at {joint} exceeds C0 or its equivalent C/2, so the life by ISO 281 does not hold")
     found = (load, most, least, needed, turns, life, hours, swing, safety, *shares)
     return warn_of_notes("bearing", Bearing(tuple(notes), solution, pin, *map(float, found)))
@@ -264,12 +254,10 @@ def equivalent_load(loads, shares, exponent=10 / 3):
 
     Parameters
     ----------
-    loads : sequence of float
-        N, not negative.
-    shares : sequence of float
-        Turns of the bearing under each, or time at the same speed, in any unit.
+    loads, shares : sequence of float
+        Loads, N; turns of the bearing under each, in any unit.
     exponent : float
-        p, 10/3 of roller bearings, 3 of ball bearings.
+        As for `bearing`.
 
     Returns
     -------
@@ -279,7 +267,7 @@ def equivalent_load(loads, shares, exponent=10 / 3):
     Raises
     ------
     ParameterError
-        A number is negative, the lists differ in length, or no share is positive.
+        A number is negative, lengths differ, or no share is positive.
 
     Examples
     --------
