@@ -8,17 +8,14 @@ from ..sizing.bearings import Bearing
 from .canvas import ACCENT, FROM_X, INK, STEEL, close_curve, display_unit, finish_axes, panels
 from .hodographs import write_angles
 
-ANGLES = 1440
-"""Crank angles over the period."""
-MARKS = 8
-"""Crank angles over the period that are written at hodographs."""
+ANGLES, MARKS = 1440, 8
+"""Crank angles over the period, and those written at hodographs."""
 
 
 def bearing(result):
     r"""Hodographs of the load on each ring of a bearing in the ring's axes, and its size with the equivalent load.
 
-    A ring is loaded where the arrow from the pin's centre to the curve points. A roller has no hodograph, as it turns
-    on from turn to turn.
+    A roller has no hodograph, as it turns on from turn to turn.
 
     Parameters
     ----------
