@@ -323,8 +323,7 @@ def plain_bearing(solution, joint, *, diameter, width):
         return np.hypot(*pin.load(at)) / (diameter * width) * np.abs(speed(at))
 
     fast = max(map(abs, extrema(solution, speed).range))
-    rounding = TERM_ROUNDING * float(np.max(turn.even.largest_force_term)) / (diameter * width) * fast
+    rounding = TERM_ROUNDING * np.max(turn.even.largest_force_term) / (diameter * width) * fast
     (mean,), *_ = means(lambda angle: pv(turn.at.moved_to(turn.clear(angle)))[None], turn, rounding)
-    return PlainBearing(
-        (), most / (diameter * width), float(fast), float(largest_of(extrema(solution, pv))[0]), float(mean)
-    )
+    highest, _ = largest_of(extrema(solution, pv))
+    return PlainBearing((), *map(float, (most / (diameter * width), fast, highest, mean)))

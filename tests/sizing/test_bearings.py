@@ -342,6 +342,6 @@ def test_figure_has_hodographs_in_both_rings_and_the_load():
     level = figure.axes[2].lines[1].get_ydata()
     assert level[0] == pytest.approx(198.35, abs=0.01)
     assert len(ks.plots.bearing(by_ratings(saw("cam-circle", 0.05), "roller")).axes) == 2
-    with pytest.raises(ks.ParameterError, match="result must be a Bearing"):
+    with pytest.raises(ks.ParameterError, match="found must be a Bearing"):
         ks.plots.bearing(3)
     plt.close("all")
