@@ -342,6 +342,36 @@ def sections():
     arrow(part, np.array([3.4, 0.0]), np.array([3.4, 0.7]), "n", INK)
     for ax in (bar, part):
         ax.set(xlim=(-1.0, 5.0), ylim=(-0.95, 1.05))
+    return figure
+
+
+def bearings():
+    """A rolling bearing with the load and the turning of its rings; a plain bearing with its diameter and width."""
+    figure, (rolling, plain) = plt.subplots(1, 2, width_ratios=(1.2, 1.0))
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    for radius, shade in ((1.5, "0.88"), (1.2, "white"), (0.8, "0.75"), (0.5, "white")):
+        rolling.fill(radius * np.cos(around), radius * np.sin(around), fc=shade, ec=INK, lw=1.0)
+    for angle in np.arange(12) * np.pi / 6:
+        x, y = 1.0 * np.cos(angle), 1.0 * np.sin(angle)
+        rolling.fill(x + 0.19 * np.cos(around), y + 0.19 * np.sin(around), fc="white", ec=STEEL, lw=1.0)
+    arrow(rolling, np.array([0.0, 0.0]), np.array([-1.8, -0.9]), "F")
+    angle_mark(rolling, np.zeros(2), 0.35, np.radians(20), np.radians(150), "", LOAD)
+    rolling.text(0.22, -0.32, r"$\omega_1$", ha="center", color=LOAD)
+    angle_mark(rolling, np.zeros(2), 1.65, np.radians(60), np.radians(110), "", LOAD)
+    rolling.text(0.15, 1.78, r"$\omega_2$", ha="center", color=LOAD)
+    rolling.text(1.7, -0.9, r"$\omega_{rel} = \omega_1 - \omega_2$")
+    plain.fill([-1.8, 1.8, 1.8, -1.8], [-0.5, -0.5, 0.5, 0.5], fc="white", ec=INK, lw=1.0)
+    for low, high in ((0.5, 0.9), (-0.9, -0.5)):
+        plain.fill([-1.0, 1.0, 1.0, -1.0], [low, low, high, high], fc="0.88", ec=INK, lw=1.0, hatch="///")
+    plain.plot([-2.0, 2.0], [0.0, 0.0], color=INK, lw=0.7, ls=(0, (9, 3, 2, 3)))
+    arrow(plain, np.array([0.0, 1.9]), np.array([0.0, 0.95]), "F", tail=True)
+    ends = {**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8}
+    plain.annotate("", (-1.0, -1.15), (1.0, -1.15), arrowprops=ends)
+    plain.text(0.0, -1.45, "b", ha="center")
+    plain.annotate("", (1.5, -0.5), (1.5, 0.5), arrowprops=ends)
+    plain.text(1.58, 0.12, "d")
+    for ax in (rolling, plain):
+        ax.set(xlim=(-2.1, 3.4) if ax is rolling else (-2.3, 2.3), ylim=(-1.75, 2.15))
         ax.set_aspect("equal")
         ax.axis("off")
     return figure
@@ -523,6 +553,7 @@ DRAWINGS = {
     "../parts/play": (play, (4.4, 3.6)),
     "../parts/springs": (springs, (6.4, 3.0)),
     "../parts/planes": (planes, (6.4, 3.2)),
+    "../parts/bearings": (bearings, (6.4, 2.6)),
 }
 """How each is drawn, and its size in inches."""
 

@@ -1,13 +1,12 @@
 """Bearings of pins: equivalent load and rating life by relative rotation, rings, pressure and pv of plain bearings.
 
-A rolling bearing is worn by the turning of its rings against each other, so its load counts by their relative rotation
-w_rel, the difference of the two links' rates (ISO 281:2007; Harris and Kotzalas, *Rolling Bearing Analysis*, 2006):
+Loads count by the relative rotation w_rel of the rings (ISO 281:2007; Harris, *Rolling Bearing Analysis*, 2006):
 
-    P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, travelled either way
+    P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, both ways
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -32,43 +31,29 @@ NUMBERS = {
 }
 ROLLER, BALL_EXPONENT = "roller", 3.0
 """Name of a cam's roller, as a bearing and as the ring that turns with it; p of ball bearings, and 10/3 of rollers."""
-LEAST_SHARES = 0.01, 0.02
-"""Least load over C at which balls, and rollers, roll and do not slide (SKF, *Rolling bearings*, 2018)."""
-POINT_SHARE = np.pi / 4
-"""Share of point load where a turning load is as large as a fixed one: the mean of a half rosette."""
-FEW_ELEMENTS = 12
-"""Rolling elements of a small bearing: below an oscillation of 2 pi/12 the tracks of neighbours may not overlap."""
-MAX_LOAD_SHARE = 0.5
-"""P over C up to which ISO 281 rates the life."""
-MIN_TURNS = 1e-9
-"""Turns of a pin in a turn of the crank, and net share of its travel, that are rounding."""
+LEAST_SHARES, MAX_SHARE = (0.01, 0.02), 0.5
+"""Least load over C at which balls, and rollers, do not slide (SKF, 2018); P over C up to which ISO 281 rates life."""
+POINT_SHARE, FEW_ELEMENTS, MIN_TURNS = np.pi / 4, 12, 1e-9
+"""Share of point load where a turning load is as large as a fixed one; rolling elements of a small bearing; turns of a
+pin in a turn of the crank, and net share of its travel, that are rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class BearingPin:
-    """Pin in a bearing between two links: the load acts on `link`, its opposite on `against`; `radius` of a roller."""
+class BearingPin(NamedTuple):
+    """Pin in a bearing: the load acts on the first of the two links, its `rings`; a roller has a `radius`."""
 
     name: str
     joining: Joining
+    rings: tuple[str, str]
     radius: Any = None
-
-    @property
-    def rings(self):
-        """The two links, that on which the load acts first."""
-        return (ROLLER if self.rolls else self.joining.link, self.joining.link if self.rolls else self.joining.against)
-
-    @property
-    def rolls(self):
-        return isinstance(self.joining.pair, CamDriven)
 
     def load(self, at):
         """Load on the first ring, (2, N), N; of a roller without mass the opposite of the cam's force."""
         force = at.as_vector(pair_forces(at, self.name, self.joining)[self.name].force)
-        return -force if self.rolls else force
+        return -force if self.radius else force
 
     def rotation(self, at):
         """Rate of the first ring less that of the other, relative to the crank speed, (N,)."""
-        first = self._rolling(at) if self.rolls else _rate(at, self.rings[0])
+        first = self._rolling(at) if self.radius else _rate(at, self.rings[0])
         return (first - _rate(at, self.rings[1])) / at.crank_speed + np.zeros(at.shape)
 
     def _rolling(self, at):
@@ -105,9 +90,7 @@ class Bearing(Sized):
         "largest_load": Row("N", "over the turn", "|F|"),
         "smallest_load": Row("N", "over the turn", "|F|"),
         "needed_load": Row("N", "least load to roll without sliding", "0.01 C ball, 0.02 C roller (SKF 2018)"),
-        "relative_turns": Row(
-            "1", "of the rings, both ways, in a turn of the crank", "int |w_rel| dphi / (2 pi omega)"
-        ),
+        "relative_turns": Row("1", "of the rings, both ways, in one of the crank", "int |w_rel| dphi / (2 pi omega)"),
         "life_turns": Row("1", "turns of the crank that 90 % outlive", "1e6 (C/P)^p / relative turns, ISO 281"),
         "life_hours": Row("h", "at the crank speed of the solution", "life_turns 2 pi/(3600 omega)"),
         "oscillation": Row("rad", "amplitude of a pin that swings, inf of one that turns", "half its range"),
@@ -131,7 +114,7 @@ class Bearing(Sized):
 
     @property
     def ring_loads(self):
-        """Load of each ring by link: "point", "circumferential or indeterminate" (DIN 5425-1); empty without load.
+        """Load by link, "point" or "circumferential or indeterminate" (DIN 5425-1); empty without load.
 
         Point load where its share exceeds pi/4: a fixed load then exceeds one that turns. Other rings fit tightly.
         """
@@ -146,12 +129,11 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     Parameters
     ----------
     solution : Solution
-        Of one design; its crank angles do not matter.
     joint : str
-        A reaction of a pin, "O", "A" ...; "roller" is the pin of a cam's roller without mass, which rolls on the cam
-        ("cam roller", "contact2 roller" ... of several).
+        Reaction of a pin, "O", "A" ...; "roller" is the pin of a massless roller that rolls on its cam ("cam roller",
+        "contact2 roller" ... of several).
     capacity, static_capacity : float
-        Basic dynamic and static load rating C, C0, N.
+        Dynamic and static load rating C, C0, N.
     exponent : float
         p, 10/3 of roller bearings, 3 of ball bearings.
 
@@ -162,13 +144,12 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     Raises
     ------
     ParameterError
-        A number is not positive; no such pin, or one that never turns; a roller without radius; gaps; several designs;
-        a crank at rest; a load without bound.
+        No such pin, or it never turns, or its roller has no radius; gaps; a batch; a crank at rest; an unbounded load.
 
     Warns
     -----
     HintWarning
-        The pin swings too little (false brinelling), the load falls below what rolling takes, or exceeds the ratings.
+        False brinelling of a pin that swings too little; a load too small for rolling, or beyond the ratings.
 
     Examples
     --------
@@ -180,18 +161,16 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     >>> found.ring_loads
     {'coupler': 'circumferential or indeterminate', 'crank': 'point'}
     """
-    values = {"capacity": capacity, "static_capacity": static_capacity, "exponent": exponent}
-    numbers, pin, turn = _prepared("bearing", solution, joint, values)
-    rating, static, power = numbers.values()
-    least, most = _loads("bearing", solution, joint, pin)
+    given = {"capacity": capacity, "static_capacity": static_capacity, "exponent": exponent}
+    pin, turn, least, most, rating, static, power = _prepared("bearing", solution, joint, **given)
     load, turns, turned, low, high, *shares = _integrals(pin, turn, most, power)
     if turns < MIN_TURNS:
         raise ParameterError(f"bearing: at {joint} {' and '.join(pin.rings)} turn together, so nothing rolls there")
     swing = 0.5 * (high - low) if abs(turned) < MIN_TURNS * turns * turn.period else np.inf
     needed = LEAST_SHARES[int(power > BALL_EXPONENT)] * rating
     with np.errstate(divide="ignore", over="ignore"):
-        life = 1e6 * (np.float64(rating) / load) ** power / turns
-        safety = np.float64(static) / most
+        life = 1e6 * np.power(np.divide(rating, load), power) / turns
+        safety = np.divide(static, most)
     hours = life * TURN / (3600.0 * abs(float(np.mean(solution.crank_speed))))
     notes = []
     if swing < TURN / FEW_ELEMENTS:
@@ -200,39 +179,33 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     if least < needed:
         words = f"the load at {joint} falls to {least:.0f} N, below the {needed:.0f} N"
         notes.append(f"{words} that rolling elements need, so they may slide")
-    if most > static or load > MAX_LOAD_SHARE * rating:
+    if most > static or load > MAX_SHARE * rating:
         notes.append(f"the load at {joint} exceeds C0 or its equivalent C/2, so the life by ISO 281 does not hold")
     found = (load, most, least, needed, turns, life, hours, swing, safety, *shares)
     return warn_of_notes("bearing", Bearing(tuple(notes), solution, pin, *map(float, found)))
 
 
-def _prepared(owner, solution, joint, values):
-    """Options as floats, the `BearingPin`, and the turn, after all checks."""
+def _prepared(owner, solution, joint, **values):
+    """`BearingPin`, turn, smallest and largest load, N, and options, after all checks."""
     checks.require(owner, checks.solution("solution", solution))
-    pairs = pairs_of(solution.mechanism)
-    pins = {name: BearingPin(name, found) for name, found in pairs.items() if isinstance(found.pair, Turning)}
-    cams = {name: found for name, found in pairs.items() if isinstance(found.pair, CamDriven) and not found.pair.flat}
-    for name, found in cams.items():
+    pairs = pairs_of(solution.mechanism).items()
+    pins = {name: BearingPin(name, own, (own.link, own.against)) for name, own in pairs if type(own.pair) is Turning}
+    cams = {name: own for name, own in pairs if isinstance(own.pair, CamDriven) and not own.pair.flat}
+    for name, own in cams.items():
         rubs = solution.friction.get(name)
-        radius = solution.mechanism.rollers.get(found.pair.joint) if rubs is None else rubs.roller_radius
-        pins[ROLLER if len(cams) == 1 else f"{name} {ROLLER}"] = BearingPin(name, found, radius)
+        radius = solution.mechanism.rollers.get(own.pair.joint) if rubs is None else rubs.roller_radius
+        pins[ROLLER if len(cams) == 1 else f"{name} {ROLLER}"] = BearingPin(name, own, (ROLLER, own.link), radius)
     given = {name: (value, *NUMBERS[name]) for name, value in values.items()}
     numbers = checks.single_numbers(owner, checks.choice("pin joint", joint, tuple(pins)), **given)
     turn, pin = closed_turn(solution, owner), pins[joint]
     slow = None if np.all(solution.crank_speed) else "the crank stands, so no pin turns; solve it at its crank speed"
     lacks = f"the turning of {joint} follows from its radius; give the follower or CamRoller a ks.Roller"
-    checks.require(owner, slow, lacks if pin.rolls and pin.radius is None else None)
-    return numbers, pin, turn
-
-
-def _loads(owner, solution, joint, pin):
-    """Smallest and largest load over the turn, N."""
-    found = extrema(solution, (lambda at: np.hypot(*pin.load(at))) if pin.rolls else pin.name)
-    if not np.isfinite(found.range).all():
-        raise ParameterError(f"{owner}: the load at {joint} grows without bound, so no bearing carries it")
-    least, most = map(float, found.range)
-    rounding = TERM_ROUNDING * float(np.max(solution.sampled.even.largest_force_term))
-    return (least if least > rounding else 0.0), most
+    checks.require(owner, slow, lacks if pin.rings[0] == ROLLER and pin.radius is None else None)
+    least, most = extrema(solution, (lambda at: np.hypot(*pin.load(at))) if pin.radius else pin.name).range
+    endless = None if np.isfinite(most) else f"the load at {joint} grows without bound, so no bearing carries it"
+    checks.require(owner, endless)
+    clear = least > TERM_ROUNDING * np.max(turn.even.largest_force_term)
+    return pin, turn, least if clear else 0.0, most, *numbers.values()
 
 
 def _integrals(pin, turn, most, power):
@@ -264,12 +237,10 @@ def equivalent_load(loads, shares, exponent=10 / 3):
 
     Parameters
     ----------
-    loads : sequence of float
-        N, not negative.
-    shares : sequence of float
-        Turns of the bearing under each, or time at the same speed, in any unit.
+    loads, shares : sequence of float
+        Loads, N; turns of the bearing under each, in any unit.
     exponent : float
-        p, 10/3 of roller bearings, 3 of ball bearings.
+        As for `bearing`.
 
     Returns
     -------
@@ -279,7 +250,7 @@ def equivalent_load(loads, shares, exponent=10 / 3):
     Raises
     ------
     ParameterError
-        A number is negative, the lists differ in length, or no share is positive.
+        A number is negative, lengths differ, or no share is positive.
 
     Examples
     --------
@@ -322,7 +293,7 @@ def plain_bearing(solution, joint, *, diameter, width):
     Parameters
     ----------
     solution, joint
-        As for `bearing`; a pin that never turns has pv = 0.
+        As for `bearing`.
     diameter, width : float
         m.
 
@@ -342,17 +313,17 @@ def plain_bearing(solution, joint, *, diameter, width):
     >>> ks.sizing.plain_bearing(s, "B", diameter=0.02, width=0.03)
     <PlainBearing: largest_pressure 1562500 Pa, largest_speed 0.25 m/s, largest_pv 390630 Pa*m/s, mean_pv 159280 Pa*m/s>
     """
-    numbers, pin, turn = _prepared("plain_bearing", solution, joint, {"diameter": diameter, "width": width})
-    _, most = _loads("plain_bearing", solution, joint, pin)
-    arm, area = 0.5 * numbers["diameter"], numbers["diameter"] * numbers["width"]
+    given = {"diameter": diameter, "width": width}
+    pin, turn, _, most, diameter, width = _prepared("plain_bearing", solution, joint, **given)
 
     def speed(at):
-        return arm * pin.rotation(at) * at.crank_speed
+        return 0.5 * diameter * pin.rotation(at) * at.crank_speed
 
     def pv(at):
-        return np.hypot(*pin.load(at)) / area * np.abs(speed(at))
+        return np.hypot(*pin.load(at)) / (diameter * width) * np.abs(speed(at))
 
     fast = max(map(abs, extrema(solution, speed).range))
-    rounding = TERM_ROUNDING * float(np.max(turn.even.largest_force_term)) / area * fast
+    rounding = TERM_ROUNDING * np.max(turn.even.largest_force_term) / (diameter * width) * fast
     (mean,), *_ = means(lambda angle: pv(turn.at.moved_to(turn.clear(angle)))[None], turn, rounding)
-    return PlainBearing((), most / area, float(fast), float(largest_of(extrema(solution, pv))[0]), float(mean))
+    highest, _ = largest_of(extrema(solution, pv))
+    return PlainBearing((), *map(float, (most / (diameter * width), fast, highest, mean)))
