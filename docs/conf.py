@@ -9,9 +9,11 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
 
-# Notebooks live at the top of the repository; Sphinx reads what lies beside this file.
+# Notebooks live at the top of the repository; Sphinx reads what lies beside this file, with shorter links.
 shutil.rmtree(HERE / "notebooks", ignore_errors=True)
 shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks", ignore=shutil.ignore_patterns(".*"))
+for notebook in (HERE / "notebooks").glob("*.ipynb"):
+    notebook.write_text(notebook.read_text(encoding="utf-8").replace("](../docs/", "](../"), encoding="utf-8")
 
 # Figures of the pages' code: SVG, small and sharp.
 kernel = HERE / "_build" / "ipython" / "profile_default" / "ipython_kernel_config.py"

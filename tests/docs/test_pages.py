@@ -1,5 +1,6 @@
 """Pages, notebooks and references of the documentation."""
 
+import json
 import re
 import tomllib
 import types
@@ -128,6 +129,13 @@ NOTEBOOKS = script("execute_notebooks")
 @every("path", sorted(NOTEBOOKS.FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
 def test_notebook_is_kept_with_its_outputs(path):
     assert not list(NOTEBOOKS.problems(path)), "run: python docs/execute_notebooks.py " + path.stem
+
+
+@every("path", sorted(NOTEBOOKS.FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
+def test_links_of_notebooks_lead_to_pages_and_notebooks(path):
+    cells = json.loads(text_of(path))["cells"]
+    for link in links("\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")):
+        assert "://" in link or (path.parent / link).exists(), link
 
 
 # The case-file reference has every key of the schema, each with a meaning and an example that the schema takes
