@@ -342,6 +342,8 @@ def sections():
     arrow(part, np.array([3.4, 0.0]), np.array([3.4, 0.7]), "n", INK)
     for ax in (bar, part):
         ax.set(xlim=(-1.0, 5.0), ylim=(-0.95, 1.05))
+        ax.set_aspect("equal")
+        ax.axis("off")
     return figure
 
 
@@ -450,6 +452,7 @@ def foundation():
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
     ax.margins(0.04)
+    ax.axis("off")
     return figure
 
 
@@ -479,6 +482,7 @@ def play():
     ax.text(0.55, -0.35, "journal", ha="center", va="center", fontsize="small")
     ax.set_aspect("equal")
     ax.margins(0.06)
+    ax.axis("off")
     return figure
 
 
