@@ -34,6 +34,10 @@ BAR = {
 """Unit and rule of each number of a bar."""
 PLACES = np.array([0.02, 0.17, 0.31, 0.46, 0.62, 0.77, 0.93])
 """Places in the period, relative to it, at which the forces are located on a link."""
+TOPS, ZOOM, ZOOMS = 8, 16, 7
+"""Highest samples of the turn that are refined; factor by which their step shrinks, and how often: to 1e-12 rad."""
+NEAR_PERIOD = 1e-6
+"""Distance from the end of the period, rad, below which a peak is at 0."""
 TOLERANCE = 1e-9
 """Difference of places, and of a bar from its link, relative to lengths and masses, that is rounding."""
 
@@ -108,14 +112,9 @@ def _curve(row, text):
     return property(lambda self: self._curves[row], doc=text)
 
 
-def _peak(choose, text):
-    """True extreme over length and turn."""
-
-    def found(self):
-        return self.highest(choose)
-
-    found.__doc__ = text
-    return cached_property(found)
+def _largest(name, text):
+    """Largest value over length and turn, a `SectionPeak`."""
+    return property(lambda self: self.largest[name], doc=text)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -162,10 +161,22 @@ class Sections:
     axial_force = _curve(0, "N at each section and crank angle, (at, N), N, positive in tension.")
     shear_force = _curve(1, "V at each section and crank angle, (at, N), N.")
     bending_moment = _curve(2, "M at each section and crank angle, (at, N), N m.")
-    largest_tension = _peak(lambda n, v, m: [n], "Largest axial force, a `SectionPeak`.")
-    largest_compression = _peak(lambda n, v, m: [-n], "Largest compressive force, a `SectionPeak`.")
-    largest_shear = _peak(lambda n, v, m: [v, -v], "Largest size of the shear force, a `SectionPeak`.")
-    largest_moment = _peak(lambda n, v, m: [m, -m], "Largest size of the bending moment, a `SectionPeak`.")
+    largest_tension = _largest("tension", "Largest axial force, a `SectionPeak`.")
+    largest_compression = _largest("compression", "Largest compressive force, a `SectionPeak`.")
+    largest_shear = _largest("shear", "Largest size of the shear force, a `SectionPeak`.")
+    largest_moment = _largest("moment", "Largest size of the bending moment, a `SectionPeak`.")
+
+    @cached_property
+    def largest(self):
+        """`SectionPeak` of tension, compression, shear and moment by name."""
+        return self.peaks(
+            {
+                "tension": lambda n, v, m: [n],
+                "compression": lambda n, v, m: [-n],
+                "shear": lambda n, v, m: [v, -v],
+                "moment": lambda n, v, m: [m, -m],
+            }
+        )
 
     @cached_property
     def _curves(self):
@@ -198,35 +209,74 @@ class Sections:
             ]
         )
 
-    def highest(self, choose) -> SectionPeak:
-        """Largest value over bar and period of the polynomials that ``choose(axial, shear, moment)`` lists."""
-        from ..cycle.extremes import extrema, largest_of, warning
+    def peaks(self, choices) -> dict[str, SectionPeak]:
+        """Largest values over bar and period by name, of the polynomials that ``choose(axial, shear, moment)`` lists.
 
+        The highest samples of the turn are refined together, by ever finer samples around each.
+        """
+        turn = self.solution.sampled_for_forces
+
+        def heights(at):
+            return np.array([values.max(axis=0) for _, values in self._candidates(choices.values(), at)])
+
+        def moved(angle):
+            return turn.at.moved_to(turn.clear(np.mod(angle, turn.period)))
+
+        angle = np.union1d(turn.angle[turn.usable], turn.even.crank_angle)
+        values, reach = heights(moved(angle)), np.diff(angle).max()
+        rises = np.diff(values, prepend=values[:, -1:]) > 0.0
+        tops = np.where(rises & ~np.roll(rises, -1, axis=1), -values, np.inf)
+        middle = angle[np.argsort(tops, axis=1, kind="stable")[:, :TOPS]]
+        for _ in range(ZOOMS):
+            near = middle[..., None] + reach * np.linspace(-1.0, 1.0, 2 * ZOOM + 1)
+            values = np.einsum("kk...->k...", heights(moved(near.ravel())).reshape(-1, *near.shape))
+            middle = np.take_along_axis(near, values.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+            reach /= ZOOM
+        angle = middle[np.arange(len(choices)), values.max(axis=-1).argmax(axis=-1)] % turn.period
+        angle[turn.period - angle < NEAR_PERIOD] = 0.0
+        peaks = {}
+        for row, (name, own) in enumerate(zip(choices, self._candidates(choices.values(), moved(angle)), strict=True)):
+            places, values = (part[:, row] for part in own)
+            peaks[name] = SectionPeak(float(values.max()), float(places[values.argmax()]), float(angle[row]))
+        self._replace_unbounded(turn, heights, peaks)
+        return peaks
+
+    def _candidates(self, choices, at):
+        """Yield places and values (candidates, N) at ends of parts and turning points, for each choice."""
         low, high = self.stations[:-1, None], self.stations[1:, None]
-
-        def candidates(at):
-            with np.errstate(invalid="ignore"):
-                polynomials = np.array(choose(*self.polynomials(at)))
+        with np.errstate(invalid="ignore"):
+            forces = self.polynomials(at)
+            for choose in choices:
+                polynomials = np.array(choose(*forces))
                 places = np.array(np.broadcast_arrays(low, high, *_turning(polynomials)))
                 places = np.clip(np.nan_to_num(places), low, high)
-                return places, evaluate(polynomials, places)
+                values = evaluate(polynomials, places)
+                yield places.reshape(-1, places.shape[-1]), values.reshape(-1, values.shape[-1])
 
-        found = extrema(self.solution, lambda at: candidates(at)[1].max(axis=(0, 1, 2)))
-        if text := warning(self.solution, [found]):
-            warnings.warn(text, ConditionWarning, stacklevel=4)
-        value, angle = np.nan_to_num(largest_of(found), posinf=np.inf)
-        places, values = candidates(self.solution.moved_to(np.array([angle])))
-        return SectionPeak(float(value), float(places.ravel()[values.argmax()]), float(angle))
+    def _replace_unbounded(self, turn, heights, peaks):
+        """Make the peaks infinite that grow without bound at a limit position, with a warning."""
+        from ..cycle.extremes import Extremes, warning
+
+        found = []
+        for row, (name, peak) in enumerate(peaks.items()):
+
+            def height(at, row=row):
+                return heights(at)[row]
+
+            sides = ((limit, turn.limit(height, limit, side)) for limit in turn.limits for side in (-1.0, 1.0))
+            ends = np.unique([limit for limit, value in sides if value == np.inf])
+            found.append(Extremes(f"{name} in {self.link}", ends, ends + np.inf, ends >= 0.0, peak.value, turn.lost))
+            if ends.size:
+                peaks[name] = SectionPeak(np.inf, peak.x, float(ends[0]))
+        if text := warning(self.solution, found):
+            warnings.warn(text, ConditionWarning, stacklevel=6)
 
     def table(self):
         """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
         import pandas as pd
 
-        rows = [
-            (name, unit, peak.value, peak.x, np.degrees(peak.angle))
-            for name, unit in {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}.items()
-            for peak in [getattr(self, f"largest_{name}")]
-        ]
+        units = {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}
+        rows = [(name, units[name], at.value, at.x, np.degrees(at.angle)) for name, at in self.largest.items()]
         return pd.DataFrame(rows, columns=["largest", "unit", "value", "x [m]", "at [deg]"]).set_index("largest")
 
 

@@ -273,6 +273,14 @@ def test_compression_near_eulers_load_is_warned_of():
         ks.sizing.bar_strength(solved(), "coupler", slender, **LIMITS)
 
 
+def test_a_stress_above_the_yield_strength_is_warned_of():
+    """Steady tension is safe by Goodman's line, which ends at the ultimate strength."""
+    s = ks.Scene(ks.crank_slider(R, L), 1.0, 0.0, (ks.ProcessForce(2.4e6),)).solve(12)
+    with pytest.warns(ks.HintWarning, match=r"stress reaches 404.6 MPa, above the yield strength of 355 MPa"):
+        found = ks.sizing.bar_strength(s, "coupler", ks.Bar(6e-3, 3e-4, **STEEL), **LIMITS)
+    assert found.fatigue_safety > 1.0
+
+
 def test_bar_without_load_is_safe():
     """Massless and idle, so without stress."""
     s = ks.Scene(ks.crank_slider(R, L), SPEED).solve(12)
