@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..cycle.extremes import extrema
+from ..cycle.extremes import extrema, extremes
 from ..cycle.means import closed_turn
 from ..machine.loads import TURN
 from ..numbers import checks
@@ -215,6 +215,11 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     QuantityError
         There is no such reaction.
 
+    Warns
+    -----
+    ConditionWarning
+        The reaction grows without bound.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -226,7 +231,7 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     d, b, planes = _numbers("pin_strength", solution, values).values()
     closed_turn(solution, "pin_strength")
     solution.reaction(joint)
-    load = float(extrema(solution, joint).largest)
+    load = float(extremes(solution, joint).largest)
     return PinStrength((), load, 4.0 * load / (planes * np.pi * d * d), load / (d * b))
 
 

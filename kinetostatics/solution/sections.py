@@ -92,11 +92,11 @@ class Bar:
 
     def properties(self, length):
         """Mass, kg, centre from the first pin, m, and moment of inertia about it, kg m2, for a length, m."""
-        bar = self.mass or 0.0
-        parts = [(0.5 * length, bar), *self.masses]
+        checks.require("Bar.properties", "give the bar its mass, kg" if self.mass is None else None)
+        parts = [(0.5 * length, self.mass), *self.masses]
         total = sum(mass for _, mass in parts)
         centre = sum(x * mass for x, mass in parts) / total if total else 0.5 * length
-        return total, centre, bar * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
+        return total, centre, self.mass * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
 
 
 class SectionPeak(NamedTuple):
