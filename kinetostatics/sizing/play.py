@@ -72,6 +72,14 @@ class ContactLoss(Sized):
     angle, force, normal, lag, index_curve : array (N,)
         Crank angle, rad; magnitude of the force without play and normal force of the pendulum, N; angle from journal to
         force, counter-clockwise, rad; index. After a loss the pendulum, which cannot leave, is no longer the journal.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, coupler=ks.Link(1.0, 0.08, 0.01), slider=ks.Link(2.0))
+    >>> found = ks.sizing.contact_loss(ks.solve(pump, 0.0, crank_speed=100.0), "B", clearance=2e-5)
+    >>> print(", ".join(f"{flight.energy * 1e3:.2f} mJ at {flight.stop:.3f} rad" for flight in found.flights[:2]))
+    0.24 mJ at 1.475 rad, 0.17 mJ at 5.074 rad
     """
 
     ROWS: ClassVar = {

@@ -13,9 +13,10 @@ import numpy as np
 
 from ..cycle.extremes import extrema, extremes
 from ..cycle.means import closed_turn
+from ..machine.cams.profile import POSITIVE
 from ..machine.loads import TURN
 from ..numbers import checks
-from ..solution.sections import BAR, POSITIVE, Sections, evaluate
+from ..solution.sections import BAR, Sections, evaluate
 from .result import Row, Sized, warn_of_notes
 
 NUMBERS = {
@@ -265,12 +266,13 @@ class Rigidity(Sized):
 
 def rigidity_of(solution, bars=None, shaft=None) -> dict[str, Rigidity]:
     """`Rigidity` of straight links, by a mapping to `Bar`, and of the "shaft", by a mapping of its numbers."""
-    given = {"bars": bars or {}, "shaft": shaft or {}}
-    texts = {"bars": '{"coupler": ks.Bar(...)}', "shaft": f"{{{', '.join(f'{name!r}: ...' for name in SHAFT)}}}"}
-    wrong = (f"{name} must be a dict, as {texts[name]}" for name in given if not isinstance(given[name], Mapping))
-    checks.require("needs", *wrong)
-    found = {link: bar_rigidity(solution, link, bar) for link, bar in given["bars"].items()}
-    return found | ({"shaft": shaft_rigidity(solution, given["shaft"])} if shaft else {})
+    texts = {
+        'bars must be a dict, as {"coupler": ks.Bar(...)}': bars,
+        f"shaft must be a dict of {', '.join(SHAFT)}": shaft,
+    }
+    checks.require("needs", *(text for text, given in texts.items() if not isinstance(given or {}, Mapping)))
+    found = {link: bar_rigidity(solution, link, bar) for link, bar in (bars or {}).items()}
+    return found | ({"shaft": shaft_rigidity(solution, shaft)} if shaft else {})
 
 
 def bar_rigidity(solution, link, bar) -> Rigidity:

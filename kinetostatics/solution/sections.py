@@ -18,12 +18,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning
+from ..machine.cams.profile import POSITIVE
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.planar import cross, dot
 
-POSITIVE: dict[str, Any] = {"low": 0.0, "strict": True}
 BAR = {
     "area": ("m**2", POSITIVE),
     "modulus": ("m**3", POSITIVE),
@@ -107,16 +107,6 @@ class SectionPeak(NamedTuple):
     angle: float
 
 
-def _curve(row, text):
-    """Force at each section and crank angle."""
-    return property(lambda self: self._curves[row], doc=text)
-
-
-def _largest(name, text):
-    """Largest value over length and turn, a `SectionPeak`."""
-    return property(lambda self: self.largest[name], doc=text)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Sections:
     """Forces inside a straight link; made by `Solution.sections`.
@@ -128,13 +118,13 @@ class Sections:
     bar : Bar
         With the mass of its uniform part.
     x : array (at,)
-        Distances of the sections from the first pin, m; at a pin, load or point mass the section lies before it.
+        Sections from the first pin, m; at a pin, load or point mass the section lies before it.
     stations : array
-        Places of pins, loads and point masses, m; the first is 0, the last the length between the pins.
+        Places of pins, loads and point masses, m, from 0 to the length between the pins.
     start : float
         Coordinate of the first pin on the link's own axis, m.
     placed : tuple of int
-        Station of each force but inertia and weight, as `mechanics.free_body` lists them, and of each point mass.
+        Station of each pin force, load and point mass.
 
     Examples
     --------
@@ -158,13 +148,13 @@ class Sections:
         where = f"{value:.6g} N m at {x:.6g} m and {np.degrees(angle):.6g} deg"
         return f"<Sections: {self.link}, {len(self.x)} sections, largest bending moment {where}>"
 
-    axial_force = _curve(0, "N at each section and crank angle, (at, N), N, positive in tension.")
-    shear_force = _curve(1, "V at each section and crank angle, (at, N), N.")
-    bending_moment = _curve(2, "M at each section and crank angle, (at, N), N m.")
-    largest_tension = _largest("tension", "Largest axial force, a `SectionPeak`.")
-    largest_compression = _largest("compression", "Largest compressive force, a `SectionPeak`.")
-    largest_shear = _largest("shear", "Largest size of the shear force, a `SectionPeak`.")
-    largest_moment = _largest("moment", "Largest size of the bending moment, a `SectionPeak`.")
+    axial_force = property(lambda self: self._curves[0], doc="Axial force (at, N), N, positive in tension.")
+    shear_force = property(lambda self: self._curves[1], doc="Shear force (at, N), N.")
+    bending_moment = property(lambda self: self._curves[2], doc="Bending moment (at, N), N m.")
+    largest_tension = property(lambda self: self.largest["tension"], doc="A `SectionPeak`, N.")
+    largest_compression = property(lambda self: self.largest["compression"], doc="A `SectionPeak`, N.")
+    largest_shear = property(lambda self: self.largest["shear"], doc="Of its size, a `SectionPeak`, N.")
+    largest_moment = property(lambda self: self.largest["moment"], doc="Of its size, a `SectionPeak`, N m.")
 
     @cached_property
     def largest(self):
@@ -210,35 +200,27 @@ class Sections:
         )
 
     def peaks(self, choices) -> dict[str, SectionPeak]:
-        """Largest values over bar and period by name, of the polynomials that ``choose(axial, shear, moment)`` lists.
+        """Largest value over bar and period of the polynomials that each ``choose(axial, shear, moment)`` lists."""
+        from ..cycle.extremes import extrema, largest_of, warning
 
-        The highest samples of the turn are refined together, by ever finer samples around each.
-        """
         turn = self.solution.sampled_for_forces
 
         def heights(at):
             return np.array([values.max(axis=0) for _, values in self._candidates(choices.values(), at)])
 
-        def moved(angle):
-            return turn.at.moved_to(turn.clear(np.mod(angle, turn.period)))
-
-        angle = np.union1d(turn.angle[turn.usable], turn.even.crank_angle)
-        values, reach = heights(moved(angle)), np.diff(angle).max()
-        rises = np.diff(values, prepend=values[:, -1:]) > 0.0
-        tops = np.where(rises & ~np.roll(rises, -1, axis=1), -values, np.inf)
-        middle = angle[np.argsort(tops, axis=1, kind="stable")[:, :TOPS]]
-        for _ in range(ZOOMS):
-            near = middle[..., None] + reach * np.linspace(-1.0, 1.0, 2 * ZOOM + 1)
-            values = np.einsum("kk...->k...", heights(moved(near.ravel())).reshape(-1, *near.shape))
-            middle = np.take_along_axis(near, values.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-            reach /= ZOOM
-        angle = middle[np.arange(len(choices)), values.max(axis=-1).argmax(axis=-1)] % turn.period
-        angle[turn.period - angle < NEAR_PERIOD] = 0.0
-        peaks = {}
-        for row, (name, own) in enumerate(zip(choices, self._candidates(choices.values(), moved(angle)), strict=True)):
-            places, values = (part[:, row] for part in own)
-            peaks[name] = SectionPeak(float(values.max()), float(places[values.argmax()]), float(angle[row]))
-        self._replace_unbounded(turn, heights, peaks)
+        if turn.limits.size:  # forces may grow without bound
+            found = [extrema(self.solution, lambda at, row=row: heights(at)[row]) for row in range(len(choices))]
+            found = [
+                replace(item, quantity=f"{name} in {self.link}") for name, item in zip(choices, found, strict=True)
+            ]
+            if text := warning(self.solution, found):
+                warnings.warn(text, ConditionWarning, stacklevel=5)
+            value, angle = np.nan_to_num([largest_of(item) for item in found], posinf=np.inf).T
+        else:
+            value, angle = _refined(turn, heights)
+        peaks, candidates = {}, self._candidates(choices.values(), turn.at.moved_to(angle))
+        for row, (name, (places, values)) in enumerate(zip(choices, candidates, strict=True)):
+            peaks[name] = SectionPeak(float(value[row]), float(places[values[:, row].argmax(), row]), float(angle[row]))
         return peaks
 
     def _candidates(self, choices, at):
@@ -252,24 +234,6 @@ class Sections:
                 places = np.clip(np.nan_to_num(places), low, high)
                 values = evaluate(polynomials, places)
                 yield places.reshape(-1, places.shape[-1]), values.reshape(-1, values.shape[-1])
-
-    def _replace_unbounded(self, turn, heights, peaks):
-        """Make the peaks infinite that grow without bound at a limit position, with a warning."""
-        from ..cycle.extremes import Extremes, warning
-
-        found = []
-        for row, (name, peak) in enumerate(peaks.items()):
-
-            def height(at, row=row):
-                return heights(at)[row]
-
-            sides = ((limit, turn.limit(height, limit, side)) for limit in turn.limits for side in (-1.0, 1.0))
-            ends = np.unique([limit for limit, value in sides if value == np.inf])
-            found.append(Extremes(f"{name} in {self.link}", ends, ends + np.inf, ends >= 0.0, peak.value, turn.lost))
-            if ends.size:
-                peaks[name] = SectionPeak(np.inf, peak.x, float(ends[0]))
-        if text := warning(self.solution, found):
-            warnings.warn(text, ConditionWarning, stacklevel=6)
 
     def table(self):
         """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
@@ -330,6 +294,23 @@ class WithSections:
         stations = stations[np.diff(stations, prepend=-np.inf) > size]
         placed = np.abs(known[:, None] - stations).argmin(axis=1)
         return Sections(self, link, bar, np.linspace(0.0, stations[-1], at), stations, start, tuple(placed.tolist()))
+
+
+def _refined(turn, heights):
+    """Largest value of each height over a turn, and its crank angle: all are refined together by ever finer samples."""
+    angle = np.union1d(turn.angle, turn.even.crank_angle)
+    values, reach = heights(turn.at.moved_to(angle)), np.diff(angle).max()
+    rises = np.diff(values, prepend=values[:, -1:]) > 0.0
+    tops = np.where(rises & ~np.roll(rises, -1, axis=1), -values, np.inf)
+    middle = angle[np.argsort(tops, axis=1, kind="stable")[:, :TOPS]]
+    for _ in range(ZOOMS):
+        near = middle[..., None] + reach * np.linspace(-1.0, 1.0, 2 * ZOOM + 1)
+        found = heights(turn.at.moved_to(near.ravel() % turn.period)).reshape(-1, *near.shape)
+        values = np.einsum("kk...->k...", found)
+        middle = np.take_along_axis(near, values.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        reach /= ZOOM
+    angle = middle[np.arange(len(values)), values.max(axis=-1).argmax(axis=-1)] % turn.period
+    return values.max(axis=(1, 2)), np.where(turn.period - angle < NEAR_PERIOD, 0.0, angle)
 
 
 def evaluate(coefficients, x):
