@@ -179,8 +179,8 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
         words = f"mass must be greater than that of the moving links, {machine.mass:.6g} kg, which it includes"
         raise ParameterError(f"mount: {words}, got {found['mass']:.6g}")
     masses = [found["mass"], found["mass"], found.get("inertia")][: len(springs)]
-    rates, ratios = ([found[name] for name in found if name.startswith(own)] for own in ("stiffness", "damping"))
-    return warn_of_notes("mount", _mount("mount", machine, masses, rates, ratios, centre))
+    rates, dampers = ([found[name] for name in found if name.startswith(own)] for own in ("stiffness", "damping"))
+    return warn_of_notes("mount", _mount("mount", machine, masses, rates, dampers, centre))
 
 
 def block_for(solution, *, v_rms, tuning=0.5, damping=0.1):

@@ -196,8 +196,8 @@ def _judged(play, joint, reversals, angle):
         normal, lag = normal_force(angle), _within_half_a_turn(direction - motion(angle)[0])
         least = -_largest(lambda at: -normal_force(at), angle)
         _, (changes,) = sign_changes(lambda at: [normal_force(at[0])], play.period, angle)
-        lost = (at for at in np.sort(changes) if normal_force(at + play.sense * BEFORE) < 0.0)
-        starts = [(at, *motion(at)) for at in lost]
+        leaving = (at for at in np.sort(changes) if normal_force(at + play.sense * BEFORE) < 0.0)
+        starts = [(at, *motion(at)) for at in leaving]
     flights: list[Flight] = []
     for start in starts[:: int(play.sense)]:
         if not flights or play.sense * (start[0] - flights[-1].stop) >= 0.0:

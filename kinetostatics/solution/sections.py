@@ -92,11 +92,12 @@ class Bar:
 
     def properties(self, length):
         """Mass, kg, centre from the first pin, m, and moment of inertia about it, kg m2, for a length, m."""
-        checks.require("Bar.properties", "give the bar its mass, kg" if self.mass is None else None)
-        parts = [(0.5 * length, self.mass), *self.masses]
+        bar: Any = self.mass
+        checks.require("Bar.properties", "give the bar its mass, kg" if bar is None else None)
+        parts = [(0.5 * length, bar), *self.masses]
         total = sum(mass for _, mass in parts)
         centre = sum(x * mass for x, mass in parts) / total if total else 0.5 * length
-        return total, centre, self.mass * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
+        return total, centre, bar * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
 
 
 class SectionPeak(NamedTuple):
