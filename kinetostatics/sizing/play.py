@@ -32,6 +32,7 @@ NUMBERS = {"clearance": ("m", POSITIVE), "damping": ("1", POSITIVE)}
 """Units and rules of the options."""
 KNOT_STEP = 1.5e-3
 """Largest crank angle between knots of the splines of forces and masses, rad: cubic interpolation errs by 1e-12."""
+TINY = np.finfo(float).tiny
 ZERO_FORCE, MIN_MASS_RATIO = 1e-9, 1e-9
 """Least over largest force, and principal effective mass, below which the least counts as zero."""
 OFFSETS = np.geomspace(1e-9, 1e-2, 60)
@@ -277,23 +278,24 @@ class _Play:
         self.knots = (pieces.middle[:, None] + half * places).ravel()
         both = np.column_stack([value, slope[:, :2]]), np.column_stack([slope, bend[:, :2]])
         self.spline = CubicHermiteSpline(self.knots, *both)
+        self.cubics = np.moveaxis(self.spline.c, 1, 0).copy()
         xx, xy, yy = value[:, 2:].T
         self.lacks_mass = bool(np.any(xx * yy - xy * xy <= MIN_MASS_RATIO * (xx + yy) ** 2))
 
     def at(self, angle):
         """F, M and F' at crank angles, (7, ...): x, y, xx, xy, yy, x', y'."""
-        if np.ndim(angle):
+        if not isinstance(angle, float):
             return self.spline(np.mod(angle, self.period)).T
-        angle = angle % self.period  # one call of the spline takes ten times as long
+        angle = angle % self.period  # a call of the spline takes several times as long
         part = min(max(int(self.knots.searchsorted(angle)) - 1, 0), self.knots.size - 2)
-        third, second, first, value = self.spline.c[:, part]
+        third, second, first, value = self.cubics[part]
         step = angle - self.knots[part]
         return (value + step * (first + step * (second + step * third))).tolist()
 
     def follow(self, angle):
         """Magnitude of F, its direction, its rate of turning, and M across it."""
         x, y, *mass, dx, dy = self.at(angle)
-        size = np.maximum(np.hypot(x, y), np.finfo(float).tiny)
+        size = np.maximum(np.hypot(x, y), TINY)
         across = _resolved(mass, (x / size, y / size))[2]
         across = np.where(across > MIN_MASS_RATIO * (mass[0] + mass[2]), across, 0.0)
         return size, np.arctan2(y, x), (x * dy - y * dx) / size / size, across
@@ -309,7 +311,7 @@ class _Play:
         x, y, *mass, dx, dy = self.at(angle)
         e = np.cos(turned), np.sin(turned)
         ee, et, tt = _resolved(mass, e)
-        size = np.maximum(np.hypot(x, y), np.finfo(float).tiny)
+        size = np.maximum(np.hypot(x, y), TINY)
         turning, own = (x * dy - y * dx) / size / size, np.sqrt(size / tt)
         free = (e[0] * y - e[1] * x + et * rate * rate) / tt
         damped = free - 2.0 * self.damping * self.sense * own * (rate - turning) / (1.0 + (turning / own) ** 2)
