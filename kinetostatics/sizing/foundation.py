@@ -65,15 +65,15 @@ for _way, (_unit, _load) in WAYS.items():
 class Mount(Sized):
     """Vibration of a block with its machine, as `ks.sizing.mount` and `ks.sizing.block_for` return it.
 
-    Its numbers are in `table()`. A direction that is held has no velocity and passes its load on whole. Loads are
-    dynamic: weights and other means over the period are left out.
+    A direction that is held has no velocity and passes its load on whole. Loads are dynamic: weights and other means
+    over the period are left out.
 
     Attributes
     ----------
     numbers : dict
-        Value by name; each is an attribute too.
+        Value by name, as in `table()`; each is an attribute too.
     order : array (N,)
-        Multiples of the crank speed; of half of it for a period of two turns.
+        Multiples of the crank speed, whole unless a load takes several turns.
     crank_speed : float
         rad/s.
     force, displacement, ground_force : array (3, N) of complex
@@ -97,18 +97,16 @@ class Mount(Sized):
     displacement: np.ndarray
     ground_force: np.ndarray
 
-    def __getattr__(self, name):
-        if name in self.ROWS and "numbers" in vars(self):
-            return self.numbers[name]
-        raise AttributeError(f"{type(self).__name__} has no {name!r}")
+    def __post_init__(self):
+        vars(self).update(self.numbers)
 
     def harmonics(self, way="x"):
         """Amplitudes of one direction, SI, and the lag of the displacement behind the force in time, a DataFrame."""
         import pandas as pd
 
         checks.require("harmonics", checks.choice("way", way, tuple(WAYS)))
-        row = list(WAYS).index(way)
-        force, moves, ground = (part[row] for part in (self.force, self.displacement, self.ground_force))
+        rows = self.force, self.displacement, self.ground_force
+        force, moves, ground = (part[list(WAYS).index(way)] for part in rows)
         angle = -np.sign(self.crank_speed) * np.degrees(np.angle(moves * np.conj(force)))
         lag = np.where(moves * force == 0.0, np.nan, angle)
         table = {"force": abs(force), "displacement": abs(moves), "ground": abs(ground), "lag [deg]": lag}
@@ -159,17 +157,23 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     235.3 mm/s, 90.2 kN to the ground
     """
     checks.require("mount", checks.solution("solution", solution))
-    springs, *problems = _listed("stiffness", stiffness)
-    ratios, problem = _listed("damping", damping, len(springs))
+    springs = tuple(stiffness) if isinstance(stiffness, list | tuple) else (stiffness,)
+    ratios = tuple(damping) if isinstance(damping, list | tuple) else (damping,) * len(springs)
     centre, wrong = checks.Pair("m").check(centre, "centre")
-    if (len(springs) == len(WAYS)) == (inertia is None):
-        problems.append("inertia and a third stiffness, that of turning, must be given together")
-    plain = {"mass": mass} | ({} if inertia is None else {"inertia": inertia})
-    given = {name: (value, *NUMBERS[name]) for name, value in plain.items()}
+    must = {
+        f"stiffness must be a number or a list of up to three, got {checks.shown(stiffness)}": 0 < len(springs) <= 3,
+        f"damping must be a number or a list of as many as of stiffness, {len(springs)}": len(ratios) == len(springs),
+        "inertia and a third stiffness, that of turning, must be given together": (len(springs) == 3)
+        != (inertia is None),
+    }
+    problems = [text for text, holds in must.items() if not holds]
+    given = {"mass": (mass, *NUMBERS["mass"])}
+    if inertia is not None:
+        given["inertia"] = (inertia, *NUMBERS["inertia"])
     for way, spring, ratio in zip(WAYS, springs, ratios, strict=False):
         unit = "N*m/rad" if way == "turn" else NUMBERS["stiffness"][0]
         given |= {f"stiffness {way}": (spring, unit, POSITIVE), f"damping {way}": (ratio, *NUMBERS["damping"])}
-    found = checks.single_numbers("mount", *problems, problem, wrong, **given)
+    found = checks.single_numbers("mount", *problems, wrong, **given)
     machine = _machine("mount", solution, centre)
     if found["mass"] <= machine.mass:
         words = f"mass must be greater than that of the moving links, {machine.mass:.6g} kg, which it includes"
@@ -303,11 +307,3 @@ def _mount(owner, machine, masses, springs, ratios, centre):
         share = f"{100.0 * tail / numbers['v_peak']:.2g} % of v_peak"
         notes.append(f"the force on the frame jumps: harmonics above {HARMONICS} add up to {share}")
     return Mount(tuple(notes), numbers, order, machine.speed, force, moves, ground)
-
-
-def _listed(name, value, count=None):
-    """Numbers by direction as a tuple, and their fault or None; a lone number is for `count` directions, or for x."""
-    values = tuple(value) if isinstance(value, list | tuple) else (value,) * (count or 1)
-    fits = len(values) == count if count else 0 < len(values) <= len(WAYS)
-    words = f"as many as of stiffness, {count}" if count else "up to three, for x, y and turning"
-    return values, None if fits else f"{name} must be a number or a list of {words}, got {checks.shown(value)}"

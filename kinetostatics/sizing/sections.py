@@ -11,11 +11,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..cycle.extremes import extrema
+from ..cycle.extremes import extrema, extremes
 from ..cycle.means import closed_turn
+from ..machine.cams.profile import POSITIVE
 from ..machine.loads import TURN
 from ..numbers import checks
-from ..solution.sections import BAR, POSITIVE, Sections, evaluate
+from ..solution.sections import BAR, Sections, evaluate
 from .result import Row, Sized, warn_of_notes
 
 NUMBERS = {
@@ -109,7 +110,8 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     Warns
     -----
     HintWarning
-        Compression exceeds 10 % of Euler's load, so the bending moment is greater by as much.
+        Compression exceeds 10 % of Euler's load, so the bending moment is greater by as much; the stress exceeds the
+        yield strength.
 
     Examples
     --------
@@ -122,34 +124,39 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     fatigue 4.27 at 0.71 m, buckling 9.6
     """
     values = {"ultimate": ultimate, "endurance": endurance, "yield_strength": yield_strength}
-    limits = _numbers("bar_strength", solution, values, bar)
+    strength, endured, yields = _numbers("bar_strength", solution, values, bar).values()
     sections = solution.sections(link, bar)
 
     def fibres(axial, shear, moment):
         return np.array([axial / bar.area + side * moment / bar.modulus for side in (1.0, -1.0)])
 
     def use(smallest, largest):
-        mean = np.maximum(0.5 * (largest + smallest), 0.0)
-        return 0.5 * (largest - smallest) / limits["endurance"] + mean / limits["ultimate"]
+        return 0.5 * (largest - smallest) / endured + np.maximum(0.5 * (largest + smallest), 0.0) / strength
 
     def stress(at):
         return evaluate(fibres(*sections.polynomials(at))[side][:, [part]], x)[0]
 
     side, part, x = _worst_fibre(sections, fibres, use)
-    low, high = extrema(solution, stress).range
+    low, high = extrema(solution, stress, pulsed=False).range
     slenderness = sections.stations[-1] / np.sqrt(bar.second_moment / bar.area)
     euler = np.pi**2 * bar.youngs_modulus * bar.area / slenderness**2
-    yields = limits["yield_strength"] * bar.area
-    critical = euler if euler < 0.5 * yields else yields * (1.0 - 0.25 * yields / euler)
-    peaks = sections.largest_tension, sections.largest_compression, sections.largest_shear, sections.largest_moment
-    _, compression, _, moment = forces = [peak.value for peak in peaks]
-    safety = critical / compression if compression > 0.0 else np.inf
-    text = f"compression reaches {compression / euler:.0%} of Euler's load, which raises the bending moment as much"
-    notes = (text,) if compression > MAX_COMPRESSION * euler and moment > 0.0 else ()
-    stresses = [sections.highest(fibres).value, 0.0 - sections.highest(lambda *forces: -fibres(*forces)).value]
-    fatigue = 1.0 / use(low, high) if use(low, high) else np.inf
-    found = (*forces, *stresses, 0.5 * (high - low), 0.5 * (high + low), fatigue, slenderness, critical, safety)
-    return warn_of_notes("bar_strength", BarStrength(notes, sections, x, *found))
+    crushing = yields * bar.area
+    critical = euler if euler < 0.5 * crushing else crushing * (1.0 - 0.25 * crushing / euler)
+    peaks = sections.largest | sections.peaks({"most": fibres, "least": lambda *forces: -fibres(*forces)})
+    *forces, most, least = (peak.value for peak in peaks.values())
+    _, compression, _, moment = forces
+    notes = []
+    if compression > MAX_COMPRESSION * euler and moment > 0.0:
+        notes.append(
+            f"compression is {compression / euler:.0%} of Euler's load, which raises the bending moment as much"
+        )
+    if max(most, least) > yields:
+        words = f"the stress reaches {max(most, least) / 1e6:.4g} MPa, above the yield strength"
+        notes.append(f"{words} of {yields / 1e6:.4g} MPa; give the bar a larger area and modulus")
+    with np.errstate(divide="ignore"):
+        fatigue, safety = 1.0 / np.float64(use(low, high)), critical / np.float64(max(compression, 0.0))
+    found = (most, 0.0 - least, 0.5 * (high - low), 0.5 * (high + low), fatigue, slenderness, critical, safety)
+    return warn_of_notes("bar_strength", BarStrength(tuple(notes), sections, x, *forces, *map(float, found)))
 
 
 def _worst_fibre(sections, fibres, use):
@@ -209,6 +216,11 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     QuantityError
         There is no such reaction.
 
+    Warns
+    -----
+    ConditionWarning
+        The reaction grows without bound.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -220,7 +232,7 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     d, b, planes = _numbers("pin_strength", solution, values).values()
     closed_turn(solution, "pin_strength")
     solution.reaction(joint)
-    load = float(extrema(solution, joint).largest)
+    load = float(extremes(solution, joint).largest)
     return PinStrength((), load, 4.0 * load / (planes * np.pi * d * d), load / (d * b))
 
 
@@ -254,12 +266,13 @@ class Rigidity(Sized):
 
 def rigidity_of(solution, bars=None, shaft=None) -> dict[str, Rigidity]:
     """`Rigidity` of straight links, by a mapping to `Bar`, and of the "shaft", by a mapping of its numbers."""
-    given = {"bars": bars or {}, "shaft": shaft or {}}
-    texts = {"bars": '{"coupler": ks.Bar(...)}', "shaft": f"{{{', '.join(f'{name!r}: ...' for name in SHAFT)}}}"}
-    wrong = (f"{name} must be a dict, as {texts[name]}" for name in given if not isinstance(given[name], Mapping))
-    checks.require("needs", *wrong)
-    found = {link: bar_rigidity(solution, link, bar) for link, bar in given["bars"].items()}
-    return found | ({"shaft": shaft_rigidity(solution, given["shaft"])} if shaft else {})
+    texts = {
+        'bars must be a dict, as {"coupler": ks.Bar(...)}': bars,
+        f"shaft must be a dict of {', '.join(SHAFT)}": shaft,
+    }
+    checks.require("needs", *(text for text, given in texts.items() if not isinstance(given or {}, Mapping)))
+    found = {link: bar_rigidity(solution, link, bar) for link, bar in (bars or {}).items()}
+    return found | ({"shaft": shaft_rigidity(solution, shaft)} if shaft else {})
 
 
 def bar_rigidity(solution, link, bar) -> Rigidity:

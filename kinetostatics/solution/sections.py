@@ -18,12 +18,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning
+from ..machine.cams.profile import POSITIVE
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.planar import cross, dot
 
-POSITIVE: dict[str, Any] = {"low": 0.0, "strict": True}
 BAR = {
     "area": ("m**2", POSITIVE),
     "modulus": ("m**3", POSITIVE),
@@ -34,6 +34,10 @@ BAR = {
 """Unit and rule of each number of a bar."""
 PLACES = np.array([0.02, 0.17, 0.31, 0.46, 0.62, 0.77, 0.93])
 """Places in the period, relative to it, at which the forces are located on a link."""
+TOPS, ZOOM, ZOOMS = 8, 16, 7
+"""Highest samples of the turn that are refined; factor by which their step shrinks, and how often: to 1e-12 rad."""
+NEAR_PERIOD = 1e-6
+"""Distance from the end of the period, rad, below which a peak is at 0."""
 TOLERANCE = 1e-9
 """Difference of places, and of a bar from its link, relative to lengths and masses, that is rounding."""
 
@@ -88,7 +92,8 @@ class Bar:
 
     def properties(self, length):
         """Mass, kg, centre from the first pin, m, and moment of inertia about it, kg m2, for a length, m."""
-        bar = self.mass or 0.0
+        bar: Any = self.mass
+        checks.require("Bar.properties", "give the bar its mass, kg" if bar is None else None)
         parts = [(0.5 * length, bar), *self.masses]
         total = sum(mass for _, mass in parts)
         centre = sum(x * mass for x, mass in parts) / total if total else 0.5 * length
@@ -103,21 +108,6 @@ class SectionPeak(NamedTuple):
     angle: float
 
 
-def _curve(row, text):
-    """Force at each section and crank angle."""
-    return property(lambda self: self._curves[row], doc=text)
-
-
-def _peak(choose, text):
-    """True extreme over length and turn."""
-
-    def found(self):
-        return self.highest(choose)
-
-    found.__doc__ = text
-    return cached_property(found)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Sections:
     """Forces inside a straight link; made by `Solution.sections`.
@@ -129,13 +119,13 @@ class Sections:
     bar : Bar
         With the mass of its uniform part.
     x : array (at,)
-        Distances of the sections from the first pin, m; at a pin, load or point mass the section lies before it.
+        Sections from the first pin, m; at a pin, load or point mass the section lies before it.
     stations : array
-        Places of pins, loads and point masses, m; the first is 0, the last the length between the pins.
+        Places of pins, loads and point masses, m, from 0 to the length between the pins.
     start : float
         Coordinate of the first pin on the link's own axis, m.
     placed : tuple of int
-        Station of each force but inertia and weight, as `mechanics.free_body` lists them, and of each point mass.
+        Station of each pin force, load and point mass.
 
     Examples
     --------
@@ -159,13 +149,25 @@ class Sections:
         where = f"{value:.6g} N m at {x:.6g} m and {np.degrees(angle):.6g} deg"
         return f"<Sections: {self.link}, {len(self.x)} sections, largest bending moment {where}>"
 
-    axial_force = _curve(0, "N at each section and crank angle, (at, N), N, positive in tension.")
-    shear_force = _curve(1, "V at each section and crank angle, (at, N), N.")
-    bending_moment = _curve(2, "M at each section and crank angle, (at, N), N m.")
-    largest_tension = _peak(lambda n, v, m: [n], "Largest axial force, a `SectionPeak`.")
-    largest_compression = _peak(lambda n, v, m: [-n], "Largest compressive force, a `SectionPeak`.")
-    largest_shear = _peak(lambda n, v, m: [v, -v], "Largest size of the shear force, a `SectionPeak`.")
-    largest_moment = _peak(lambda n, v, m: [m, -m], "Largest size of the bending moment, a `SectionPeak`.")
+    axial_force = property(lambda self: self._curves[0], doc="Axial force (at, N), N, positive in tension.")
+    shear_force = property(lambda self: self._curves[1], doc="Shear force (at, N), N.")
+    bending_moment = property(lambda self: self._curves[2], doc="Bending moment (at, N), N m.")
+    largest_tension = property(lambda self: self.largest["tension"], doc="A `SectionPeak`, N.")
+    largest_compression = property(lambda self: self.largest["compression"], doc="A `SectionPeak`, N.")
+    largest_shear = property(lambda self: self.largest["shear"], doc="Of its size, a `SectionPeak`, N.")
+    largest_moment = property(lambda self: self.largest["moment"], doc="Of its size, a `SectionPeak`, N m.")
+
+    @cached_property
+    def largest(self):
+        """`SectionPeak` of tension, compression, shear and moment by name."""
+        return self.peaks(
+            {
+                "tension": lambda n, v, m: [n],
+                "compression": lambda n, v, m: [-n],
+                "shear": lambda n, v, m: [v, -v],
+                "moment": lambda n, v, m: [m, -m],
+            }
+        )
 
     @cached_property
     def _curves(self):
@@ -198,35 +200,48 @@ class Sections:
             ]
         )
 
-    def highest(self, choose) -> SectionPeak:
-        """Largest value over bar and period of the polynomials that ``choose(axial, shear, moment)`` lists."""
+    def peaks(self, choices) -> dict[str, SectionPeak]:
+        """Largest value over bar and period of the polynomials that each ``choose(axial, shear, moment)`` lists."""
         from ..cycle.extremes import extrema, largest_of, warning
 
-        low, high = self.stations[:-1, None], self.stations[1:, None]
+        turn = self.solution.sampled_for_forces
 
-        def candidates(at):
-            with np.errstate(invalid="ignore"):
-                polynomials = np.array(choose(*self.polynomials(at)))
+        def heights(at):
+            return np.array([values.max(axis=0) for _, values in self._candidates(choices.values(), at)])
+
+        if turn.limits.size:  # forces may grow without bound
+            found = [extrema(self.solution, lambda at, row=row: heights(at)[row]) for row in range(len(choices))]
+            found = [
+                replace(item, quantity=f"{name} in {self.link}") for name, item in zip(choices, found, strict=True)
+            ]
+            if text := warning(self.solution, found):
+                warnings.warn(text, ConditionWarning, stacklevel=5)
+            value, angle = np.nan_to_num([largest_of(item) for item in found], posinf=np.inf).T
+        else:
+            value, angle = _refined(turn, heights)
+        peaks, candidates = {}, self._candidates(choices.values(), turn.at.moved_to(angle))
+        for row, (name, (places, values)) in enumerate(zip(choices, candidates, strict=True)):
+            peaks[name] = SectionPeak(float(value[row]), float(places[values[:, row].argmax(), row]), float(angle[row]))
+        return peaks
+
+    def _candidates(self, choices, at):
+        """Yield places and values (candidates, N) at ends of parts and turning points, for each choice."""
+        low, high = self.stations[:-1, None], self.stations[1:, None]
+        with np.errstate(invalid="ignore"):
+            forces = self.polynomials(at)
+            for choose in choices:
+                polynomials = np.array(choose(*forces))
                 places = np.array(np.broadcast_arrays(low, high, *_turning(polynomials)))
                 places = np.clip(np.nan_to_num(places), low, high)
-                return places, evaluate(polynomials, places)
-
-        found = extrema(self.solution, lambda at: candidates(at)[1].max(axis=(0, 1, 2)))
-        if text := warning(self.solution, [found]):
-            warnings.warn(text, ConditionWarning, stacklevel=4)
-        value, angle = np.nan_to_num(largest_of(found), posinf=np.inf)
-        places, values = candidates(self.solution.moved_to(np.array([angle])))
-        return SectionPeak(float(value), float(places.ravel()[values.argmax()]), float(angle))
+                values = evaluate(polynomials, places)
+                yield places.reshape(-1, places.shape[-1]), values.reshape(-1, values.shape[-1])
 
     def table(self):
         """Largest tension, compression, shear force and bending moment with their places, a pandas DataFrame."""
         import pandas as pd
 
-        rows = [
-            (name, unit, peak.value, peak.x, np.degrees(peak.angle))
-            for name, unit in {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}.items()
-            for peak in [getattr(self, f"largest_{name}")]
-        ]
+        units = {"tension": "N", "compression": "N", "shear": "N", "moment": "N m"}
+        rows = [(name, units[name], at.value, at.x, np.degrees(at.angle)) for name, at in self.largest.items()]
         return pd.DataFrame(rows, columns=["largest", "unit", "value", "x [m]", "at [deg]"]).set_index("largest")
 
 
@@ -280,6 +295,23 @@ class WithSections:
         stations = stations[np.diff(stations, prepend=-np.inf) > size]
         placed = np.abs(known[:, None] - stations).argmin(axis=1)
         return Sections(self, link, bar, np.linspace(0.0, stations[-1], at), stations, start, tuple(placed.tolist()))
+
+
+def _refined(turn, heights):
+    """Largest value of each height over a turn, and its crank angle: all are refined together by ever finer samples."""
+    angle = np.union1d(turn.angle, turn.even.crank_angle)
+    values, reach = heights(turn.at.moved_to(angle)), np.diff(angle).max()
+    rises = np.diff(values, prepend=values[:, -1:]) > 0.0
+    tops = np.where(rises & ~np.roll(rises, -1, axis=1), -values, np.inf)
+    middle = angle[np.argsort(tops, axis=1, kind="stable")[:, :TOPS]]
+    for _ in range(ZOOMS):
+        near = middle[..., None] + reach * np.linspace(-1.0, 1.0, 2 * ZOOM + 1)
+        found = heights(turn.at.moved_to(near.ravel() % turn.period)).reshape(-1, *near.shape)
+        values = np.einsum("kk...->k...", found)
+        middle = np.take_along_axis(near, values.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        reach /= ZOOM
+    angle = middle[np.arange(len(values)), values.max(axis=-1).argmax(axis=-1)] % turn.period
+    return values.max(axis=(1, 2)), np.where(turn.period - angle < NEAR_PERIOD, 0.0, angle)
 
 
 def evaluate(coefficients, x):

@@ -331,7 +331,7 @@ def test_harmonics_and_numbers_by_name():
     assert block.table().loc["ground_x"].iloc[:2].tolist() == [block.ground_x, "N"]
     with pytest.raises(ks.ParameterError, match="way is 'z', allowed: 'x', 'y', 'turn'"):
         block.harmonics("z")
-    with pytest.raises(AttributeError, match="Mount has no 'v_max'"):
+    with pytest.raises(AttributeError, match="has no attribute 'v_max'"):
         _ = block.v_max
 
 

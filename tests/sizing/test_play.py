@@ -210,11 +210,15 @@ def test_a_large_force_that_reverses_knocks_harder_than_a_small_one():
 # What is told and refused
 
 
-def test_it_says_that_it_is_a_screen():
-    with pytest.warns(ks.HintWarning, match="screen"):
+def test_it_says_that_it_is_a_screen_and_warns_of_reversals_alone():
+    with pytest.warns(ks.HintWarning) as warned:
         found = ks.sizing.contact_loss(pump(coupler=ks.Link()), "B", 1e-5)
+    (reversals,) = (str(item.message) for item in warned)
+    assert "B passes through zero at 76.7, 283.3 deg" in reversals
     assert found.notes[0] == SCREEN
-    assert "passes through zero at 76.7, 283.3 deg" in found.notes[1]
+    assert found.notes[1] in reversals
+    assert SCREEN in repr(found)
+    assert SCREEN in found.table().attrs["notes"]
     assert list(found.table().index) == list(found.ROWS)
 
 

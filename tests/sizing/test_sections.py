@@ -223,8 +223,13 @@ def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
     coupler, rocker = ks.Link(2.0, 0.2, 2.0 * 0.4**2 / 12), ks.Link(1.0, 0.05, 1.0 * 0.1**2 / 12)
     deltoid = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open", coupler=coupler, rocker=rocker)
     found = ks.Scene(deltoid, 10.0, loads=[ks.Gravity()]).solve(7).sections("coupler", ks.Bar(1e-3, 1e-5))
-    with pytest.warns(ks.ConditionWarning, match="grows without bound at 0, 180 deg"):
+    with pytest.warns(ks.ConditionWarning, match="tension in coupler grows without bound at 0, 180 deg"):
         assert found.largest_tension.value == np.inf
+    with pytest.warns(ks.ConditionWarning, match="A grows without bound at 0, 180 deg"):
+        assert (
+            ks.sizing.pin_strength(found.solution.at(np.array([0.3])), "A", diameter=0.1, width=0.1).shear_stress
+            == np.inf
+        )
     assert found.largest_moment.value == pytest.approx(2.0 * (9.81 + 0.1 * 10.0**2) * 0.4 / 8)
 
 
@@ -271,6 +276,14 @@ def test_compression_near_eulers_load_is_warned_of():
     slender = ks.Bar(6e-3, 3e-4, SAW.masses, second_moment=2e-6, youngs_modulus=206e9)
     with pytest.warns(ks.HintWarning, match="21% of Euler's load"):
         ks.sizing.bar_strength(solved(), "coupler", slender, **LIMITS)
+
+
+def test_a_stress_above_the_yield_strength_is_warned_of():
+    """Steady tension is safe by Goodman's line, which ends at the ultimate strength."""
+    s = ks.Scene(ks.crank_slider(R, L), 1.0, 0.0, (ks.ProcessForce(2.4e6),)).solve(12)
+    with pytest.warns(ks.HintWarning, match=r"stress reaches 404.6 MPa, above the yield strength of 355 MPa"):
+        found = ks.sizing.bar_strength(s, "coupler", ks.Bar(6e-3, 3e-4, **STEEL), **LIMITS)
+    assert found.fatigue_safety > 1.0
 
 
 def test_bar_without_load_is_safe():
@@ -488,6 +501,7 @@ def test_unknown_names_are_refused():
         ),
         (lambda: ks.sizing.pin_strength(solved(), "A", diameter=-0.1, width=np.inf), "diameter must be.*width must be"),
         (lambda: ks.sizing.pin_strength(gaping(), "A", diameter=0.1, width=0.1), "does not close"),
+        (lambda: PLAIN.properties(L), "Bar.properties: give the bar its mass"),
         (lambda: ks.needs(solved(), "O", progress=False, bars=[SAW]), "bars must be a dict"),
         (lambda: ks.needs(solved(), "O", progress=False, bars={"coupler": PLAIN}), "lacks its second_moment"),
         (lambda: ks.needs(solved(), "O", progress=False, shaft={"length": 1.0}), "polar_moment must be a number"),
