@@ -141,7 +141,7 @@ def count(name, value, *, size=None):
     """Fault of a whole number of at least 1, or None; ``value * size`` bytes must fit into memory."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
         return f"{name} must be a whole number of at least 1, got {value!r}"
-    if size is None and value > MAX_COUNT:
+    if size is None and int(value) > MAX_COUNT:
         return f"{name} must be at most {MAX_COUNT}, got {shown(value)}"
     if size is not None and value * size > MAX_TABLE_MEMORY:
         found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
