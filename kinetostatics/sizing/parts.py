@@ -124,6 +124,8 @@ class Part:
     def problems(kind, options):
         """Sentences on a wrong kind, and on options that are unknown or missing."""
         problem = checks.choice("kind", kind, tuple(KINDS))
+        if problem is None and not isinstance(options, Mapping):
+            problem = f'options must be a dict, as {{"joint": "B"}}, got {checks.shown(options)}'
         if problem:
             return [problem]
         known = KINDS[kind].options
@@ -162,7 +164,7 @@ def read_part(name, raw):
     """
     options = dict(raw)
     kind, problems = options.pop("kind", None), []
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         missing = f"is missing; allowed: {', '.join(map(repr, KINDS))}"
         return None, [f".kind {missing}" if kind is None else f".{checks.choice('kind', kind, tuple(KINDS))}"]
     for key, value in options.items():

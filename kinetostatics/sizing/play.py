@@ -11,6 +11,7 @@ A unit relative motion moves link i by V_i, so M = sum V_i^T m_i V_i; by virtual
 joint under unit loads on link i.
 """
 
+import itertools
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -41,6 +42,8 @@ BEFORE = 1e-5
 """Crank angle from a zero of a force to where its direction is read, rad."""
 TOLERANCE, PERIODIC_TOLERANCE, MAX_PERIODS = 1e-8, 1e-6, 30
 """Relative error of a step; change of angle (rad) and rate over a period that counts as none; periods until then."""
+MAX_SWINGS, MAX_INDEX, MAX_EVALUATIONS = 3000, 0.5, 80_000
+"""Swings of the journal in a period beyond which it lies in the force up to that index; evaluations of its motion."""
 SCREEN = "a screen for one joint with play: it tells where contact is lost and the first landing, not what follows"
 
 
@@ -140,7 +143,7 @@ def contact_loss(solution, joint, clearance, damping=0.05):
     ParameterError
         A number is not positive; the joint is no pin, carries no force or has no mass; the crank is at rest; the
         mechanism does not close all round, or its force grows without bound; the solution is a batch of designs; the
-        journal does not land within a period.
+        journal does not land within a period, or swings too often in it to be followed.
 
     Warns
     -----
@@ -186,14 +189,20 @@ def _judged(play, joint, reversals, angle):
     else:
         peaks = [_largest(lambda at, row=row: play.indices(at)[row], angle) for row in (1, 0)]
     normal, lag, least = size, np.zeros(angle.shape), float(size.min())
-    if not play.lacks_mass:
-        motion, repeats = play.motion()
+    swings = play.swings()
+    if swings > MAX_SWINGS and index.max() > MAX_INDEX:
+        words = f"the journal swings {swings:.2g} times in a period, more than the {MAX_SWINGS} that are followed"
+        raise ParameterError(f"contact_loss: {words}; give a larger clearance or crank speed")
+    if swings > MAX_SWINGS:
+        notes.append(f"the journal swings {swings:.2g} times in a period: it counts as lying in the force")
+    elif not play.lacks_mass:
+        motion, repeats, periods = play.motion()
 
         def normal_force(at):
             return play.contact(at, *motion(at))[1]
 
         if not repeats:
-            notes.append(f"the journal reached no periodic motion in {MAX_PERIODS} periods: the last one counts")
+            notes.append(f"the journal reached no periodic motion in {periods} periods: the last one counts")
         normal, lag = normal_force(angle), _within_half_a_turn(direction - motion(angle)[0])
         least = -_largest(lambda at: -normal_force(at), angle)
         _, (changes,) = sign_changes(lambda at: [normal_force(at[0])], play.period, angle)
@@ -317,25 +326,34 @@ class _Play:
         damped = free - 2.0 * self.damping * self.sense * own * (rate - turning) / (1.0 + (turning / own) ** 2)
         return damped, e[0] * x + e[1] * y + ee * rate * rate - et * free
 
+    def swings(self):
+        """Number of swings about the force in a period; 0 of a journal without mass."""
+        size, *_, across = self.follow(self.knots)
+        return 0.0 if self.lacks_mass else float(np.trapezoid(np.sqrt(size / across), self.knots) / (2.0 * np.pi))
+
     def motion(self):
-        """Angle and rate of the journal as a function of the crank angle, and whether they repeat after the period."""
+        """Angle and rate of the journal by the crank angle, whether they repeat after the period, number of periods."""
         from scipy.integrate import solve_ivp
 
-        def slopes(angle, y):
+        def slopes(angle, y, calls):
+            if next(calls) > MAX_EVALUATIONS:
+                words = f"the journal's motion cannot be followed at {np.degrees(np.mod(angle, self.period)):.6g} deg"
+                raise ParameterError(f"contact_loss: {words}, where forces or masses change at once")
             turned, rate = y.tolist()
             return rate, self.contact(angle, turned, rate)[0]
 
         size, direction, rate, _ = self.follow(self.knots)
         first = int(np.argmax(size))
         ends = self.knots[first], self.knots[first] + self.sense * self.period
-        state, repeats, periods = np.array([direction[first], rate[first]]), False, 0
+        state, repeats, periods, evaluations = np.array([direction[first], rate[first]]), False, 0, 0
         options = {"method": "LSODA", "rtol": TOLERANCE, "atol": TOLERANCE, "dense_output": True}
-        while not repeats and periods < MAX_PERIODS:
-            run = solve_ivp(slopes, ends, state, **options)
+        while not repeats and periods < MAX_PERIODS and evaluations < MAX_EVALUATIONS:
+            run = solve_ivp(slopes, ends, state, args=(itertools.count(),), **options)
             change, state, periods = run.y[:, -1] - state, run.y[:, -1], periods + 1
+            evaluations += run.nfev
             change[0] = _within_half_a_turn(change[0])
             repeats = bool(np.abs(change).max() < PERIODIC_TOLERANCE * (1.0 + abs(state[1])))
-        return lambda angle: run.sol(min(ends) + np.mod(angle - min(ends), self.period)), repeats
+        return lambda angle: run.sol(min(ends) + np.mod(angle - min(ends), self.period)), repeats, periods
 
     def flight(self, start, turned, rate):
         """`Flight` of a journal that leaves at an angle with a rate."""

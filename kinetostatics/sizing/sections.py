@@ -266,13 +266,12 @@ class Rigidity(Sized):
 
 def rigidity_of(solution, bars=None, shaft=None) -> dict[str, Rigidity]:
     """`Rigidity` of straight links, by a mapping to `Bar`, and of the "shaft", by a mapping of its numbers."""
-    texts = {
-        'bars must be a dict, as {"coupler": ks.Bar(...)}': bars,
-        f"shaft must be a dict of {', '.join(SHAFT)}": shaft,
-    }
-    checks.require("needs", *(text for text, given in texts.items() if not isinstance(given or {}, Mapping)))
-    found = {link: bar_rigidity(solution, link, bar) for link, bar in (bars or {}).items()}
-    return found | ({"shaft": shaft_rigidity(solution, shaft)} if shaft else {})
+    given = {"bars": {} if bars is None else bars, "shaft": {} if shaft is None else shaft}
+    texts = {"bars": '{"coupler": ks.Bar(...)}', "shaft": f"{{{', '.join(f'{name!r}: ...' for name in SHAFT)}}}"}
+    wrong = (f"{name} must be a dict, as {texts[name]}" for name in given if not isinstance(given[name], Mapping))
+    checks.require("needs", *wrong)
+    found = {link: bar_rigidity(solution, link, bar) for link, bar in given["bars"].items()}
+    return found | ({"shaft": shaft_rigidity(solution, given["shaft"])} if given["shaft"] else {})
 
 
 def bar_rigidity(solution, link, bar) -> Rigidity:
@@ -300,19 +299,25 @@ def bar_rigidity(solution, link, bar) -> Rigidity:
 
 def shaft_rigidity(solution, shaft) -> Rigidity:
     """Twist of a shaft with the balancing torque at the crank; the drive keeps its speed at the other end."""
+    checks.require("needs: shaft", *(checks.choice("number", name, SHAFT) for name in shaft))
     values = {name: shaft.get(name) for name in SHAFT}
     length, polar_moment, shear_modulus = _numbers("needs: shaft", solution, values).values()
     stiffness = shear_modulus * polar_moment / length
     with np.errstate(divide="ignore"):
-        natural = np.sqrt(stiffness / closed_turn(solution, "needs: shaft").even.reduced_inertia.mean())
+        natural = np.sqrt(stiffness / _evenly(closed_turn(solution, "needs: shaft")).reduced_inertia.mean())
     return _against_harmonics("needs: shaft", solution, lambda at: at.balancing_torque / stiffness, natural)
+
+
+def _evenly(turn):
+    """Solution at even crank angles; the nearest usable ones where no value has a correct digit."""
+    return turn.at.moved_to(turn.clear(np.linspace(0.0, turn.period, ANGLES, endpoint=False)))
 
 
 def _against_harmonics(owner, solution, function, natural):
     """`Rigidity` by a natural frequency, rad/s, and the deflection of a rigid machine, a function of a solution."""
     speed = abs(float(np.mean(solution.crank_speed)))
     checks.require(owner, None if speed else "the crank stands, so nothing vibrates; solve it at its crank speed")
-    series = np.fft.rfft(function(solution.moved_to(np.linspace(0.0, solution.period, ANGLES, endpoint=False))))
+    series = np.fft.rfft(function(_evenly(solution.sampled)))
     squares = (np.arange(series.size) * TURN / solution.period * speed / natural) ** 2
     rounding = np.abs(series) <= MIN_HARMONIC * np.abs(series).max()
     with np.errstate(divide="ignore", invalid="ignore"):

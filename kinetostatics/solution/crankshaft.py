@@ -52,7 +52,7 @@ class CrankshaftResults:
         True
         """
         name = f"{SHAFT_TORQUE} {group}"
-        known = drive == "right" and name in of_scene(self)
+        known = isinstance(drive, str) and drive == "right" and name in of_scene(self)
         return self._found(name) if known else self.dynamics.shaft_torque(group, drive)
 
     def _at_bearing(self, joint, at):

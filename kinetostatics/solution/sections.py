@@ -286,7 +286,8 @@ class WithSections:
 
         owner = f"sections of {link!r}"
         wrong = f"bar must be a ks.Bar(area=..., modulus=...), got {checks.shown(bar)}"
-        checks.require(owner, None if isinstance(bar, Bar) else wrong, checks.count("at", at))
+        size = 3 * 8 * self.crank_angle.size
+        checks.require(owner, None if isinstance(bar, Bar) else wrong, checks.count("at", at, size=size))
         motion = self.moved_to(closed_turn(self, owner).period * PLACES).dynamics
         places, start, size = _places(motion, link, owner)
         bar = _own_bar(bar, motion.mechanism.links[link], start, max(places), owner)

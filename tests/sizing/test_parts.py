@@ -171,6 +171,7 @@ limits = ["pin_B.shear_stress <= 20 MPa"]
 WRONG = {
     "no kind": ('kind = "pin"', "", "sizing.pin_B.kind is missing; allowed: "),
     "unknown kind": ('kind = "pin"', 'kind = "pinn"', "sizing.pin_B.kind is 'pinn'"),
+    "list of kinds": ('kind = "pin"', 'kind = ["pin"]', "sizing.pin_B.kind is ['pin'], allowed: 'bearing'"),
     "unknown key": ('width = "100 mm"', 'width = "100 mm"\nwide = "1 m"', "sizing.pin_B: option is 'wide'"),
     "missing key": ('width = "100 mm"', "", "sizing.pin_B: width is missing"),
     "no unit": ('width = "100 mm"', "width = 100", "sizing.pin_B.width must be a text with a unit"),
@@ -191,6 +192,7 @@ def test_a_wrong_table_is_named_with_its_key(name, tmp_path):
 BAD = {
     "kind": (("pin", "screw", {}), "kind is 'screw'"),
     "option": (("pin", "pin", {"joint": "B", "diameter": 0.1, "width": 0.1, "colour": 1}), "option is 'colour'"),
+    "options": (("pin", "pin", None), "options must be a dict"),
     "missing": (("pin", "pin", {"joint": "B"}), "diameter is missing\n  width is missing"),
 }
 

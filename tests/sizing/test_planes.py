@@ -372,6 +372,7 @@ def cam_saw():
         (lambda: PLAIN.shaft_torque("coupler"), "no part has a plane"),
         (lambda: MIXED.shaft_torque("slider"), "'slider'"),
         (lambda: MIXED.shaft_torque("coupler", drive="top"), "'top'"),
+        (lambda: MIXED.shaft_torque("coupler", drive=np.array(["left", "right"])), "drive is array"),
         (lambda: PLAIN.reaction("O", at="left"), "the crank has no bearings"),
         (lambda: FLAT.reaction("O", at="middle"), "'middle'"),
         (lambda: FLAT.reaction("A", at="left"), "joint with main bearings"),

@@ -229,6 +229,7 @@ REFUSED = {
     "negative play": (pump, "B", {"clearance": -1e-4}, "clearance must be greater than 0"),
     "NaN": (pump, "B", {"clearance": np.nan}, "clearance must be finite"),
     "both": (pump, "B", {"clearance": 0.0, "damping": 0.0}, "clearance .*; damping must be greater than 0"),
+    "tiny play": (pump, "B", {"clearance": 2e-9}, "swings .* times in a period, more than the 3000"),
     "guide": (pump, "guide", {}, "joint is 'guide', allowed: 'O', 'A', 'B'"),
     "unknown": (pump, "C", {}, "joint is 'C', allowed"),
     "no mass": (lambda: pump(ks.Link(), ks.Link(), loads=ks.ProcessForce(9.0)), "B", {}, "no mass on either side"),
@@ -250,6 +251,21 @@ REFUSED = {
 def test_what_is_refused(solution, joint, numbers, message):
     with pytest.raises(ks.ParameterError, match=message):
         ks.sizing.contact_loss(solution(), joint, **{"clearance": 1e-4} | numbers)
+
+
+def test_a_journal_that_swings_fast_lies_in_the_force():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 50.0), slider=ks.Link(600.0))
+    s = ks.solve(saw, 0.0, crank_speed=33.5)
+    with pytest.warns(ks.HintWarning, match="swings 1.4e.06 times in a period: it counts as lying in the force"):
+        found = ks.sizing.contact_loss(s, "B", 1e-12)
+    assert (found.flights, found.least_normal) == ((), found.least_force)
+    assert found.index == pytest.approx(found.earles_wu * np.sqrt(found.effective_mass * 1e-12), rel=1e-4)
+
+
+def test_motion_that_cannot_be_followed_is_refused(monkeypatch):
+    monkeypatch.setattr("kinetostatics.sizing.play.MAX_EVALUATIONS", 200)
+    with pytest.raises(ks.ParameterError, match=r"motion cannot be followed at .* deg"):
+        ks.sizing.contact_loss(pump(), "B", 1e-5)
 
 
 def test_play_without_landing_is_refused():

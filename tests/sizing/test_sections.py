@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sizing import sections as strength
-from support import pages
+from support import change_points, pages
 
 SPEED, R, L, SLIDER = 33.5, 0.3, 2.0, 600.0
 STEEL = {"second_moment": 8e-5, "youngs_modulus": 206e9}
@@ -231,6 +231,16 @@ def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
             == np.inf
         )
     assert found.largest_moment.value == pytest.approx(2.0 * (9.81 + 0.1 * 10.0**2) * 0.4 / 8)
+
+
+def test_change_points_make_a_pin_infinite_with_a_warning_and_leave_the_shaft_its_frequency():
+    with pytest.warns(ks.ConditionWarning, match="assembly .1 keeps to its side"):
+        s = ks.Scene(change_points.four_bar("deltoid", 1), 10.0).solve(24)
+    with pytest.warns(ks.ConditionWarning, match="grows without bound"):
+        assert ks.sizing.pin_strength(s, "A", diameter=0.1, width=0.1).shear_stress == np.inf
+    between = s.moved_to((np.arange(1440) + 0.5) * 2 * np.pi / 1440).reduced_inertia.mean()
+    found = strength.shaft_rigidity(s, {"length": 1.0, "polar_moment": 1e-6, "shear_modulus": 8e10})
+    assert found.natural_frequency == pytest.approx(np.sqrt(8e4 / between), rel=1e-3)
 
 
 # Strength
@@ -503,6 +513,10 @@ def test_unknown_names_are_refused():
         (lambda: ks.sizing.pin_strength(gaping(), "A", diameter=0.1, width=0.1), "does not close"),
         (lambda: PLAIN.properties(L), "Bar.properties: give the bar its mass"),
         (lambda: ks.needs(solved(), "O", progress=False, bars=[SAW]), "bars must be a dict"),
+        (lambda: ks.needs(solved(), "O", progress=False, bars=np.ones(2)), "bars must be a dict"),
+        (lambda: ks.needs(solved(), "O", progress=False, shaft=np.array([])), "shaft must be a dict"),
+        (lambda: ks.needs(solved(), "O", progress=False, shaft={"lenght": 1.0}), "needs: shaft: number is 'lenght'"),
+        (lambda: solved().sections("coupler", SAW, at=10**400), "at must be at most .* memory"),
         (lambda: ks.needs(solved(), "O", progress=False, bars={"coupler": PLAIN}), "lacks its second_moment"),
         (lambda: ks.needs(solved(), "O", progress=False, shaft={"length": 1.0}), "polar_moment must be a number"),
         (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank stands"),

@@ -262,6 +262,7 @@ def test_wrong_numbers_are_named(make, given, name, value):
     ({"arrangement": "pull"}, "arrangement is 'pull', allowed: 'push-pull'"),
     ({"correction": "ks"}, "correction is 'ks', allowed"),
     ({"count": 1.5}, "count must be a whole number"),
+    ({"count": 10**400}, "count must be at most"),
     ({"peened": "yes"}, "peened must be True or False"),
     ({"arrangement": "opposed", "preload": 50.0}, "preload must be at least 100 N, .* got 50 N"),
     ({"travel": -1.0, "index": 0.5, "count": 0}, "travel .*index .*count "),

@@ -276,6 +276,6 @@ def test_harmless_design_is_tried_again(monkeypatch):
     monkeypatch.setattr(dispatch, "result_table", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
     monkeypatch.setattr(dispatch.pd, "concat", list)
     hands = Mortal(lambda names, times: 2 in names or (names == (3,) and times == 1))
-    found = dispatch._isolate_deaths(SimpleNamespace(outputs=()), pd.DataFrame({"x": [0.0] * 4}), hands)
+    found = dispatch._isolate_deaths(SimpleNamespace(items=()), pd.DataFrame({"x": [0.0] * 4}), hands)
     assert found == [((0, 1),), [[2, "the worker died with this design"], ((3,),)]]
     assert hands.tried.count((2,)) == dispatch.MAX_DESIGN_RUNS

@@ -131,6 +131,8 @@ def broadcast_problem(**shapes):
 
 MAX_TABLE_MEMORY = 10_000_000_000
 """Largest size of a table of angles or designs, bytes."""
+MAX_COUNT = 10**15
+"""Largest whole number of whatever needs no table."""
 BYTES_PER_ANGLE = 1000
 """Size of the results at a crank angle with all forces in a table."""
 
@@ -139,6 +141,8 @@ def count(name, value, *, size=None):
     """Fault of a whole number of at least 1, or None; ``value * size`` bytes must fit into memory."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
         return f"{name} must be a whole number of at least 1, got {value!r}"
+    if size is None and int(value) > MAX_COUNT:
+        return f"{name} must be at most {MAX_COUNT}, got {shown(value)}"
     if size is not None and value * size > MAX_TABLE_MEMORY:
         found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
         return f"{name} must be at most {MAX_TABLE_MEMORY // size}, as {found} of memory"
