@@ -160,13 +160,13 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     springs = tuple(stiffness) if isinstance(stiffness, list | tuple) else (stiffness,)
     ratios = tuple(damping) if isinstance(damping, list | tuple) else (damping,) * len(springs)
     centre, wrong = checks.Pair("m").check(centre, "centre")
-    must = {
-        f"stiffness must be a number or a list of up to three, got {checks.shown(stiffness)}": 0 < len(springs) <= 3,
-        f"damping must be a number or a list of as many as of stiffness, {len(springs)}": len(ratios) == len(springs),
-        "inertia and a third stiffness, that of turning, must be given together": (len(springs) == 3)
-        != (inertia is None),
-    }
-    problems = [text for text, holds in must.items() if not holds]
+    count = len(springs)
+    few, alike, both = 0 < count <= len(WAYS), len(ratios) == count, (count == len(WAYS)) == (inertia is not None)
+    problems = [
+        None if few else f"stiffness must be a number or a list of up to three, got {checks.shown(stiffness)}",
+        None if alike else f"damping must be a list of as many as of stiffness, {count}, got {checks.shown(damping)}",
+        None if both else "inertia and a third stiffness, that of turning, must be given together",
+    ]
     given = {"mass": (mass, *NUMBERS["mass"])}
     if inertia is not None:
         given["inertia"] = (inertia, *NUMBERS["inertia"])

@@ -53,11 +53,7 @@ class BarStrength(Sized):
         "smallest_stress": Row("Pa", "over bar and turn, compression negative", "N/A +- M/W"),
         "stress_amplitude": Row("Pa", "at the fibre nearest to fatigue", "s_a = (max - min)/2 over the turn"),
         "mean_stress": Row("Pa", "at that fibre", "s_m = (max + min)/2 over the turn"),
-        "fatigue_safety": Row(
-            "1",
-            "at that fibre, mean and amplitude in proportion",
-            "1/n = s_a/S_e + max(s_m, 0)/S_u, Goodman's line in Haigh's diagram (Shigley, eq. 6-46)",
-        ),
+        "fatigue_safety": Row("1", "at that fibre", "1/n = s_a/S_e + max(s_m, 0)/S_u, Goodman, Haigh (Shigley 6-46)"),
         "slenderness": Row("1", "length over radius of gyration", "L/k, k = sqrt(I/A)"),
         "buckling_load": Row(
             "N",
@@ -247,15 +243,9 @@ class Rigidity(Sized):
             "bar pi^2 sqrt(E I/(mu L^4)), with point masses Ritz; shaft sqrt(G J_p/(L J)), J mean reduced inertia",
         ),
         "order": Row("1", "natural frequency over crank speed", "natural frequency/omega"),
-        "deflection": Row(
-            "1",
-            "largest at mid-span over length; twist, rad",
-            "int M min(x, L - x) dx/(2 E I L); T L/(G J_p)",
-        ),
+        "deflection": Row("1", "mid-span over length; twist, rad", "int M min(x, L - x) dx/(2 E I L); T L/(G J_p)"),
         "departure": Row(
-            "1",
-            "rigid is within this share of the largest deflection",
-            "harmonic n times r^2/(1 - r^2), r = n omega/natural frequency, without damping (Timoshenko)",
+            "1", "rigid is within this share of it", "r^2/(1 - r^2) by harmonic, r = n/order (Timoshenko)"
         ),
     }
     natural_frequency: float

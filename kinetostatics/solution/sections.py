@@ -263,8 +263,8 @@ class WithSections:
         Returns
         -------
         Sections
-            `.axial_force`, `.shear_force`, `.bending_moment` (at, N); `.largest_moment` ... true extremes over length
-            and turn, whatever the sections and crank angles; `.table()`, ``ks.plots.sections(found)``.
+            `.axial_force`, `.shear_force`, `.bending_moment` (at, N); `.largest_moment` ... over length and turn,
+            whatever the sections and crank angles; `.table()`, ``ks.plots.sections(found)``.
 
         Raises
         ------
