@@ -295,7 +295,7 @@ class HelicalSpring(Sized):
         tested, alternating = self.endurance
         rise = self.alternating_stress / alternating
         rest = self.ultimate_stress - self.initial_stress
-        along = rest / (rise * (self.ultimate_stress - tested) + self.mean_stress - self.initial_stress)
+        along = rest / (rise * (self.ultimate_stress - tested) + (self.mean_stress - self.initial_stress))
         return float(max(min(1.0 / rise, along), 0.0))
 
     def _buckling_deflection(self):

@@ -272,6 +272,10 @@ def test_wrong_options_are_named(given, text):
         ks.sizing.helical_spring(**SIZED | given)
 
 
+def test_a_preload_beyond_all_travel_leaves_no_safety():
+    assert ks.sizing.HelicalSpring(**GIVEN | {"preload": 1e30}).fatigue_safety == 0.0
+
+
 def test_coils_must_be_wider_than_the_wire():
     with pytest.raises(ks.ParameterError, match="coil_diameter must be greater"):
         ks.sizing.HelicalSpring(**GIVEN | {"wire_diameter": 0.04})
