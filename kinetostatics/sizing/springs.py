@@ -154,7 +154,7 @@ class HelicalSpring(Sized):
         Of each spring.
     travel : float
         Between the ends of the stroke, m.
-    others
+    preload, material, arrangement, count, peened, crank_speed, end_factor
         As for `helical_spring`.
 
     Attributes
