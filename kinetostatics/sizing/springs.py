@@ -50,8 +50,8 @@ WIRE_RANGE = 1e-6, 1e6
 SAFE = 1.0 - 1e-9
 """Least safety without a note: 1 but for rounding."""
 REMEDIES = {
-    "fatigue_safety": "it breaks in time; take more springs, a lower allowed stress or peened wire",
-    "static_safety": "it sets; take more springs or a lower allowed stress",
+    "fatigue_safety": "it breaks in time; allow less stress by thicker wire, or take peened wire",
+    "static_safety": "it sets; allow less stress by thicker wire",
     "solid_safety": "it sets if its coils close; give it a stop before that",
     "buckling_safety": "it buckles; guide it on a rod or in a tube",
 }
