@@ -356,8 +356,8 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     checks.require(
         owner,
         None if 0.0 <= share <= 1.0 else f"reciprocating must lie between 0 and 1, got {share:g}",
-        *(f"{name} needs a plane" for name, weight in given.items() if weight.plane is None),
-        "left and right have the same plane" if left.plane == right.plane is not None else None,
+        *(f"{name} needs a plane: Counterweight(..., plane=0.3)" for name, item in given.items() if item.plane is None),
+        f"left and right have the same plane, {left.plane:g} m" if left.plane == right.plane is not None else None,
         "the pin of a cam roller runs at a varying distance from O" if mechanism.led_by_ground else None,
     )
     (crank,) = mechanism.crank.links

@@ -16,6 +16,8 @@ from . import bearings, foundation, play, scene_springs, sections, springs
 
 BAR = tuple(inspect.signature(Bar).parameters)
 """Options that describe the bar of a link."""
+NOT_OPTIONS, OF_THE_SCENE = ("solution", "bar", "options"), ("stiffness", "travel", "crank_speed")
+"""Arguments that a part does not give; those of a spring that follow from its scene."""
 
 
 def _bar_strength(solution, *, link, **options):
@@ -28,59 +30,40 @@ def _spring(solution, *, spring="spring", **options):
 
 
 class Kind(NamedTuple):
-    """A kind of part: function of a solution, class of its result, and the units of its options that are numbers."""
+    """A kind of part: function of a solution, class of its result, unit of its numbers, whence it has its options."""
 
     size: Callable
     result: Any
     units: Mapping[str, Any]
-    functions: tuple[Callable, ...]
-    given: tuple[str, ...] = ("solution",)
+    sources: tuple[Callable, ...] = ()
 
     @property
     def options(self):
-        """Name of each option, and whether a part must give it; `given` arguments come from elsewhere."""
-        signatures = [inspect.signature(function).parameters for function in self.functions]
+        """Name of each option, and whether a part must give it."""
         return {
             name: item.default is item.empty
-            for own in signatures
-            for name, item in own.items()
-            if name not in self.given
+            for source in (self.size, *self.sources)
+            for name, item in inspect.signature(source).parameters.items()
+            if name not in NOT_OPTIONS and (self.size is not _spring or name not in OF_THE_SCENE)
         }
 
 
-def _units(numbers):
-    return {name: unit for name, (unit, _) in numbers.items()}
+def _units(module):
+    return {name: unit for name, (unit, _) in module.NUMBERS.items()}
 
 
-MASSES = ("m", "kg")
+BEARINGS, SECTIONS, FOUNDATION = map(_units, (bearings, sections, foundation))
+MOUNT = FOUNDATION | {"stiffness": ("N/m", "N/m", "N m/rad"), "centre": ("m", "m")}
+BARS = SECTIONS | {"masses": ("m", "kg")}
 KINDS = {
-    "bearing": Kind(bearings.bearing, bearings.Bearing, _units(bearings.NUMBERS), (bearings.bearing,)),
-    "plain bearing": Kind(
-        bearings.plain_bearing, bearings.PlainBearing, _units(bearings.NUMBERS), (bearings.plain_bearing,)
-    ),
-    "bar": Kind(
-        _bar_strength,
-        sections.BarStrength,
-        _units(sections.NUMBERS) | {"masses": MASSES},
-        (sections.bar_strength, Bar),
-        ("solution", "bar"),
-    ),
-    "pin": Kind(sections.pin_strength, sections.PinStrength, _units(sections.NUMBERS), (sections.pin_strength,)),
-    "play": Kind(play.contact_loss, play.ContactLoss, _units(play.NUMBERS), (play.contact_loss,)),
-    "spring": Kind(
-        _spring,
-        scene_springs.BalancingSpring,
-        _units(springs.NUMBERS),
-        (scene_springs.spring_for, springs.helical_spring),
-        ("scene", "options", "stiffness", "travel", "crank_speed"),
-    ),
-    "mount": Kind(
-        foundation.mount,
-        foundation.Mount,
-        _units(foundation.NUMBERS) | {"stiffness": ("N/m", "N/m", "N m/rad"), "centre": ("m", "m")},
-        (foundation.mount,),
-    ),
-    "block": Kind(foundation.block_for, foundation.Mount, _units(foundation.NUMBERS), (foundation.block_for,)),
+    "bearing": Kind(bearings.bearing, bearings.Bearing, BEARINGS),
+    "plain bearing": Kind(bearings.plain_bearing, bearings.PlainBearing, BEARINGS),
+    "bar": Kind(_bar_strength, sections.BarStrength, BARS, (sections.bar_strength, Bar)),
+    "pin": Kind(sections.pin_strength, sections.PinStrength, SECTIONS),
+    "play": Kind(play.contact_loss, play.ContactLoss, _units(play)),
+    "spring": Kind(_spring, scene_springs.BalancingSpring, _units(springs), (springs.helical_spring,)),
+    "mount": Kind(foundation.mount, foundation.Mount, MOUNT),
+    "block": Kind(foundation.block_for, foundation.Mount, FOUNDATION),
 }
 """Kinds of parts by name."""
 

@@ -117,9 +117,9 @@ def spring_for(scene, spring="spring", **options):
         found = lightest("spring_for", stiffness=stiffness, **options)
         z = speed * np.sqrt(found.mass / found.stiffness)
         before, stiffness = stiffness, float(balance * np.tan(z) / z) if z < np.pi / 2.0 else np.inf
-        if not stiffness < np.inf or abs(stiffness - before) <= TOLERANCE * stiffness:
+        if stiffness == np.inf or abs(stiffness - before) <= TOLERANCE * stiffness:
             break
-    if not abs(stiffness - before) <= TOLERANCE * stiffness < np.inf:
+    if stiffness == np.inf or abs(stiffness - before) > TOLERANCE * stiffness:
         raise ParameterError(
             f"spring_for: no {found.arrangement} springs of {found.material.name} balance {balance / speed**2:.6g} kg: "
             f"their surge ratio is {np.pi / z:.3g}, and from 2 down their own mass takes all stiffness; allow more "
@@ -132,17 +132,16 @@ def spring_for(scene, spring="spring", **options):
 
 
 def _balance(scene, name):
-    """Solution with a spring alone, its stiffness, travel, crank speed without sign, dynamic stiffness of its end."""
+    """Solution with a spring alone, its stiffness, travel, size of the crank speed, dynamic stiffness of its end."""
     places = {path.removesuffix(".stiffness"): place for path, place in scene.places.items()}
     owners = {key: place._replace(steps=place.steps[:-1]).value(scene) for key, place in places.items()}
     springs = {key: owner for key, owner in owners.items() if isinstance(owner, Spring) and "." not in key}
-    if not springs:
-        raise ParameterError("spring_for: the scene has no Spring among its loads")
-    checks.require("spring_for", checks.choice("spring", name, tuple(springs)))
+    problem = checks.choice("spring", name, tuple(springs)) if springs else "the scene has no Spring among its loads"
+    checks.require("spring_for", problem)
     load = springs[name]
     found = checks.single_numbers(
         "spring_for",
-        "the spring must have no cubic term" if np.any(load.cubic) else None,
+        f"the spring must have no cubic term, got {checks.shown(load.cubic)}" if np.any(load.cubic) else None,
         stiffness=(load.stiffness, "N/m", POSITIVE),
         mass=(load.mass, "kg", {}),
         crank_speed=(scene.crank_speed, "rad/s", {"unequal": 0.0}),
@@ -151,7 +150,10 @@ def _balance(scene, name):
     closed_turn(solution, "spring_for")
     speed, mass, stiffness = abs(found["crank_speed"]), found["mass"], found["stiffness"]
     if speed * np.sqrt(mass / stiffness) >= np.pi / 2.0:
-        raise ParameterError("spring_for: the spring's own mass takes all its stiffness, so it balances nothing")
+        raise ParameterError(
+            f"spring_for: the spring's own mass takes all its stiffness at {speed:.6g} rad/s, so it balances nothing: "
+            f"{mass:.6g} kg, {stiffness:.6g} N/m; give it less mass or more stiffness"
+        )
     balance = float(end_stiffness(stiffness, mass, speed)) if mass else stiffness
     reach = peak_of(solution, lambda at: np.abs(at.placement.travels[load.on].position - load.free_position))
     return solution, stiffness, 2.0 * reach.value, speed, balance

@@ -34,8 +34,6 @@ NUMBERS = {
     "surge_excitation": ("m", {"low": 0.0}),
 }
 """Unit and rule of each number of this module."""
-OPTIONAL = ("preload", "allowed_stress")
-"""Those that may be None."""
 CORRECTIONS = {
     "none": lambda index: 1.0,
     "Ks": lambda index: 1.0 + 0.5 / index,
@@ -52,10 +50,10 @@ WIRE_RANGE = 1e-6, 1e6
 SAFE = 1.0 - 1e-9
 """Least safety without a note: 1 but for rounding."""
 REMEDIES = {
-    "fatigue_safety": "it breaks in time; more wire, or peened wire",
-    "static_safety": "it sets; more wire",
-    "solid_safety": "it sets when its coils close",
-    "buckling_safety": "it buckles; guide it",
+    "fatigue_safety": "it breaks in time; allow less stress by thicker wire, or take peened wire",
+    "static_safety": "it sets; allow less stress by thicker wire",
+    "solid_safety": "it sets if its coils close; give it a stop before that",
+    "buckling_safety": "it buckles; guide it on a rod or in a tube",
 }
 """What to do about a safety below 1."""
 _positive = partial(checks.Number, low=0.0, strict=True)
@@ -117,8 +115,11 @@ class SpringMaterial(checks.Checked):
     )
 
     def _faults(self):
-        if not (self.thinnest <= self.thickest and self.shear_modulus < self.youngs_modulus):
-            yield "thinnest must not exceed thickest, and shear_modulus must be less than youngs_modulus"
+        if not self.thinnest <= self.thickest:
+            yield f"thinnest must not exceed thickest, got {self.thinnest:g} and {self.thickest:g} m"
+        if not self.shear_modulus < self.youngs_modulus:
+            moduli = f"{self.shear_modulus:g} and {self.youngs_modulus:g} Pa"
+            yield f"shear_modulus must be less than youngs_modulus, got {moduli}"
         ultimate = SHEAR_SHARE * self.tensile_strength(self.thickest)
         for name in ("unpeened", "peened"):
             mean, alternating = getattr(self, name)
@@ -203,10 +204,8 @@ class HelicalSpring(Sized):
     initial_stress: float = field(init=False)
     mean_stress: float = field(init=False)
     alternating_stress: float = field(init=False)
-    fatigue_safety: float = field(init=False)
     static_safety: float = field(init=False)
     solid_safety: float = field(init=False)
-    buckling_safety: float = field(init=False)
     surge_frequency: float = field(init=False)
     surge_ratio: float = field(init=False)
 
@@ -231,49 +230,44 @@ class HelicalSpring(Sized):
     }
 
     def __post_init__(self):
-        given = _checked("helical spring", **vars(self))
-        material, opposed = MATERIALS.get(self.material, self.material), self.arrangement == "opposed"
-        wire, coil, turns = (given[name] for name in ("wire_diameter", "coil_diameter", "active_turns"))
+        vars(self).update(_checked("helical spring", **vars(self)))
+        wire, coil, turns, travel = self.wire_diameter, self.coil_diameter, self.active_turns, self.travel
         if not coil > wire:
-            raise ParameterError("helical spring: coil_diameter must be greater than wire_diameter")
+            problem = f"coil_diameter must be greater than wire_diameter, got {coil:g} and {wire:g} m"
+            raise ParameterError(f"helical spring: {problem}")
+        material, opposed = self.material, self.arrangement == "opposed"
         each = material.shear_modulus * wire**4 / (8.0 * coil**3 * turns)
-        amplitude = 0.5 * given["travel"] * each
-        preload = given.setdefault("preload", amplitude if opposed else 0.0)
+        amplitude = 0.5 * travel * each
+        preload = amplitude * opposed if self.preload is None else self.preload
         if opposed and preload < amplitude * (1.0 - 1e-12):
-            raise ParameterError(
-                f"helical spring: preload must be at least {amplitude:.6g} N, or an opposed spring loses its load, got "
-                f"{preload:.6g} N"
-            )
+            least = f"preload must be at least {amplitude:.6g} N, or an opposed spring loses its load"
+            raise ParameterError(f"helical spring: {least}, got {preload:.6g} N")
         springs, strength = self.count * (1 + opposed), material.tensile_strength(wire)
         mass = springs * material.density * np.pi**2 * wire**2 * coil * turns / 4.0
         surge = float(surge_frequency(springs * each, mass))
-        solid, clash, largest = (turns + END_TURNS) * wire, CLASH_SHARE * given["travel"], preload + amplitude
+        solid, clash, largest = (turns + END_TURNS) * wire, CLASH_SHARE * travel, preload + amplitude
+        set_stress = material.set_share * strength
         vars(self).update(
-            given,
-            material=material,
-            endurance=material.peened if self.peened else material.unpeened,
+            preload=preload,
             springs=springs,
             amplitude=amplitude,
             largest_force=largest,
+            endurance=material.peened if self.peened else material.unpeened,
+            ultimate_stress=SHEAR_SHARE * strength,
+            set_stress=set_stress,
             stiffness=springs * each,
             mass=mass,
             whole_mass=mass * (1.0 + END_TURNS / turns),
             solid_length=solid,
             free_length=solid + largest / each + clash,
-            ultimate_stress=SHEAR_SHARE * strength,
-            set_stress=material.set_share * strength,
-            surge_frequency=surge / (2.0 * np.pi),
-            surge_ratio=surge / abs(given["crank_speed"]) if given["crank_speed"] else np.inf,
-        )
-        vars(self).update(
             initial_stress=self.stress(max(preload - amplitude, 0.0)),
             mean_stress=self.stress(preload),
             alternating_stress=self.stress(amplitude, "Wahl"),
-            static_safety=self.set_stress / self.stress(largest),
-            solid_safety=self.set_stress / self.stress(largest + clash * each),
-            buckling_safety=self._buckling_deflection() * each / largest,
+            static_safety=set_stress / self.stress(largest),
+            solid_safety=set_stress / self.stress(largest + clash * each),
+            surge_frequency=surge / (2.0 * np.pi),
+            surge_ratio=surge / abs(self.crank_speed) if self.crank_speed else np.inf,
         )
-        vars(self).update(fatigue_safety=self._fatigue_safety())
         vars(self).update(notes=tuple(self._notes()))
 
     def stress(self, force, correction="Ks"):
@@ -290,21 +284,25 @@ class HelicalSpring(Sized):
         tested, alternating = self.endurance
         return alternating * np.minimum((self.ultimate_stress - mean) / (self.ultimate_stress - tested), 1.0)
 
-    def _fatigue_safety(self):
-        """Factor of the stresses above the initial one that leads to the limit."""
+    @property
+    def fatigue_safety(self):
+        """Factor of the stresses above the initial one at the limit of endless life."""
         tested, alternating = self.endurance
         rise = self.alternating_stress / alternating
         rest = self.ultimate_stress - self.initial_stress
         along = rest / (rise * (self.ultimate_stress - tested) + (self.mean_stress - self.initial_stress))
         return float(max(min(1.0 / rise, along), 0.0))
 
-    def _buckling_deflection(self):
-        """Deflection at which the spring buckles, m."""
+    @property
+    def buckling_safety(self):
+        """Deflection at which the spring buckles over the largest; infinite if it never does."""
         shear, young = self.material.shear_modulus, self.material.youngs_modulus
         slender = self.end_factor * self.free_length / self.coil_diameter
         bound = 2.0 * np.pi**2 * (young - shear) / (2.0 * shear + young) / slender**2
-        share = 0.5 * young / (young - shear)
-        return float(share * self.free_length * (1.0 - np.sqrt(1.0 - bound))) if bound < 1.0 else np.inf
+        if bound >= 1.0:
+            return np.inf
+        deflection = 0.5 * young / (young - shear) * self.free_length * (1.0 - np.sqrt(1.0 - bound))
+        return float(deflection * self.stiffness / (self.springs * self.largest_force))
 
     def _notes(self):
         """Sentences on what needs a look."""
@@ -367,6 +365,7 @@ def helical_spring(
     index : float
         Mean diameter of the coils over that of the wire.
     peened : bool
+        Whether the wire is shot-peened, which raises its stresses of endless life.
     crank_speed : float
         rad/s, for the surge ratio.
     end_factor : float
@@ -397,40 +396,38 @@ def helical_spring(
 
 
 def _checked(owner, *, material, arrangement, count, peened, correction="none", **numbers):
-    """The numbers that are given, by name, as floats; one error with all faults."""
-    return checks.single_numbers(
+    """The options with numbers as floats and the material's data; one error with all faults."""
+    given = {
+        name: (value, *NUMBERS[name])
+        for name, value in numbers.items()
+        if value is not None or name not in ("preload", "allowed_stress")
+    }
+    found = checks.single_numbers(
         owner,
         None if isinstance(material, SpringMaterial) else checks.choice("material", material, tuple(MATERIALS)),
         checks.choice("arrangement", arrangement, ("push-pull", "opposed")),
         checks.count("count", count),
         checks.truth("peened", peened),
         checks.choice("correction", correction, tuple(CORRECTIONS)),
-        **{
-            name: (value, *NUMBERS[name])
-            for name, value in numbers.items()
-            if value is not None or name not in OPTIONAL
-        },
+        **given,
     )
+    material = MATERIALS.get(material, material)
+    return found | {"material": material, "arrangement": arrangement, "count": count, "peened": peened}
 
 
 def lightest(owner, *, correction, **options):
     """The `HelicalSpring` of the arguments of `helical_spring`, without warnings."""
     given = _checked(owner, correction=correction, **options)
-    stiffness, index, safety, allowed = (
-        given.pop(name, None) for name in ("stiffness", "index", "safety", "allowed_stress")
-    )
-    texts = {name: options[name] for name in ("material", "arrangement", "count", "peened")}
-    opposed, shear = (
-        texts["arrangement"] == "opposed",
-        MATERIALS.get(texts["material"], texts["material"]).shear_modulus,
-    )
-    each = stiffness / (texts["count"] * (1 + opposed))
+    stiffness, index, safety = (given.pop(name) for name in ("stiffness", "index", "safety"))
+    allowed, shear = given.pop("allowed_stress", None), given["material"].shear_modulus
+    opposed = given["arrangement"] == "opposed"
+    each = stiffness / (given["count"] * (1 + opposed))
     amplitude = 0.5 * each * given["travel"]
-    load = 8.0 * index * (amplitude + given.get("preload", amplitude if opposed else 0.0)) / np.pi
+    load = 8.0 * index * (amplitude + given.get("preload", amplitude * opposed)) / np.pi
 
     def made(wire):
         turns = shear * wire / (8.0 * index**3 * each)
-        return HelicalSpring(wire_diameter=wire, coil_diameter=index * wire, active_turns=turns, **given, **texts)
+        return HelicalSpring(wire_diameter=wire, coil_diameter=index * wire, active_turns=turns, **given)
 
     if allowed is not None:
         return made(float(np.sqrt(CORRECTIONS[correction](index) * load / allowed)))

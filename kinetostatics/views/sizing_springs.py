@@ -41,9 +41,9 @@ def helical_spring(spring, ax=None):
     wrong = f"spring must be a HelicalSpring, as of ks.sizing.helical_spring, got {checks.shown(spring)}"
     few = None if ax is None or len(np.ravel(ax)) == 2 else f"ax must be 2 Axes, got {checks.shown(ax)}"
     checks.require("helical_spring", None if isinstance(spring, HelicalSpring) else wrong, few)
-    options: dict[str, Any] = {"layout": "constrained", "figsize": (8.4, 4.2), "width_ratios": (1.6, 1.0)}
-    two = plt.subplots(1, 2, **options)[1] if ax is None else ax
-    haigh, drawing = np.ravel(two)
+    if ax is None:
+        ax = plt.subplots(1, 2, layout="constrained", figsize=(8.4, 4.2), width_ratios=(1.6, 1.0))[1]
+    haigh, drawing = np.ravel(ax)
     mean, alternating = spring.mean_stress / 1e6, spring.alternating_stress / 1e6
     means = np.array([0.0, spring.endurance[0], spring.ultimate_stress])
     label = f"endless life, {'' if spring.peened else 'not '}peened"
@@ -61,7 +61,7 @@ def helical_spring(spring, ax=None):
     draw_spring(drawing, spring, [text.format(size) for text, size in zip(LABELS, sizes, strict=True)])
     title = f"{spring.springs} \N{MULTIPLICATION SIGN} {spring.active_turns:.3g} active turns, mm"
     drawing.set_title(title, fontsize="medium")
-    return two
+    return ax
 
 
 def draw_spring(ax, spring, names):
