@@ -57,7 +57,9 @@ for _way, (_unit, _load) in WAYS.items():
         f"v_peak_{_way}": Row(f"{_unit}/s", f"largest velocity of the centre, {_way}", "peak of sum i n w X_n"),
         f"travel_{_way}": Row(_unit, f"peak to peak, {_way}", "X_n = F_n / (K - (n w)^2 M + i n w C), Den Hartog 1956"),
         f"ground_{_way}": Row(_load, f"largest dynamic load on the ground, {_way}", "peak of sum (K + i n w C) X_n"),
-        f"transmissibility_{_way}": Row("1", f"load on the ground / on a fixed frame, {_way}", "of peaks; NaN without load"),
+        f"transmissibility_{_way}": Row(
+            "1", f"load on the ground / on a fixed frame, {_way}", "of peaks; NaN without load"
+        ),
     }
 
 
