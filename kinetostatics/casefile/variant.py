@@ -40,7 +40,7 @@ class Variant:
     tabulated : mapping of keys to what was read
         Contents of the files beside the case file: cams, tables. They are not read again.
     sizing : mapping of name to Part
-        Parts of the case file, for limits and outputs such as "main_bearing.hours".
+        Parts of the case file, for limits and outputs such as "main_bearing.life_hours".
 
     Examples
     --------

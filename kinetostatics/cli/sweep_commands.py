@@ -38,7 +38,7 @@ def sweep(options):
     names = case.names_of(options.variant, options.reference)
     varied = case.variant(names[0])
     usual = (*OUTPUTS, FRICTION_OUTPUT) if varied.friction else OUTPUTS
-    wanted = [parsed(text).of(varied) for text in options.output or usual]
+    wanted = [parsed(text, case.sizing).of(varied) for text in options.output or usual]
     outputs = [item.column for item in wanted]
     found = sweeps.sweep(
         case,

@@ -269,7 +269,7 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
     Parameters
     ----------
     text : str
-        "largest O", or "main_bearing.hours" where `parts` has the part "main_bearing".
+        "largest O", or "main_bearing.life_hours" where `parts` has the part "main_bearing".
     parts : mapping of name to part, optional
         Parts to be sized, as `sizing.Part`.
 
@@ -283,7 +283,8 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
     words = str(text).split()
     ratio = words[:1] == ["ratio"]
     part, point, number = "".join(words[ratio:]).partition(".")
-    if point and part in (parts or ()):
+    if point and parts and len(words) == 1 + ratio:
+        checks.require(f"output {text!r}", checks.choice("part", part, tuple(parts)))
         return parts[part].number(number, ratio)
     reduction, *quantity = words[ratio:] or [""]
     found = Output(" ".join(quantity), reduction, ratio)

@@ -8,9 +8,11 @@ from ..cycle.reductions import Output, SolutionNumber, parsed
 from ..errors import ParameterError
 from ..machine.loads import Table, value_of
 from ..numbers import checks
-from ..numbers.units import NUMBER, to_si
+from ..numbers.units import NUMBER, base_factor, to_si
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
+PLAIN_UNITS = "1", "rad/s/N^0.5"
+"""Units of outputs that are compared with plain numbers; the second is that of Earles and Wu."""
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
 
 
@@ -39,7 +41,7 @@ class Constraint:
         return self.span or abs(self.value) or 1.0
 
     def __str__(self):
-        unit = self.output.unit if not self.output.ratio and self.output.unit != "1" else ""
+        unit = self.output.unit if not self.output.ratio and self.output.unit not in PLAIN_UNITS else ""
         return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
 
 
@@ -55,10 +57,11 @@ def parse_constraint(text, known, parts=None) -> Constraint:
             'slider_position = 2.3 m"'
         )
     output = parse_output(found["output"], known, parts)
-    plain = output.ratio or output.unit == "1"
+    plain = output.ratio or output.unit in PLAIN_UNITS
     try:
         number = re.fullmatch(NUMBER, found["value"].strip()) if plain else None
-        value = float(found["value"]) if number else to_si(found["value"], "1" if plain else output.unit)
+        unit = "1" if plain else output.unit
+        value = float(found["value"]) if number else to_si(found["value"], unit) / base_factor(unit)  # hours stay hours
     except ValueError as error:
         raise ParameterError(f"limit {text!r}: {error}") from None
     return Constraint(output, _RELATIONS.get(found["relation"], found["relation"]), value)

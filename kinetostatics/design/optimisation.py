@@ -59,7 +59,7 @@ def optimise(
         contact_pressure", "swing balancing_torque", "ratio mean_absolute balancing_torque" ...
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
-        Numbers of parts, "main_bearing.hours >= 20000 h" or `sizing.Part.limit`, have central differences for
+        Numbers of parts, "main_bearing.life_hours >= 20000 h" or `sizing.Part.limit`, have central differences for
         derivatives.
     variant, reference : str
         As for `sweep`; of a scene `reference` is a `Scene`.

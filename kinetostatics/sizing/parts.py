@@ -126,13 +126,13 @@ class Part:
         return KINDS[self.kind].result.ROWS
 
     def number(self, number, ratio=False):
-        """A number of its size as output of `sweep`, `tolerances` and `design.optimise`: "hours" of a bearing."""
+        """A number of its size as output of `sweep`, `tolerances` and `design.optimise`: "life_hours" of a bearing."""
         rows = self.rows
         checks.require(self.name, checks.choice("number", number, tuple(rows)))
         return SolutionNumber(f"{self.name}.{number}", partial(_number, self, number), rows[number].unit, ratio)
 
     def limit(self, text):
-        """A limit for `design.optimise` from a text such as "hours >= 20000 h"."""
+        """A limit for `design.optimise` from a text such as "life_hours >= 20000 h"."""
         return parse_constraint(f"{self.name}.{text}", None, {self.name: self})
 
 

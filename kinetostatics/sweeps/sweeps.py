@@ -248,8 +248,8 @@ def sweep(
         "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque", "largest
         contact_pressure" (of a cam with a `Roller`), "swing balancing_torque" (the energy of its flywheel, J) ...; with
         "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
-        "main_bearing.hours": a number of a part in the case's [sizing], or `sizing.Part.number`; each design is then
-        solved alone.
+        "main_bearing.life_hours": a number of a part in the case's [sizing], or `sizing.Part.number`; each design is
+        then solved alone.
     variant, reference : str
         Of a case: the variant that the designs vary (by default the first besides the reference), and the reference of
         ratios (by default the case's). For a scene or function `reference` is a `Scene`. The reference varies in those

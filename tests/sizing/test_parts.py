@@ -154,6 +154,36 @@ def test_a_part_that_fails_with_a_variant_leaves_the_others(tmp_path):
     assert any(note.startswith("rod, plain: ") and "inertia" in note for note in table.attrs["notes"])
 
 
+def test_a_limit_in_hours_is_kept_in_hours():
+    bearing = ks.sizing.Part("main", "bearing", {"joint": "O", "capacity": 1e6, "static_capacity": 1e6})
+    assert bearing.limit("life_hours >= 20000 h").value == 20000.0
+    assert bearing.limit("life_hours >= 1 day").value == 24.0
+    assert str(bearing.limit("life_hours >= 20000 h")) == "main.life_hours >= 20000 h"
+    vary = {"slider.mass": (400.0, 600.0)}
+    with pytest.warns(ks.HintWarning):
+        hours = bearing.of(SCENE.varied({"slider.mass": 500.0}).solve(4)).life_hours
+    found = ks.design.optimise(SCENE, vary, maximise="largest O", limits=[bearing.limit(f"life_hours >= {hours!r} h")])
+    assert np.isclose(found.values["slider.mass"], 500.0, rtol=1e-6)
+
+
+def test_earles_and_wus_rate_is_limited_by_a_plain_number():
+    play = ks.sizing.Part("play", "play", {"joint": "B", "clearance": 1e-4})
+    assert play.limit("earles_wu <= 5").value == 5.0
+
+
+@pytest.mark.slow
+def test_the_command_line_sweeps_numbers_of_parts(tmp_path, capsys):
+    from kinetostatics.cli import main
+
+    path = str(case_file(tmp_path, CASE))
+    main(["sweep", path, "--vary", "slider.mass=400..600 kg:2", "--output", "pin_B.shear_stress", "--csv"])
+    header, *rows = capsys.readouterr().out.splitlines()
+    assert header == "slider.mass [kg],pin_B.shear_stress [Pa],failed"
+    assert len(rows) == 2
+    main(["sweep", path, "--vary", "slider.mass=400..600 kg:2", "--output", "pinB.shear_stress"])
+    assert "part is 'pinB'" in capsys.readouterr().err
+
+
 def test_designs_of_a_case_may_limit_its_parts(tmp_path):
     design = """
 [design.best]
