@@ -100,9 +100,8 @@ def write_found(path, case, found):
         references |= dict.fromkeys(made, case.designs[name].reference)
     raw = {item.name: item.raw | {"variant": item.source, "reference": item.reference} for item in designs}
     comment = f"Found by: kinetostatics design {case.path.name}"
-    return case_text.write_case(
-        path, case.title, scenes, case.source, comment=comment, designs=raw, references=references
-    )
+    tables = {"designs": raw, "sizing": {name: part.raw for name, part in case.sizing.items()}}
+    return case_text.write_case(path, case.title, scenes, case.source, comment=comment, references=references, **tables)
 
 
 def read_designs(tables, reference, variants, problems):

@@ -27,11 +27,11 @@ from ..numbers.files import write_atomically
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
 
 
-def write_case(path, title, scenes, source="", *, comment="", designs=None, references=None) -> Path:
+def write_case(path, title, scenes, source="", *, comment="", designs=None, references=None, sizing=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference unless `references` differ.
 
-    A comment precedes them; tables of designs from another case file follow. Raises `ParameterError` for a part without
-    a text in case files, `FileError` where a file cannot be written or that of a table exists already.
+    A comment precedes them; tables of designs and parts from another case file follow. Raises `ParameterError` for what
+    has no text in case files, `FileError` where a file cannot be written or that of a table exists already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -42,6 +42,7 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None, refe
     own = {name: reference for name, reference in (references or {}).items() if reference != first}
     parts += [variant(name, scene, path.stem, own.get(name)) for name, scene in scenes.items()]
     parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
+    parts += [table(f"sizing.{_key(name)}", raw) for name, raw in (sizing or {}).items()]
     for file, text in tables(path, scenes).items():
         with write_atomically(file) as place:
             Path(place).write_text(text, encoding="utf-8")

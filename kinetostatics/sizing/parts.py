@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -79,6 +79,8 @@ class Part:
         "bearing", "plain bearing", "bar", "pin", "play", "spring", "mount" or "block".
     options : mapping
         Arguments of the function of `sizing` that sizes it; of a bar also those of `Bar`.
+    raw : mapping, optional
+        Its table in a case file.
 
     Raises
     ------
@@ -99,6 +101,7 @@ class Part:
     name: str
     kind: str
     options: Mapping[str, Any]
+    raw: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self):
         checks.require(f"part {self.name!r}", *self.problems(self.kind, self.options))
@@ -156,7 +159,7 @@ def read_part(name, raw):
         except ValueError as error:
             problems.append(f".{key} {error}")
     problems += [f": {problem}" for problem in Part.problems(kind, options)]
-    return (None if problems else Part(name, kind, options)), problems
+    return (None if problems else Part(name, kind, options, raw)), problems
 
 
 def _in_si(value, unit):

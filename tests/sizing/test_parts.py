@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.casefile.designs import write_found
 from support.case_files import case_file, problems
 from support.every import every
 
@@ -193,9 +194,12 @@ vary = { "slider.mass" = ["400 kg", "600 kg"] }
 maximise = "largest O"
 limits = ["pin_B.shear_stress <= 20 MPa"]
 """
-    found = ks.load_case(case_file(tmp_path, CASE + design)).designs["best"].find()
-    pin = found.scene.solve(4)
-    assert np.isclose(PIN.of(pin).shear_stress, 20e6, rtol=1e-8)
+    case = ks.load_case(case_file(tmp_path, CASE + design))
+    found = case.designs["best"].find()
+    assert np.isclose(PIN.of(found.scene.solve(4)).shear_stress, 20e6, rtol=1e-8)
+    written = ks.load_case(write_found(tmp_path / "found.toml", case, {"best": found}))
+    assert written.sizing == case.sizing
+    assert np.isclose(written.sizing_table(["best"]).loc[("pin_B", "shear_stress"), "best"], 20e6, rtol=1e-8)
 
 
 WRONG = {
