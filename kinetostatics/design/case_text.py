@@ -127,12 +127,16 @@ def _columns(columns):
 
 def _mechanism_keys(mechanism, cam_file):
     """Keys of a mechanism, and its tables; a sampled cam refers to a file."""
-    crank = _link_keys(mechanism.crank.link)
-    keys: dict[str, str] = {}
+    rotor, bearings = mechanism.crank.link, mechanism.crank.bearings
+    crank = _link_keys(rotor)
+    if rotor.plane is not None:
+        crank |= {"plane": _number(rotor.plane, "m", "plane"), **_nonzero_keys(rotor, couple_unbalance="kg m^2")}
+    keys: dict[str, str] = {} if bearings is None else {"bearings": _numbers(bearings, "m", "bearings")}
     tables = [("crank", crank)] if crank else []
     if mechanism.crank.length is not None:
         keys["crank_length"] = _number(mechanism.crank.length, "m", "crank_length")
-    roller, slider = crank_slider_parts(mechanism) or (None, None)
+    flat = bearings is None and not mechanism.has_planes
+    roller, slider = (crank_slider_parts(mechanism) if flat else None) or (None, None)
     if slider is not None and slider.pin == "B":
         own = _keys(slider) | (_keys(roller, cam_file) if roller else {})
         kept = {key: value for key, value in own.items() if key not in ("on", "pin", "label")}

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.design.case_text import write_case
 from kinetostatics.errors import ConditionWarning, KinetostaticsError
 from support.every import every
 
@@ -391,3 +392,21 @@ def test_bad_input_is_named(make, message):
     with pytest.raises(KinetostaticsError) as caught:
         make()
     assert message in str(caught.value)
+
+
+def test_planes_and_bearings_are_written_into_case_files(tmp_path):
+    pins = tuple(ks.Pin(on="crank", at=(x, 0.0), name=f"P{k}", plane=z) for k, (x, z) in enumerate(PINS_AT))
+    groups = tuple(ks.SliderGroup(0.2, slider=ks.Link(2.0), on=f"P{k}", pin=f"B{k}", label=str(k)) for k in (0, 1))
+    rotor = ks.Rotor(4.0, 0.01, 0.02, plane=0.05, couple_unbalance=(0.01, 0.0))
+    twin = ks.Mechanism("twin", ks.Crank(None, rotor, bearings=(-0.3, 0.3)), pins + groups)
+    single = ks.Mechanism("single", ks.Crank(0.05, bearings=(-0.1, 0.2)), (ks.SliderGroup(0.2, plane=0.1),))
+    scenes = {"twin": ks.Scene(twin, 100.0), "single": ks.Scene(single, 100.0)}
+    case = ks.load_case(write_case(tmp_path / "written.toml", "Twin", scenes))
+    for name, scene in scenes.items():
+        own, read = scene.solve(9), case.solve(name, 9)
+        assert np.array_equal(own.reaction("O", at="left"), read.reaction("O", at="left"))
+        assert np.array_equal(own.rocking_moment, read.rocking_moment)
+
+
+PINS_AT = (0.05, -0.1), (-0.05, 0.1)
+"""Place along the crank and plane of two pins, m."""
