@@ -273,7 +273,7 @@ def load_case(path) -> Case:
         if item is not None and item.table.reference is not None:
             place = key_path(_place(("reference",), name, tables[name], common))
             problems.append(checks.choice(place, item.table.reference, tuple(variants)))
-    sizing = _read_parts(head.sizing, problems) if head and head.sizing else {}
+    sizing = _read_parts(head.sizing, variants, problems) if head and head.sizing else {}
     variants = {name: item and replace(item, sizing=sizing) for name, item in variants.items()}
     if head is not None:
         problems += tolerance_problems(head.tolerances, variants)
@@ -292,15 +292,21 @@ def load_case(path) -> Case:
     return Case(*head_of_case, NamedItems("part", path, sizing))
 
 
-def _read_parts(tables, problems):
+def _read_parts(tables, variants, problems):
     """Parts by name of the tables in the file; appends their faults to `problems`."""
     from ..sizing.parts import read_part
 
+    mechanisms = [item.mechanism for item in variants.values() if item]
+    joints = {name for made in mechanisms for name in (*made.joints, *made.pairs)}
+    known = {"link": {name for made in mechanisms for name in made.links}, "joint": joints}
     found: dict[str, typing.Any] = {}
     for name, raw in tables.items():
         part, wrong = read_part(name, raw)
         found |= {} if part is None else {name: part}
-        problems += [f"sizing.{name}{problem}" for problem in wrong]
+        for key, names in known.items():
+            if key in raw and "roller" not in str(raw[key]) and mechanisms:
+                wrong.append(checks.choice(f".{key}", raw[key], sorted(names)))
+        problems += [f"sizing.{name}{problem}" for problem in wrong if problem]
     return found
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from ..cycle.reductions import SolutionNumber
 from ..design.constraints import parse_constraint
+from ..machine.cams.profile import POSITIVE
 from ..numbers import checks
 from ..numbers.units import to_si
 from ..solution.scene import Scene
@@ -18,6 +19,8 @@ BAR = tuple(inspect.signature(Bar).parameters)
 """Options that describe the bar of a link."""
 NOT_OPTIONS, OF_THE_SCENE = ("solution", "bar", "options"), ("stiffness", "travel", "crank_speed")
 """Arguments that a part does not give; those of a spring that follow from its scene."""
+LIST_LENGTH = 3
+"""Most numbers of one option: x, y, turning."""
 
 
 def _bar_strength(solution, *, link, **options):
@@ -30,11 +33,11 @@ def _spring(solution, *, spring="spring", **options):
 
 
 class Kind(NamedTuple):
-    """A kind of part: function of a solution, class of its result, unit of its numbers, whence it has its options."""
+    """A kind of part: function of a solution, class of its result, units and rules of numbers, sources of options."""
 
     size: Callable
     result: Any
-    units: Mapping[str, Any]
+    numbers: Mapping[str, tuple[Any, Mapping[str, Any]]]
     sources: tuple[Callable, ...] = ()
 
     @property
@@ -48,20 +51,16 @@ class Kind(NamedTuple):
         }
 
 
-def _units(module):
-    return {name: unit for name, (unit, _) in module.NUMBERS.items()}
-
-
-BEARINGS, SECTIONS, FOUNDATION = map(_units, (bearings, sections, foundation))
-MOUNT = FOUNDATION | {"stiffness": ("N/m", "N/m", "N m/rad"), "centre": ("m", "m")}
-BARS = SECTIONS | {"masses": ("m", "kg")}
+BEARINGS, SECTIONS, FOUNDATION = bearings.NUMBERS, sections.NUMBERS, foundation.NUMBERS
+MOUNT = FOUNDATION | {"stiffness": (("N/m", "N/m", "N m/rad"), POSITIVE), "centre": (("m", "m"), {})}
+BARS = SECTIONS | {"masses": (("m", "kg"), {"low": 0.0})}
 KINDS = {
     "bearing": Kind(bearings.bearing, bearings.Bearing, BEARINGS),
     "plain bearing": Kind(bearings.plain_bearing, bearings.PlainBearing, BEARINGS),
     "bar": Kind(_bar_strength, sections.BarStrength, BARS, (sections.bar_strength, Bar)),
     "pin": Kind(sections.pin_strength, sections.PinStrength, SECTIONS),
-    "play": Kind(play.contact_loss, play.ContactLoss, _units(play)),
-    "spring": Kind(_spring, scene_springs.BalancingSpring, _units(springs), (springs.helical_spring,)),
+    "play": Kind(play.contact_loss, play.ContactLoss, play.NUMBERS),
+    "spring": Kind(_spring, scene_springs.BalancingSpring, springs.NUMBERS, (springs.helical_spring,)),
     "mount": Kind(foundation.mount, foundation.Mount, MOUNT),
     "block": Kind(foundation.block_for, foundation.Mount, FOUNDATION),
 }
@@ -155,25 +154,29 @@ def read_part(name, raw):
         return None, [f".kind {missing}" if kind is None else f".{checks.choice('kind', kind, tuple(KINDS))}"]
     for key, value in options.items():
         try:
-            options[key] = _in_si(value, KINDS[kind].units.get(key))
+            if key in KINDS[kind].numbers:
+                options[key] = _in_si(key, value, *KINDS[kind].numbers[key])
         except ValueError as error:
             problems.append(f".{key} {error}")
     problems += [f": {problem}" for problem in Part.problems(kind, options)]
     return (None if problems else Part(name, kind, options, raw)), problems
 
 
-def _in_si(value, unit):
-    """Value of an option in SI; a unit of several is that of the entries of a list, or of pairs in it."""
-    if unit is None or isinstance(value, bool):
-        return value
+def _in_si(key, value, unit, rule):
+    """Value of an option in SI; a unit of several is that of the numbers in a list, or in each list of a list."""
+    units = unit if isinstance(unit, tuple) else (unit,)
+    if isinstance(value, list) and any(isinstance(part, list) for part in value):
+        return [_in_si(key, part, unit, rule) for part in value]
     if isinstance(value, list):
-        of = unit if isinstance(unit, tuple) else (unit,) * len(value)
-        if any(isinstance(part, list) for part in value):
-            return [_in_si(part, of) for part in value]
-        return [_in_si(part, one) for part, one in zip(value, of, strict=False)]
-    one = unit[0] if isinstance(unit, tuple) else unit
-    if one == "1":
-        return value
-    if isinstance(value, str):
-        return to_si(value, one)
-    raise ValueError(f'must be a text with a unit, such as "1 {one}", found {value!r}')
+        most = len(units) if len(units) > 1 else LIST_LENGTH
+        if len(value) > most:
+            raise ValueError(f"must have at most {most} numbers, found {len(value)}")
+        return [_in_si(key, part, units[at % len(units)], rule) for at, part in enumerate(value)]
+    if units[0] != "1":
+        if not isinstance(value, str):
+            raise ValueError(f'must be a text with a unit, such as "1 {units[0]}", found {value!r}')
+        value = to_si(value, units[0])
+    _, problem = checks.single_number(key, value, units[0], **rule)
+    if problem:
+        raise ValueError(problem.removeprefix(f"{key} "))
+    return value

@@ -211,6 +211,12 @@ WRONG = {
     "no unit": ('width = "100 mm"', "width = 100", "sizing.pin_B.width must be a text with a unit"),
     "other unit": ('width = "100 mm"', 'width = "100 kg"', "sizing.pin_B.width"),
     "unit in a list": ('"12 MN/m"', '"12 MN"', "sizing.block.stiffness"),
+    "unknown joint": ('joint = "B"', 'joint = "Q"', "sizing.pin_B.joint is 'Q'"),
+    "unknown link": ('link = "coupler"', 'link = "rocker"', "sizing.rod.link is 'rocker'"),
+    "negative": ('area = "60 cm^2"', 'area = "-60 cm^2"', "sizing.rod.area must be greater than 0, got -0.006"),
+    "negative in a list": ('"12 MN/m"', '"-12 MN/m"', "sizing.block.stiffness must be greater than 0"),
+    "too many numbers": ('"5 MN m/rad"]', '"5 MN m/rad", "5 MN m/rad"]', "at most 3 numbers, found 4"),
+    "text in place of a ratio": ("damping = [0.1, 0.1, 0.2]", 'damping = "0.1 1"', "sizing.block.damping"),
     "unit of a point mass": ('"88.5 kg"', '"88.5 m"', "sizing.rod.masses"),
 }
 
