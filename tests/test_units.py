@@ -570,7 +570,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("precision", "device", "reaction", "spring", "left", "right", "result", "marks"),
-    *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares"),
+    *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(
         "executor",
