@@ -215,7 +215,7 @@ class SolutionNumber:
     function : function
         From a `Solution` to a float; it can be pickled.
     unit : str
-        SI.
+        SI, or another that the function returns, as "h".
     ratio : bool
         Whether the reference mechanism's number is divided by the design's.
     """

@@ -11,9 +11,15 @@ from ..numbers import checks
 from ..numbers.units import NUMBER, base_factor, to_si
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
-PLAIN_UNITS = "1", "rad/s/N^0.5"
-"""Units of outputs that are compared with plain numbers; the second is that of Earles and Wu."""
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
+
+
+def _is_plain(unit):
+    """Whether outputs in a unit are compared with plain numbers: it is 1, or one that no text can be given in."""
+    try:
+        return unit == "1" or not base_factor(unit)
+    except ValueError:
+        return True
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Constraint:
         return self.span or abs(self.value) or 1.0
 
     def __str__(self):
-        unit = self.output.unit if not self.output.ratio and self.output.unit not in PLAIN_UNITS else ""
+        unit = self.output.unit if not self.output.ratio and not _is_plain(self.output.unit) else ""
         return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
 
 
@@ -57,7 +63,7 @@ def parse_constraint(text, known, parts=None) -> Constraint:
             'slider_position = 2.3 m"'
         )
     output = parse_output(found["output"], known, parts)
-    plain = output.ratio or output.unit in PLAIN_UNITS
+    plain = output.ratio or _is_plain(output.unit)
     try:
         number = re.fullmatch(NUMBER, found["value"].strip()) if plain else None
         unit = "1" if plain else output.unit

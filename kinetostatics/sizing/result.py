@@ -14,7 +14,7 @@ class Row(NamedTuple):
     Attributes
     ----------
     unit : str
-        SI.
+        SI, but hours of life.
     meaning : str
     formula : str
         With its source: author, year or textbook.

@@ -402,8 +402,7 @@ def parts(subject):
     """Tables of the parts of the case, with what needs a look."""
     if subject.case is None or not subject.case.sizing:
         return []
-    solutions = {name: subject.case.solve(name) for name in subject.machines}
-    found = sizing_table(subject.case.sizing, solutions)
+    found = sizing_table(subject.case.sizing, subject.solutions)
     shown = []
     for name, part in subject.case.sizing.items():
         own = found.loc[name].rename_axis("number")
