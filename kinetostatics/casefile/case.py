@@ -294,17 +294,18 @@ def load_case(path) -> Case:
 
 def _read_parts(tables, variants, problems):
     """Parts by name of the tables in the file; appends their faults to `problems`."""
+    from ..sizing.bearings import rollers_of
     from ..sizing.parts import read_part
 
     mechanisms = [item.mechanism for item in variants.values() if item]
-    joints = {name for made in mechanisms for name in (*made.joints, *made.pairs)}
+    joints = {name for made in mechanisms for name in (*made.joints, *made.pairs, *rollers_of(made))}
     known = {"link": {name for made in mechanisms for name in made.links}, "joint": joints}
     found: dict[str, typing.Any] = {}
     for name, raw in tables.items():
         part, wrong = read_part(name, raw)
         found |= {} if part is None else {name: part}
         for key, names in known.items():
-            if key in raw and "roller" not in str(raw[key]) and mechanisms:
+            if key in raw and mechanisms:
                 wrong.append(checks.choice(f".{key}", raw[key], sorted(names)))
         problems += [f"sizing.{name}{problem}" for problem in wrong if problem]
     return found

@@ -185,16 +185,23 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     return warn_of_notes("bearing", Bearing(tuple(notes), solution, pin, *map(float, found)))
 
 
+def rollers_of(mechanism):
+    """Name and pair of each cam with a roller, by the name of the roller's bearing."""
+    cams = [
+        pair for pair in pairs_of(mechanism).items() if isinstance(pair[1].pair, CamDriven) and not pair[1].pair.flat
+    ]
+    return {ROLLER if len(cams) == 1 else f"{name} {ROLLER}": (name, own) for name, own in cams}
+
+
 def _prepared(owner, solution, joint, **values):
     """`BearingPin`, turn, smallest and largest load, N, and options, after all checks."""
     checks.require(owner, checks.solution("solution", solution))
     pairs = pairs_of(solution.mechanism).items()
     pins = {name: BearingPin(name, own, (own.link, own.against)) for name, own in pairs if type(own.pair) is Turning}
-    cams = {name: own for name, own in pairs if isinstance(own.pair, CamDriven) and not own.pair.flat}
-    for name, own in cams.items():
+    for roller, (name, own) in rollers_of(solution.mechanism).items():
         rubs = solution.friction.get(name)
         radius = solution.mechanism.rollers.get(own.pair.joint) if rubs is None else rubs.roller_radius
-        pins[ROLLER if len(cams) == 1 else f"{name} {ROLLER}"] = BearingPin(name, own, (ROLLER, own.link), radius)
+        pins[roller] = BearingPin(name, own, (ROLLER, own.link), radius)
     given = {name: (value, *NUMBERS[name]) for name, value in values.items()}
     numbers = checks.single_numbers(owner, checks.choice("pin joint", joint, tuple(pins)), **given)
     turn, pin = closed_turn(solution, owner), pins[joint]

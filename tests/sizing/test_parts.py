@@ -202,6 +202,17 @@ limits = ["pin_B.shear_stress <= 20 MPa"]
     assert np.isclose(written.sizing_table(["best"]).loc[("pin_B", "shear_stress"), "best"], 20e6, rtol=1e-8)
 
 
+def test_the_roller_of_a_cam_is_a_bearing_of_a_case(tmp_path):
+    text = CASE.replace("crank-slider", "cam-crank-slider").replace(
+        'crank_length = "300 mm"', 'cam = { kind = "circle", radius = "300 mm" }'
+    )
+    text = text[: text.index("[sizing.pin_B]")]
+    roller = '[sizing.roller]\nkind = "bearing"\njoint = "roller"\ncapacity = "1 MN"\nstatic_capacity = "1 MN"\n'
+    assert ks.load_case(case_file(tmp_path, text + roller)).sizing["roller"].options["joint"] == "roller"
+    (problem,) = problems(tmp_path, text + roller.replace('joint = "roller"', 'joint = "rollers"'))
+    assert "did you mean 'roller'" in problem
+
+
 WRONG = {
     "no kind": ('kind = "pin"', "", "sizing.pin_B.kind is missing; allowed: "),
     "unknown kind": ('kind = "pin"', 'kind = "pinn"', "sizing.pin_B.kind is 'pinn'"),
