@@ -75,6 +75,8 @@ class Workers:
         """Number of dead workers behind an error; raises the error if there is none."""
         if type(error).__name__ == "KilledWorker":  # Dask has tried several workers
             return MAX_CHUNK_RUNS
+        if _is_lost_result(error):
+            return 1
         if not isinstance(error, BrokenExecutor):
             raise error
         if self._count is None:
@@ -98,6 +100,18 @@ class Workers:
         if self._pool is not None:
             self._pool.shutdown(kill_workers=at_once)
             self._pool = None
+
+
+def _is_lost_result(error):
+    """Whether Dask's executor mistook a table for an error.
+
+    It does so where the worker dies after its table has arrived but before Dask reads the state of the call.
+    """
+    trace = error.__traceback__
+    while trace and trace.tb_next:
+        trace = trace.tb_next
+    raised_in = trace and trace.tb_frame.f_globals.get("__name__")
+    return raised_in == "distributed.cfexecutor" and isinstance(error, AttributeError | ValueError)
 
 
 class _SameProcess(Executor):

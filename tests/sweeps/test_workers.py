@@ -1,5 +1,6 @@
 """Sweeps through threads, processes and Dask: the same table, also where workers die."""
 
+import asyncio
 import logging
 import multiprocessing
 import os
@@ -14,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -104,6 +106,28 @@ def test_a_worker_of_dask_that_dies_costs_nothing(cluster, tmp_path, expected):
         expected,
     )
     assert marker.exists()
+
+
+@pytest.mark.parametrize("columns", [2, 3, 4])
+def test_a_table_that_dask_takes_for_an_error_is_computed_again(columns):
+    """The worker dies between the arrival of its table and the look at the state of its call."""
+    cfexecutor = pytest.importorskip("distributed.cfexecutor", reason="dask is not installed (extra: distributed)")
+
+    class Lost:
+        status = "lost"
+
+        async def _result(self, raiseit):
+            return pd.DataFrame(np.ones((1, columns)), columns=list("abcd"[:columns]))
+
+    async def finish(future):
+        await cfexecutor._cascade_future(Lost(), future)
+
+    future = Future()
+    asyncio.run(finish(future))
+    with ThreadPoolExecutor(1) as executor, dispatch.Workers(executor) as workers:
+        assert workers.count_deaths(future.exception()) == 1
+        with pytest.raises(ValueError, match="of the user"):
+            workers.count_deaths(ValueError("of the user"))
 
 
 def test_cases_go_to_workers(tidy):
