@@ -199,8 +199,8 @@ class Case:
     def sizing_table(self, names=None):
         """Numbers of the parts in SI, a column for each variant; a pandas DataFrame, None without parts.
 
-        The index is part and number. ``attrs["notes"]`` tells what needs a look, and why a part has no numbers with a
-        variant, whose cells are then NaN.
+        The index is part and number. ``attrs["notes"]`` lists for each part what needs a look, and why it has no
+        numbers with a variant, whose cells are then NaN.
 
         Parameters
         ----------
@@ -317,7 +317,7 @@ def sizing_table(parts, solutions):
 
     found: dict[tuple[str, str, str], float] = {}
     units: dict[tuple[str, str], str] = {}
-    notes = []
+    notes: dict[str, list[str]] = {key: [] for key in parts}
     for name, solution in solutions.items():
         for key, part in parts.items():
             units |= {(key, number): row.unit for number, row in part.rows.items()}
@@ -326,9 +326,9 @@ def sizing_table(parts, solutions):
                     warnings.simplefilter("ignore", HintWarning)  # they are the notes
                     sized = part.of(solution)
             except KinetostaticsError as error:
-                notes.append(f"{key}, {name}: {error}")
+                notes[key].append(f"{name}: {error}")
             else:
-                notes += [f"{key}, {name}: {note}" for note in sized.notes]
+                notes[key] += [f"{name}: {note}" for note in sized.notes]
                 found |= {(key, number, name): float(getattr(sized, number)) for number in part.rows}
     index = pd.MultiIndex.from_tuples(list(units), names=["part", "number"])
     columns = {name: [found.get((*row, name), np.nan) for row in units] for name in solutions}

@@ -162,8 +162,8 @@ def _print_extremes(case, solutions, given, shares, options):
         for name, part in case.sizing.items():
             print(f"\n{name}: {part.kind}\n")
             print_table(sizes.loc[name])
-        if sizes.attrs["notes"]:
-            print_folded("\n" + "\n".join(sizes.attrs["notes"]), indent=2)
+            for note in sizes.attrs["notes"][name]:
+                print_folded(f"\n{note}", indent=2)
 
 
 def explain(options):

@@ -408,9 +408,9 @@ def parts(subject):
         own = found.loc[name].rename_axis("number")
         meanings = {number: f"{row.meaning}; {row.formula}" for number, row in part.rows.items()}
         own = texts_of(own).assign(formula=[meanings[number] for number in own.index])
-        notes = [note.partition(", ")[2] for note in found.attrs["notes"] if note.startswith(f"{name}, ")]
         rows = [list(row) for row in own.itertuples()]
-        shown.append(Table(f"{name}: {part.kind}", ["number", *own.columns], rows, 2, "; ".join(notes)))
+        notes = "; ".join(found.attrs["notes"][name])
+        shown.append(Table(f"{name}: {part.kind}", ["number", *own.columns], rows, 2, notes))
     return shown
 
 
