@@ -8,7 +8,16 @@ from ..mechanics.principal_points import principal_points as points_of
 from ..numbers import checks
 from ..solution.scene import solve
 from . import drawings
-from .canvas import ACCENT, INK, ZERO_TOLERANCE, close_curve, grouped, solutions_by_label, with_line_styles
+from .canvas import (
+    ACCENT,
+    INK,
+    ZERO_TOLERANCE,
+    close_curve,
+    grouped,
+    single_solution,
+    solutions_by_label,
+    with_line_styles,
+)
 from .labels import label
 from .strokes import at_angles, whole_turn
 
@@ -112,7 +121,8 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
     _draw_points(ax, pose, points.vectors(pose))
     ax.plot(*corners, color=ACCENT, lw=1.0, ls="--", marker=".", ms=3, zorder=5, label="contour of the vectors h")
     for name, item in given.items():
-        path = points_of(item).mass_centre(whole_turn(solve(item, 0.0, crank_speed=1.0, on_gap="nan")))
+        turn = whole_turn(single_solution(solve(item, [0.0], crank_speed=1.0, on_gap="nan")))
+        path = points_of(item).mass_centre(turn)
         ax.plot(*path, zorder=5, **PATHS[name])
     ax.plot(*corners[:, -1], marker="o", ms=6, color=ACCENT, zorder=6.5)
     label(ax, "S", corners[:, -1], color=ACCENT, fontsize="small")
