@@ -464,6 +464,7 @@ SLOW = {
     ),
     "plots.mechanism": (ks.plots.mechanism, {"angles": ([40.0, 50.0], "deg")}, {"solutions": SOLVED}),
     "plots.mass_centres": (ks.plots.mass_centres, {"angle": (40.0, "deg")}, {"solutions": SOLVED}),
+    "plots.principal_points": (ks.plots.principal_points, {"angle": (40.0, "deg")}, {"mechanism": PUMP}),
     "plots.free_body": (ks.plots.free_body, {"angle": (40.0, "deg")}, {"solution": SOLVED, "link": "coupler"}),
     "plots.animation": (ks.plots.animation, {"interval": (40.0, "ms")}, {"solution": SOLVED}),
     "plots.hodograph": (ks.plots.hodograph, {"marks": (40.0, "deg")}, {"solutions": SOLVED}),
@@ -569,7 +570,7 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks"),
+    *("precision", "device", "reaction", "before", "spring", "left", "right", "result", "marks"),
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

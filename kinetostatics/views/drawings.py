@@ -1,4 +1,4 @@
-"""Drawings of the mechanism at given crank angles, with paths of its mass centre."""
+"""Drawings of the mechanism at given crank angles."""
 
 from typing import Any
 
@@ -8,7 +8,6 @@ from matplotlib.patches import Polygon
 from matplotlib.path import Path
 
 from ..machine.group import FRAME
-from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from .cams import ANGLES_RULE
 from .canvas import (
@@ -17,13 +16,10 @@ from .canvas import (
     INK,
     LOAD,
     STEEL,
-    ZERO_TOLERANCE,
     axes,
-    close_curve,
     grouped,
     set_equal_scales,
     solutions_by_label,
-    with_line_styles,
 )
 from .labels import label
 from .strokes import Shape, at_angles, strokes_by_owner, whole_turn
@@ -69,50 +65,6 @@ PLATES: dict[str, dict[str, Any]] = {
 """Styles of strokes drawn as filled shapes, by kind."""
 GROUND_DEPTH = 3.0
 """Depth of the ground below a fixed pivot, in half lengths of a block."""
-
-
-def mass_centres(solutions, angle=60, ax=None):
-    """Paths of the common mass centre, to one scale with the mechanism (mower study, figures 5a, 5b).
-
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-        Mechanisms of one geometry, with different masses; the first is drawn.
-    angle : float
-        Crank angle of the drawing, degrees, marked on every path.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
-    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
-    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
-    >>> ks.plots.mass_centres(solutions).get_aspect()
-    1.0
-    """
-    angle = checks.single_numbers("mass_centres", angle=(angle, "deg", {}))["angle"]
-    named = solutions_by_label(solutions, "common mass centre")
-    ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
-    paths = {
-        name: principal_points(solution.mechanism, solution.loads).mass_centre(solution)
-        for name, solution in named.items()
-    }
-    for name, solution, style in with_line_styles(named):
-        points = principal_points(solution.mechanism, solution.loads)
-        reach = np.abs(solution.position(first_moving_joint(solution.mechanism))).max()
-        rests = np.ptp(paths[name], axis=1).max() < ZERO_TOLERANCE * reach
-        shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
-        text = f"{name} (at rest)" if rests else name
-        (line,) = ax.plot(*close_curve(paths[name]), label=text, zorder=5, **shown)
-        ax.plot(*points.mass_centre(at_angles(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
-    ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
-    return ax
 
 
 def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):

@@ -41,6 +41,7 @@ from .canvas import (
 from .curves import torque
 from .drawings import mechanism
 from .hodographs import hodograph
+from .mass_centres import mass_centres
 from .strokes import load_strokes, moves_alike
 
 FONT: Any = {"font.size": 9}
@@ -248,7 +249,7 @@ FIGURES = {
         lambda solutions, _: _one_each(drives.lost_power, _with_friction(solutions), 6.4, 3.2, 1),
         "friction",
     ),
-    "mass_centres": (_page_of(drawings.mass_centres, 9.0, 3.6), "balanced"),
+    "mass_centres": (_page_of(mass_centres, 9.0, 3.6), "balanced"),
     "shaking_by_direction": (_page_of(curves.shaking_force, 6.4, 4.8, projection="polar"), "balanced"),
     "shaking_by_crank_angle": (
         _page_of(partial(curves.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),

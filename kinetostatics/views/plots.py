@@ -17,11 +17,12 @@ from .curves import (
     shaking_force,
     torque,
 )
-from .drawings import mass_centres, mechanism
+from .drawings import mechanism
 from .drives import crank_speed, drive_torques, energy_flow, losses, lost_power
 from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs, rocking_moment
+from .mass_centres import mass_centres, principal_points
 from .sizing_bearings import bearing
 from .sizing_mount import mount
 from .sizing_play import contact_loss
@@ -58,6 +59,7 @@ __all__ = [
     "mount",
     "over_turn",
     "pressure_angle",
+    "principal_points",
     "rocking_moment",
     "sections",
     "shaking_force",

@@ -18,6 +18,8 @@ PRINTED = {
     "amplitude ratio to rho-0.1": ["1", "6.88552", "(6.88)", "2.77431"],
     "speed ratio to rho-0.1": ["1", "7.58599", "(7.58)", "2.69483"],
 }
+REGIMES = {"r30-slow": (0.03, 31.4), "r30-fast": (0.03, 62.8), "r75-slow": (0.075, 31.4), "r75-fast": (0.075, 62.8)}
+"""Crank, m, and speed, rad/s, of the regimes in the study's figure 2."""
 FOUR_BAR = """
 title = "test"
 reference = "bar"
@@ -41,7 +43,7 @@ def case():
 
 
 def test_chain_unit_case_balances_its_powers(case):
-    assert list(case.variants) == ["rho-0.1", "rho-0.5", "free-start"]
+    assert list(case.variants) == ["rho-0.1", "rho-0.5", "free-start", *REGIMES, "r75-fast-chains"]
     assert case.reference == "rho-0.1"
     assert all(case.solve(name).power_residual < 1e-14 for name in case.variants)
 
@@ -57,6 +59,36 @@ def test_variant_equals_the_chain_unit_built_in_python(case, name, crank, pivot_
     assert_close(found.balancing_torque, by_hand.balancing_torque, 1e-4)
     assert_close(found.reaction("O2"), by_hand.reaction("O2"), 1e-4)
     assert_close(found.rate("rocker"), by_hand.rate("rocker"))
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_regime_has_the_crank_and_speed_of_the_film(case, name):
+    """Parallel start and uniform bars; twice the speed gives twice the rocker's and four times the shaking force."""
+    crank, speed = REGIMES[name]
+    lengths = {"crank": crank, "coupler": 0.3, "rocker": 0.2}
+    links = {link: ks.Link(5 * length, length / 2, 5 * length**3 / 12) for link, length in lengths.items()}
+    s = case.solve(name, angles=90)
+    by_hand = ks.solve(ks.linkage.chain_unit(*lengths.values(), **links), s.crank_angle, crank_speed=-speed)
+    assert_close(s.shaking_force, by_hand.shaking_force, 1e-4)
+    assert_close(s.rate("rocker"), by_hand.rate("rocker"))
+    slow = case.solve(name.replace("fast", "slow"), angles=90)
+    assert_close(s.shaking_force * (31.4 / speed) ** 2, slow.shaking_force)
+
+
+def test_chains_oppose_the_rocker_and_take_their_energy_from_the_shaft(case):
+    """4 N m against the motion, less in 2 deg about the ends of the swing, and 0.2 N m s/rad; idle the mean is 0."""
+    turn = np.linspace(0.0, 2 * np.pi, 7200, endpoint=False)
+    angle = ks.linkage.chain_unit_angle(turn)
+    idle, grinding = (case.solve(name).at(angle) for name in ("r75-fast", "r75-fast-chains"))
+    *_, rate = ks.papers.chain_unit_by_atan_acos(0.075, 0.3, 0.2, np.sqrt(0.09 - 0.075**2), turn)
+    resistance = grinding.loads[-2].value(grinding.dynamics)
+    power = -62.8 * rate * resistance  # the rate counts clockwise, the torque counter-clockwise
+    ends = np.abs(np.degrees(turn) % 180 - 92.83) < 1.01
+    assert (power[~ends] < 0).all()
+    assert np.abs(np.abs(resistance[~ends]) - 4.0).max() < 1e-12
+    needed = np.mean(0.2 * (62.8 * rate) ** 2 - power)
+    assert np.mean(-62.8 * grinding.balancing_torque) == pytest.approx(needed, rel=1e-12)
+    assert abs(np.mean(-62.8 * idle.balancing_torque)) < 1e-12 * needed
 
 
 @pytest.mark.slow

@@ -1,10 +1,10 @@
 """Proof with SymPy that the study's formulas of the chain unit and the library's equal each other, for all lengths.
 
 The library's kernel and the study's formulas are called as they are, on rational functions instead of numbers: lengths
-r, c, h, b, sine s and cosine k of the crank angle phi counted clockwise from the frame line, a = |A O2| and S, four
-times the area of the triangle A B O2. Three polynomials tie them: s^2 + k^2 = 1, the law of cosines for a^2 and Heron's
-formula for S^2. Their leading terms S^2, a^2, s^2 have no common factor, so an expression is zero wherever they hold
-if, and only if, its numerator leaves no remainder on division by them.
+r, c, h, b, the pivot's x, sine s and cosine k of the crank angle phi counted clockwise from the frame line, a = |A O2|
+and S, four times the area of the triangle A B O2. Four polynomials tie them: s^2 + k^2 = 1, x^2 + h^2 = b^2, the law of
+cosines for a^2 and Heron's formula for S^2. Their leading terms S^2, a^2, s^2, x^2 have no common factor, so an
+expression is zero wherever they hold if, and only if, its numerator leaves no remainder on division by them.
 """
 
 from types import SimpleNamespace
@@ -20,10 +20,11 @@ from kinetostatics.studies.methods import papers
 
 pytestmark = pytest.mark.slow
 
-FIELD, S, a, s, k, r, c, h, b = field("S, a, s, k, r, c, h, b", QQ, lex)
+FIELD, S, a, s, k, x, r, c, h, b = field("S, a, s, k, x, r, c, h, b", QQ, lex)
 HERON = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
 RELATIONS = [
-    relation.numer for relation in (S**2 - HERON, a**2 - (r**2 + b**2 - 2 * r * b * k), s**2 + k**2 - FIELD.one)
+    relation.numer
+    for relation in (S**2 - HERON, a**2 - (r**2 + b**2 - 2 * r * b * k), s**2 + k**2 - FIELD.one, x**2 + h**2 - b**2)
 ]
 
 
@@ -80,6 +81,22 @@ def study_rates():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(papers, "np", SimpleNamespace(**functions))
         return dict(zip(("coupler", "rocker"), papers.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
+
+
+def test_printed_accelerations_are_those_of_the_left_assembly(placed, monkeypatch):
+    """Equations (11)-(14), (19)-(22); phi_0 has the sine x / b and the cosine -h / b, and phi is angle 0 less it."""
+    _, found, assembly = placed
+    functions = {
+        "pi": 2,  # so that phi is -1, apart from the angle 0 itself
+        "hypot": lambda x, y: b,
+        "cos": lambda angle: k if angle else (-k * h - s * x) / b,
+        "sin": lambda angle: s if angle else (k * x - s * h) / b,
+        "sqrt": root,
+        "arctan": lambda ratio: 0,
+    }
+    monkeypatch.setattr(papers, "np", SimpleNamespace(**functions))
+    for link, printed in zip(("coupler", "rocker"), papers.chain_unit_accelerations(r, c, h, x, 0), strict=True):
+        assert vanishes(printed + getattr(found, link).ratio_slope) == (assembly == 1)
 
 
 def test_directions_are_unit_vectors_closing_the_loop(placed):

@@ -145,6 +145,51 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     return gamma, psi, coupler_rate, rocker_rate
 
 
+def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_x, angle):
+    """Angular accelerations of coupler and rocker of the chain unit by the study's equations (11)-(14), (19)-(22).
+
+    Each is a sum of two derivatives: of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2 and
+    (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they are those of
+    its own derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
+
+    Parameters
+    ----------
+    crank_length, coupler_length, rocker_length, pivot_x, angle
+        As for `chain_unit_by_atan_acos`.
+
+    Returns
+    -------
+    coupler, rocker : arrays (N,)
+        At crank speed 1, clockwise, 1; times the square of a constant crank speed they are rad/s2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> _, rocker = ks.papers.chain_unit_accelerations(0.1, 1.0, 0.5, np.sqrt(0.99), np.array([0.0, 0.5]))
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), ks.linkage.chain_unit_angle([0.0, 0.5]), crank_speed=-1.0)
+    >>> bool(np.allclose(rocker, -s.angular_acceleration("rocker")))
+    True
+    """
+    r, h, b = crank_length, rocker_length, np.hypot(pivot_x, rocker_length)
+    phi = angle - (np.pi / 2 + np.arctan(h / pivot_x))
+    square = r * r + b * b - 2 * r * b * np.cos(phi)
+    growth = 2 * r * b * np.sin(phi)
+    p = -(pivot_x * np.sin(angle) - h * np.cos(angle) - r)
+    p_slope = -(pivot_x * np.cos(angle) + h * np.sin(angle))
+    coupler_turning = r * (square * p_slope - p * growth) / square**2
+    rocker_turning = b * r * np.sin(phi) * (square + 2 * r * (b * np.cos(phi) - r)) / square**2
+
+    def opening(near, far):
+        """Equations (13) and (21): u = sin(phi), v = a^2, s = q^2 - 2 a^2, w = sqrt(4 a^2 near^2 - q^4)."""
+        q2 = square + near * near - far * far
+        u, v, s, w = np.sin(phi), square, q2 - 2 * square, np.sqrt(4 * square * near * near - q2 * q2)
+        u1, v1, s1, w1 = np.cos(phi), growth, -growth, growth * (2 * near * near - q2) / w
+        return b * r * (u * (w * s1 - w1 * s) / (v * w * w) + s * (v * u1 - u * v1) / (w * v * v))
+
+    return coupler_turning - opening(coupler_length, h), rocker_turning + opening(h, coupler_length)
+
+
 def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, assembly, angle):
     """Coupler and rocker of any four-bar by the formulas of `chain_unit_by_atan_acos`, and their accelerations.
 
@@ -240,6 +285,7 @@ __all__ = [
     "METHODS",
     "as_printed",
     "by_the_papers",
+    "chain_unit_accelerations",
     "chain_unit_by_atan_acos",
     "exactly_cancelled",
     "four_bar_by_atan_acos",
