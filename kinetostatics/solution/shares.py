@@ -23,6 +23,7 @@ import numpy as np
 
 from ..cycle.extremes import extrema
 from ..cycle.load_functions import with_resolution
+from ..cycle.kinks import has_sign_changes
 from ..cycle.means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from ..cycle.rounding import FLOOR, PLACED, zeroed
 from ..engines.engines import NUMPY
@@ -179,7 +180,7 @@ def shares(solution, name) -> Shares:
     turn = closed_turn(solution, "shares")
     engine = NUMPY if getattr(solution.engine, "compiled", False) else solution.engine
     whole = replace(solution, engine=engine, friction=turn.at.friction)
-    superposed = not solution.friction.acting
+    superposed = not has_sign_changes(solution)
     find, other_machines = (_alone, sources_alone) if superposed else (_left_out, machines_without)
     others = other_machines(whole)
     if not solution.mechanism.trusted:

@@ -12,6 +12,7 @@ from ...machine.crank import Pin
 from ...machine.groups.lever import CylinderGroup, LeverGroup
 from ...machine.groups.rocker import Dyad, RockerGroup
 from ...machine.groups.slider import SliderGroup
+from ...machine.groups.planetary_crank import PlanetaryCrank
 from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide
 from ...machine.links import Link
@@ -126,6 +127,7 @@ GROUPS = {
     "lever": LeverGroup,
     "cylinder": CylinderGroup,
     "yoke": YokeGroup,
+    "planetary crank": PlanetaryCrank,
     "dyad": Dyad,
     "pin": Pin,
     "cam roller": CamRoller,
