@@ -27,7 +27,7 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..crank import ray
-from ..group import Bar, Declaration, Group, Point, Resolved, rules_of_parts
+from ..group import Declaration, Group, Point, Resolved, rules_of_parts
 from ..links import Joint, Link, LinkMotion, Meshing, Turning
 
 TERMS = {
@@ -145,8 +145,8 @@ class PlanetaryCrank(checks.Checked, Group):
     def declaration(self):
         return Declaration(
             joints={self.pin: Point("planet", self.radius)},
-            bars=(Bar(self.on, self.pin, "planet", self.radius),),
             pairs=(Turning("planet", self.on), Meshing("planet", self.on, "mesh", "tooth_force")),
+            lengths=(self.radius,),
         )
 
     @property
