@@ -10,6 +10,7 @@ Design*, 1976). The teeth touch on the arm's ray, 2 a from O, where the planet's
 no work.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -116,7 +117,7 @@ class PlanetaryCrank(checks.Checked, Group):
 
     radius: Any
     line_angle: Any = 0.0
-    pressure_angle: Any = np.radians(20.0)
+    pressure_angle: Any = math.radians(20.0)
     on: str = "A"
     pin: str = "P"
     planet: Link = Link()
