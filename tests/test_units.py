@@ -573,8 +573,8 @@ NO_NUMBERS = {
     *("mechanism", "motor", "name", "on", "over", "pin", "pivot_name", "rod", "rocker", "slider", "scene", "between"),
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
-    *("planet", "begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks"),
+    *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
+    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks", "planet"),
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

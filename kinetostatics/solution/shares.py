@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.extremes import extrema
-from ..cycle.load_functions import with_resolution
 from ..cycle.kinks import has_sign_changes
+from ..cycle.load_functions import with_resolution
 from ..cycle.means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from ..cycle.rounding import FLOOR, PLACED, zeroed
 from ..engines.engines import NUMPY
@@ -125,7 +125,8 @@ class Shares:
     def note(self):
         """Sentence on rows that do not add up to the total; "" if they do."""
         if not self.superposed:
-            why = "friction is not linear: each row is the force of the whole machine less that without its source"
+            cause = "friction" if self.solution.friction.acting else "thrust of teeth"
+            why = f"{cause} is not linear: each row is the force of the whole machine less that without its source"
         elif abs(self.rest) > WARNING_ERROR * max(abs(row.peak) for row in (*self.rows, self.total)):
             why = "a group of your own is not linear in masses and loads"
         else:

@@ -61,7 +61,11 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
             applied = push * way if link is made.links["slider"] else 0.0
             centres.append(centre[at])
             moment = ((foot[at] - centre[at]).conjugate() * applied).imag
-            right += [(inertial - applied).real, (inertial - applied).imag, link.inertia * ratio * acceleration - moment]
+            right += [
+                (inertial - applied).real,
+                (inertial - applied).imag,
+                link.inertia * ratio * acceleration - moment,
+            ]
         for side in (1.0, -1.0):
             columns = []
 

@@ -10,9 +10,9 @@ from pydantic import BeforeValidator
 from ...machine.cams.cam_roller import CamRoller
 from ...machine.crank import Pin
 from ...machine.groups.lever import CylinderGroup, LeverGroup
+from ...machine.groups.planetary_crank import PlanetaryCrank
 from ...machine.groups.rocker import Dyad, RockerGroup
 from ...machine.groups.slider import SliderGroup
-from ...machine.groups.planetary_crank import PlanetaryCrank
 from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide
 from ...machine.links import Link

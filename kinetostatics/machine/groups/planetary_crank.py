@@ -17,7 +17,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import cos, sign, sin
+from ...numbers.arithmetic import cos, sin
 from ...numbers.planar import (
     left,
     number_or_zero,
@@ -64,7 +64,7 @@ def resolve(motion, load, pressure_angle):
     arm, length = motion.arm, motion.length
     radial = (arm[0] / length, arm[1] / length)
     tangential = -number_or_zero(load.moment) / length
-    separating = tangential * sign(tangential) * sin(pressure_angle) / cos(pressure_angle)
+    separating = abs(tangential) * sin(pressure_angle) / cos(pressure_angle)
     teeth = subtract_vectors(scale_vector(tangential, left(radial)), scale_vector(separating, radial))
     inner = subtract_vectors(subtract_vectors(None, vector_or_zero(load.force)), teeth)
     return (inner, teeth), (tangential,)
@@ -126,7 +126,9 @@ class PlanetaryCrank(checks.Checked, Group):
 
     def _steep_teeth_problem(self):
         """Yield the problem of designs whose teeth would push along the arm."""
-        if checks.has_known_values(self.pressure_angle) and np.any(steep := np.asarray(self.pressure_angle) >= np.pi / 2):
+        if checks.has_known_values(self.pressure_angle) and np.any(
+            steep := np.asarray(self.pressure_angle) >= np.pi / 2
+        ):
             angle = np.max(self.pressure_angle)
             yield checks.Problem(f"pressure_angle must be less than pi/2, as 20 degrees, got {angle:.6g} rad", steep)
 
