@@ -51,6 +51,7 @@ from .machine.friction import RollerFriction as RollerFriction
 from .machine.friction import SlotFriction as SlotFriction
 from .machine.groups.lever import CylinderGroup as CylinderGroup
 from .machine.groups.lever import LeverGroup as LeverGroup
+from .machine.groups.planetary_crank import PlanetaryCrank as PlanetaryCrank
 from .machine.groups.rocker import Dyad as Dyad
 from .machine.groups.rocker import RockerGroup as RockerGroup
 from .machine.groups.slider import SliderGroup as SliderGroup

@@ -78,6 +78,11 @@ DOORS = {
     "LeverGroup": (ks.LeverGroup, {"pivot": ((0.5, 0.25), "m"), "offset": (0.125, "m"), "plane": (0.125, "m")}, {}),
     "CylinderGroup": (ks.CylinderGroup, {"pivot": ((0.5, 0.25), "m"), "plane": (0.125, "m")}, {}),
     "YokeGroup": (ks.YokeGroup, {"slot_angle": (1.0, "rad"), "plane": (0.125, "m")}, {"guide": GUIDE}),
+    "PlanetaryCrank": (
+        ks.PlanetaryCrank,
+        {"radius": (0.25, "m"), "line_angle": (1.0, "rad"), "pressure_angle": (0.5, "rad"), "plane": (0.125, "m")},
+        {},
+    ),
     "Pin": (ks.Pin, {"at": ((0.5, 0.25), "m"), "plane": (0.125, "m")}, {"on": "coupler", "name": "C"}),
     "SwingingFollower": (
         ks.SwingingFollower,
@@ -571,6 +576,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("precision", "device", "reaction", "before", "spring", "left", "right", "result", "marks"),
+    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks", "planet"),
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

@@ -1,7 +1,8 @@
 """Crank angles over the period where loads, friction and laws of cams have kinks or jumps, of one design or of many.
 
-Friction has them where a rate or a force changes its sign; `sign_changes` finds these. Load functions that declare no
-kinks are sampled at the resolution of their scene (`load_functions`); what is narrower may be missed.
+Friction has them where a rate or a force changes its sign, teeth where their force does; `sign_changes` finds these.
+Load functions that declare no kinks are sampled at the resolution of their scene (`load_functions`); what is narrower
+may be missed.
 """
 
 import warnings
@@ -43,7 +44,7 @@ def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
         return True
     kinked = any(has_significant_kinks(part, tolerance) for part in kink_sources(solution.loads))
     loads = kinked or undeclared_functions(solution.loads)
-    return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in LOAD_FREE_KINDS
+    return bool(has_sign_changes(solution) or loads) and quantity(solution, name).kind not in LOAD_FREE_KINDS
 
 
 def design_kinks(solution, tolerance=KINK_TOLERANCE):
@@ -53,8 +54,8 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
     to its load's largest value.
     """
     sources, largest_left_out = [law_kinks(solution)[None]], 0.0
-    if solution.friction.acting:
-        sources.append(_friction_sign_changes(solution, SAMPLES)[1])
+    if has_sign_changes(solution):
+        sources.append(_sign_changes_of(solution, SAMPLES)[1])
     for part in kink_sources(solution.loads):
         angles, _, left_out = significant_kinks(part, solution, SMALL_KINK)
         if angles.shape[1] > MAX_SMALL_KINKS:
@@ -78,10 +79,10 @@ def kinks_and_jumps(solution):
         kinks = np.union1d(kinks, function.rough_places)
     for text in () if solution.silent else check_resolution(solution, functions, solution.resolution).hints:
         warnings.warn(HintWarning(solution.mechanism.name, text), stacklevel=3)
-    if not solution.friction.acting:
+    if not has_sign_changes(solution):
         return kinks, jumps
-    friction = _friction_sign_changes(solution, FINE_SAMPLES)[1].ravel()
-    return np.union1d(kinks, friction), np.union1d(jumps, friction)
+    signs = _sign_changes_of(solution, FINE_SAMPLES)[1].ravel()
+    return np.union1d(kinks, signs), np.union1d(jumps, signs)
 
 
 def declared_kinks(motion):
@@ -112,9 +113,14 @@ def _period_starts(part, solution):
     return np.arange(0.0, solution.period - ANGLE_TOLERANCE, period_on(part, solution.mechanism))
 
 
-def _friction_sign_changes(solution, samples):
+def has_sign_changes(solution):
+    """Whether friction, or the side of teeth, may put kinks into forces."""
+    return bool(solution.friction.acting or solution.mechanism.sign_forces)
+
+
+def _sign_changes_of(solution, samples):
     count = samples * round(solution.period / TURN)
-    return sign_changes(lambda angle: solution.unsolved_at(angle).dynamics.friction_signs, solution.period, count)
+    return sign_changes(lambda angle: solution.unsolved_at(angle).dynamics.sign_functions, solution.period, count)
 
 
 def sign_changes(function, period, samples):

@@ -252,11 +252,11 @@ def friction_problems(mechanism, given):
         text = 'must be a dict of joint to friction, as {"O": ks.PinFriction(mu, radius)}'
         yield f"friction {text}, got {checks.shown(given)}"
         return
-    pairs = mechanism.pairs
+    pairs, kinds = mechanism.pairs, mechanism.friction_kinds
     for name, friction in given.items():
-        if not isinstance(name, str) or name not in pairs:
-            yield checks.choice("friction: joint", name, tuple(pairs))
-        elif not isinstance(friction, wanted := friction_kind(pairs[name])):
+        if not isinstance(name, str) or name not in kinds:
+            yield checks.choice("friction: joint", name, tuple(kinds))
+        elif not isinstance(friction, wanted := kinds[name]):
             what = MOTIONS[type(pairs[name])]
             yield f"friction: {name!r} {what} and takes a {wanted.__name__}, got {checks.shown(friction)}"
         elif isinstance(pairs[name], Rolling):

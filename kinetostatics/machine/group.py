@@ -71,7 +71,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .links import CamDriven, Link, Rolling, Sliding, Slot, Turning, Wrench, present
+from .links import CamDriven, Link, Meshing, Rolling, Sliding, Slot, Turning, Wrench, present
 
 FRAME, CRANK = "frame", "crank"
 """Link that does not move, and the link of every crank."""
@@ -161,7 +161,7 @@ class Declaration(NamedTuple):
     guides: Mapping[str, Any] = EMPTY
     slots: tuple[Slot, ...] = ()
     led: tuple[CamDriven, ...] = ()
-    pairs: tuple[Turning | Sliding | Rolling, ...] = ()
+    pairs: tuple[Turning | Sliding | Rolling | Meshing, ...] = ()
     motions: Mapping[str, Output] = EMPTY
     contacts: Mapping[str, Any] = EMPTY
     lengths: tuple[Any, ...] = ()
@@ -199,6 +199,8 @@ class Part:
     """Joints that run on a curve, with what drawings call it."""
     rollers: Any = EMPTY
     """Radii of rollers by the joints that are their centres, m; None where it is not known."""
+    sign_forces: Any = ()
+    """Forces, by name, whose change of sign puts a kink into other forces."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
 
@@ -280,7 +282,9 @@ class Part:
         """
         found: dict[str, Any] = {}
         for pair in self.declaration.pairs:
-            if not isinstance(pair, Turning):
+            if isinstance(pair, Meshing):
+                name = self.called(pair.name)
+            elif not isinstance(pair, Turning):
                 name = self.called(pair.force.removesuffix("_force"))
             elif pair.joint not in self.hangs_on:
                 name = pair.joint
@@ -304,6 +308,9 @@ class Part:
                     of, found[name] = "guide's left normal", Output("N", True, on, pair.joint)
                 found[pair.force] = Output("N", False, f"{on} along the {of}")
                 found[pair.couple] = Output("N m", False, f"{on} about {pair.about or pair.joint}", pair.about)
+            elif isinstance(pair, Meshing):
+                found[name] = Output("N", True, f"ring on {pair.link}", pair.joint)
+                found[pair.force] = Output("N", False, f"ring on {pair.link} across the arm, counter-clockwise about O")
             elif pair.joint in self.hangs_on:
                 found[name] = Output("N", True, f"on the {pair.link}, from what carries {pair.joint}", pair.joint)
             else:

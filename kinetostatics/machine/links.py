@@ -274,6 +274,19 @@ class Rolling(NamedTuple):
     force: str
 
 
+class Meshing(NamedTuple):
+    """Teeth of `link` in a fixed ring, at twice the place of `joint` from O: the reaction `name` acts on the link.
+
+    `force` is the name of its part across that ray.
+    """
+
+    link: str
+    joint: str
+    name: str
+    force: str
+    against: str = "frame"
+
+
 class Slide(NamedTuple):
     """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
     along it about the reference joint of what it slides on (None: none).

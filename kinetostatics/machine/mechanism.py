@@ -21,7 +21,7 @@ from .crank import Crank
 from .friction import friction_kind
 from .group import BEARINGS, CRANK, FRAME, GROUND, MEMBERS, RATES, RESERVED, SHAFT_TORQUE, TRAVELS, Group, Resolved
 from .kinematic_state import margin, place
-from .links import Sliding, Turning, Wrench, present
+from .links import Meshing, Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
 from .planes import plane_problems, planes_by_link
 
@@ -281,7 +281,7 @@ class Mechanism(Batched):
     @property
     def friction_kinds(self):
         """Kind of friction that each joint may have, by its name in `friction`: `PinFriction`, `GuideFriction` ..."""
-        return {name: friction_kind(pair) for name, pair in self.pairs.items()}
+        return {name: friction_kind(pair) for name, pair in self.pairs.items() if not isinstance(pair, Meshing)}
 
     guides = _table("guides", "Guide by slider.")
 
@@ -296,6 +296,7 @@ class Mechanism(Batched):
     curves = _table("curves", "Title in drawings of the curve that a joint runs on, by joint.")
 
     slots = _table("slots", "Links in which a joint slides, each as a `Slot`.")
+    sign_forces = _table("sign_forces", "Forces whose change of sign puts a kink into others, by name.")
     rollers = _table("rollers", "Radii of rollers by the joints that are their centres, m; None if it is not known.")
     bars = _table("bars", "Links that keep two joints at a distance, from the crank outwards.")
 

@@ -176,9 +176,10 @@ class Dynamics(Motion):
         return getattr(self.friction_solver, name) if self.friction_by_joint else []
 
     @property
-    def friction_signs(self):
-        """Rates and forces at whose zeros friction jumps or has a kink, a list of (..., N)."""
-        return [self._scalar(part) for part in (*self._friction_list("rates"), *self._friction_list("kinks"))]
+    def sign_functions(self):
+        """Rates and forces at whose zeros friction jumps or has a kink, or another force one, a list of (..., N)."""
+        forces = [self.scalar(name) for name in self.mechanism.sign_forces]
+        return forces + [self._scalar(part) for part in (*self._friction_list("rates"), *self._friction_list("kinks"))]
 
     def friction_at(self, joint):
         """Friction on the moving link of a joint, (..., N): moment of a pin, N m, else force along the pair, N."""

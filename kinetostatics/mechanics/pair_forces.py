@@ -2,6 +2,7 @@
 
     turning pair     reaction at the joint; friction of the pin as a couple
     sliding pair     force along the left normal of its direction, friction along it, and a couple, at a joint
+    teeth            reaction at the pitch point
     cam              force along the left normal of its curve, friction along the curve, at the contact
 
 They act on the `link` of the pair, and the other way round on the link against it: a force on the frame is the opposite
@@ -11,7 +12,7 @@ centre; where the radius is not known the centre stands for the contact.
 """
 
 from ..machine.group import FRAME
-from ..machine.links import CamDriven, Turning
+from ..machine.links import CamDriven, Meshing, Turning
 from ..machine.supports import Support
 from ..numbers.arithmetic import sign
 from ..numbers.planar import (
@@ -38,6 +39,8 @@ def pair_forces(state, name, joining) -> dict[str, Support]:
     if isinstance(pair, Turning):
         point = state.placement.joints[pair.joint].position
         return {name: Support(state.reaction(name), point, _friction(state, name))}
+    if isinstance(pair, Meshing):
+        return {name: Support(state.reaction(name), scale_vector(2.0, state.placement.joints[pair.joint].position))}
     return _of_slide(state, name, joining)
 
 

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..cycle.extremes import extrema
+from ..cycle.kinks import has_sign_changes
 from ..cycle.load_functions import with_resolution
 from ..cycle.means import TERM_ROUNDING, WARNING_ERROR, closed_turn, means
 from ..cycle.rounding import FLOOR, PLACED, zeroed
@@ -124,7 +125,8 @@ class Shares:
     def note(self):
         """Sentence on rows that do not add up to the total; "" if they do."""
         if not self.superposed:
-            why = "friction is not linear: each row is the force of the whole machine less that without its source"
+            cause = "friction" if self.solution.friction.acting else "thrust of teeth"
+            why = f"{cause} is not linear: each row is the force of the whole machine less that without its source"
         elif abs(self.rest) > WARNING_ERROR * max(abs(row.peak) for row in (*self.rows, self.total)):
             why = "a group of your own is not linear in masses and loads"
         else:
@@ -179,7 +181,7 @@ def shares(solution, name) -> Shares:
     turn = closed_turn(solution, "shares")
     engine = NUMPY if getattr(solution.engine, "compiled", False) else solution.engine
     whole = replace(solution, engine=engine, friction=turn.at.friction)
-    superposed = not solution.friction.acting
+    superposed = not has_sign_changes(solution)
     find, other_machines = (_alone, sources_alone) if superposed else (_left_out, machines_without)
     others = other_machines(whole)
     if not solution.mechanism.trusted:

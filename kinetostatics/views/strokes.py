@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.group import FRAME
+from ..machine.links import Meshing
 from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import rotate_back
@@ -159,6 +160,12 @@ class Shape:
             for link, points in group.outlines.items():
                 if link in links:
                     yield Stroke("outline", _link_points(pose, link, points))
+        for pair in self.mechanism.pairs.values():
+            if isinstance(pair, Meshing) and pair.link in links:  # pitch circles of planet and ring
+                axis = pose.position(pair.joint)
+                size = float(np.max(np.hypot(*axis)))
+                yield Stroke("outline", self._ring(axis, size))
+                yield Stroke("outline", self._ring(0.0 * axis, 2.0 * size))
         for link, corners in self.corners.items():
             order = _line_order(corners)
             if corners.shape[1] > 1 and link in links:

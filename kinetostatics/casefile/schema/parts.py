@@ -10,6 +10,7 @@ from pydantic import BeforeValidator
 from ...machine.cams.cam_roller import CamRoller
 from ...machine.crank import Pin
 from ...machine.groups.lever import CylinderGroup, LeverGroup
+from ...machine.groups.planetary_crank import PlanetaryCrank
 from ...machine.groups.rocker import Dyad, RockerGroup
 from ...machine.groups.slider import SliderGroup
 from ...machine.groups.yoke import YokeGroup
@@ -126,6 +127,7 @@ GROUPS = {
     "lever": LeverGroup,
     "cylinder": CylinderGroup,
     "yoke": YokeGroup,
+    "planetary crank": PlanetaryCrank,
     "dyad": Dyad,
     "pin": Pin,
     "cam roller": CamRoller,
