@@ -51,7 +51,9 @@ class RatioRule:
     def check(self, value, field=""):
         try:
             found = Fraction(checks.to_plain(value, "1"))
-        except (TypeError, ValueError, OverflowError, ZeroDivisionError, checks.DimensionError):
+        except checks.DimensionError as fault:
+            return value, f"{field} {fault}"
+        except (TypeError, ValueError, OverflowError, ZeroDivisionError):
             found = None
         if found is None or isinstance(value, bool):
             return value, f'{field} must be a number, such as -1 or 0.5, or text "1/3", got {checks.shown(value)}'
@@ -179,8 +181,7 @@ class BalanceShaft(Load):
 
     def signs(self, motion):
         """Symbol of a wheel with a weight at the axis."""
-        centre = motion.as_vector(self.at)
-        yield Symbol("shaft", centre, direction=motion.as_vector(self._direction(motion)))
+        yield Symbol("shaft", motion.position(self.at), direction=motion.as_vector(self._direction(motion)))
 
     def _direction(self, motion):
         """Unit vector from the axis to the unbalance."""

@@ -53,14 +53,14 @@ class Symbol(NamedTuple):
 
     Attributes
     ----------
-    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+    kind : "spring", "damper", "line", "force", "couple", "spiral", "ring" or "shaft"
         Springs, dampers and lines run from `start` to `end`; all others stand at `start`. A damper on a slider stands
-        for a cylinder with gas.
+        for a cylinder with gas, a shaft for a wheel with a weight.
     start : array (2, N)
     end : array (2, N), optional
         None for a spring or gas spring on a slider, which is drawn along the guide.
     direction : array (2, N), optional
-        Unit vector of a positive force.
+        Unit vector of a positive force, or to the weight of a shaft.
     slider : str
         Slider of a spring along a guide.
     sense : array (N,) or float
