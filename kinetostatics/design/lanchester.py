@@ -10,11 +10,11 @@ shafts cancel a harmonic exactly, whatever the mechanism; the one of the ratio 1
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from ..cycle.means import closed_turn, means
+from ..errors import ParameterError
 from ..machine.group import CRANK
 from ..machine.loads import BalanceShaft, balance_shafts, spring_masses
 from ..machine.loads.balance_shaft import RatioRule
@@ -28,7 +28,7 @@ ZERO = 1e-12
 """Terms of the series that count as zero, relative to the mass of the links times the lengths."""
 OTHER_HARMONICS = tuple(range(1, 7))
 """Harmonics of the table besides those that are cancelled."""
-RATIO = RatioRule()
+RATIO, OWNER = RatioRule(), "balance shafts"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +65,7 @@ class WithShafts:
         return f"<WithShafts: {self.bare.mechanism.name}, shafts of {ratios or 'none'}>"
 
     def table(self):
-        """Largest value of each harmonic of the shaking force before and after, N, a pandas DataFrame.
-
-        At the largest crank speed of the scene, constant. Cancelled harmonics leave rounding.
-        """
+        """Largest of each harmonic of the shaking force before and after, N, at constant speed, a pandas DataFrame."""
         import pandas as pd
 
         orders = sorted({*self.harmonics, *OTHER_HARMONICS})
@@ -83,7 +80,7 @@ class WithShafts:
 def force_series(scene, orders):
     """Terms of the series of the shaking force over crank speed squared by their orders, complex, kg m."""
     loads = [item for item in scene.loads if spring_masses((item,)) or balance_shafts((item,))]
-    turn = closed_turn(Scene(scene.mechanism, 1.0, loads=loads).unsolved(np.zeros(1)), "balance shafts")
+    turn = closed_turn(Scene(scene.mechanism, 1.0, loads=loads).unsolved(np.zeros(1)), OWNER)
 
     def parts(angle):
         x, y = turn.at.moved_to(turn.clear(angle)).shaking_force
@@ -104,23 +101,20 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     harmonics : sequence of numbers
         In turns of the crank: 1, 2, 4; fractions too where the motion repeats after several turns.
     at : (x, y) or dict of ratio to (x, y)
-        Axes of the shafts, m; with a dict O for those it lacks. Forces beside a line through the machine's centre
-        leave moments: two equal shafts on both sides of it have none.
+        Axes of the shafts, m; with a dict O for those it lacks. A force beside O has a moment.
     crank : Counterweight, optional
         A counterweight on the crank takes the place of the shaft of the ratio 1; its mass or arm, and limits.
 
     Returns
     -------
     WithShafts
-        `scene`, `shafts`, and a `table` of the harmonics. A circle that the force lacks has no shaft.
+        `scene`, `shafts`, and a `table` of the harmonics. A circle that the force lacks has none.
 
     Raises
     ------
     ParameterError
-        Neither a scene nor a solution, a batch of designs, a harmonic that is not positive, or given twice; a
-        counterweight that breaks its limits.
-    AssemblyError
-        The mechanism does not close all round the turn.
+        Neither a scene nor a solution, a batch of designs, or one that does not close all round; a harmonic that is
+        not positive, or given twice; a counterweight that breaks its limits.
 
     Examples
     --------
@@ -132,15 +126,14 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     >>> found.table()["after [N]"].loc[["1", "2", "4"]].round(3).abs().to_dict()
     {'1': 0.0, '2': 0.0, '4': 2.049}
     """
-    owner = "balance shafts"
     scene = Scene.of(scene) if isinstance(scene, Solution) else scene
-    checks.require(owner, scene_problem(scene), None if crank is None else _weight_problem(crank))
-    orders, problems = _orders(harmonics)
-    checks.require(owner, *problems)
+    strange = None if crank is None or isinstance(crank, Counterweight) else "crank must be a Counterweight"
+    checks.require(OWNER, scene_problem(scene), strange)
+    orders = _orders(harmonics)
     ratios = [sign * n for n in orders for sign in (1.0, -1.0)]
     places = at if isinstance(at, dict) else dict.fromkeys(ratios, at)
-    strange = [n for n in places if n not in ratios]
-    checks.require(owner, f"at has ratios that no shaft has: {strange}" if strange else None)
+    others = [n for n in places if n not in ratios]
+    checks.require(OWNER, f"at has ratios that no shaft has: {others}" if others else None)
     least = ZERO * principal_points(scene.mechanism).mass * scene.mechanism.extent
     found, balanced = [], None
     for n, term in zip(ratios, force_series(scene, ratios), strict=True):
@@ -149,8 +142,7 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
             continue
         if n == 1.0 and crank is not None:
             arm = None if crank.arm is None else float(np.copysign(crank.arm, needed.real))
-            unbalance = needed.real, needed.imag
-            balanced = counterweight(scene.mechanism, CRANK, unbalance, replace(crank, arm=arm))
+            balanced = counterweight(scene.mechanism, CRANK, (needed.real, needed.imag), replace(crank, arm=arm))
         else:
             found.append(BalanceShaft(abs(needed), n, float(np.angle(needed)), places.get(n, (0.0, 0.0))))
     made = scene.mechanism if balanced is None else balanced.mechanism
@@ -158,20 +150,13 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     return WithShafts(scene, new, tuple(found), balanced, orders)
 
 
-def _orders(harmonics) -> tuple[tuple[float, ...], list[Any]]:
-    """Harmonics as numbers, and problems of them."""
+def _orders(harmonics) -> tuple[float, ...]:
+    """Harmonics as numbers, checked."""
     if not isinstance(harmonics, tuple | list | np.ndarray | range) or not len(harmonics):
-        return (), [f"harmonics must be a sequence of numbers such as (1, 2), got {checks.shown(harmonics)}"]
+        raise ParameterError(f"{OWNER}: harmonics must be a sequence such as (1, 2), got {checks.shown(harmonics)}")
     found = [RATIO.check(n, "harmonics") for n in harmonics]
-    problems = [problem for _, problem in found]
-    if any(problems):
-        return (), problems
+    checks.require(OWNER, *(problem for _, problem in found))
     orders = tuple(n for n, _ in found)
-    return orders, [
-        None if min(orders) > 0.0 else f"harmonics must be positive, got {min(orders):g}",
-        None if len(set(orders)) == len(orders) else "a harmonic is given twice",
-    ]
-
-
-def _weight_problem(crank):
-    return None if isinstance(crank, Counterweight) else f"crank must be a Counterweight, got {checks.shown(crank)}"
+    alone = min(orders) > 0.0 and len(set(orders)) == len(orders)
+    checks.require(OWNER, None if alone else f"harmonics must be positive, each once, got {checks.shown(orders)}")
+    return orders

@@ -7,9 +7,9 @@ J about the axis, the pull of gravity g, crank speed omega and acceleration alph
     moment about its own axis        tau = U u x g - J n alpha
     torque on the crank              n tau,    which adds J n^2 to the reduced inertia
 
-The gears between shaft and crank are not modelled: without pitch radii the forces of their teeth are not known. Their
-couple is: (1 - n) tau on the bearings of shaft and crank, which the frame takes.
-Source: J. P. den Hartog, *Mechanical Vibrations*, 1956, chapter 5; F. W. Lanchester, British patent 21 139, 1911.
+Forces of the teeth between shaft and crank are not modelled, for they need pitch radii. Their couple on the frame is
+known, (1 - n) tau on the bearings of both.
+Sources: F. W. Lanchester, *Engine balancing*, 1914; J. P. den Hartog, *Mechanical Vibrations*, 1956, chapter 5.
 """
 
 from dataclasses import dataclass, field
@@ -30,11 +30,6 @@ MAX_DENOMINATOR = 24
 MAX_RATIO = 100.0
 RATIO_TOLERANCE = 1e-12
 """Relative rounding by which a ratio may miss its fraction."""
-TERMS = {
-    "shaking.turning": ("U", "unbalance times the square of the ratio"),
-    "_moment.pull": ("W", "moment of the weight of the unbalance about the axis of the shaft"),
-}
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 def _fraction(ratio):
@@ -57,23 +52,19 @@ class RatioRule:
             found = None
         if found is None or isinstance(value, bool):
             return value, f'{field} must be a number, such as -1 or 0.5, or text "1/3", got {checks.shown(value)}'
-        near = _fraction(found)
+        near, problem = _fraction(found), None
         if not 0 < abs(found) <= MAX_RATIO:
-            return value, f"{field} must not be 0, and at most {MAX_RATIO:g} in size, got {checks.shown(value)}"
-        if abs(near - found) > RATIO_TOLERANCE * abs(found):
-            return value, (
-                f"{field} must be a fraction with a denominator of at most {MAX_DENOMINATOR}, for else the machine "
-                f"repeats late or never, got {checks.shown(value)}; near is {near}"
-            )
-        return float(near), None
+            problem = f"must not be 0, and at most {MAX_RATIO:g} in size"
+        elif abs(near - found) > RATIO_TOLERANCE * abs(found):
+            problem = f"must be a fraction near {near} with a denominator of at most {MAX_DENOMINATOR}, to repeat soon"
+        return float(near), problem and f"{field} {problem}, got {checks.shown(value)}"
 
 
 @dataclass(frozen=True, eq=False)
 class BalanceShaft(Load):
     """An unbalanced shaft geared to the crank: its inertia force and weight on the frame, its torque on the crank.
 
-    It changes no motion. Forces of teeth are not modelled, for the pitch radii are not known: the bearing of the shaft
-    carries its inertia force and weight alone, and the crank takes a torque alone.
+    It changes no motion. Forces of teeth are not modelled, for the pitch radii are not known.
 
     Parameters
     ----------
@@ -98,11 +89,6 @@ class BalanceShaft(Load):
     ------
     ParameterError
         A value is not a finite number, or negative where none can be; the ratio is 0, above 100, or no such fraction.
-
-    Notes
-    -----
-    The place "balance_shaft" of `Solution.ground` has the inertia force and weight at the axis, and the couple of the
-    gears, by which the torque on the crank differs from the moment about the shaft's own axis.
 
     Examples
     --------
@@ -135,10 +121,6 @@ class BalanceShaft(Load):
         mass=checks.Number("kg", low=0.0),
         plane=POSITION,
     )
-
-    @property
-    def title(self):
-        return f"{type(self).__name__} at the ratio {_fraction(self.ratio)}"
 
     @property
     def period(self):

@@ -16,9 +16,8 @@ and inertia nearly cancel.
     misplaced(mechanism)    problems of the joints and links it names
     refusals(motion)        sentences on crank angles at which it has no value; REFUSES says that there may be any
     signs(motion)           symbols by which it is drawn
-    shaking(motion)         of one with masses of its own that turn with the crank: their inertia force on the frame and
-                            couple, a `Support`; then also ``crank_inertia``, the inertia that it adds to the crank,
-                            constant, kg m2 or None, and ``plane``, its position along the crankshaft, m
+    shaking(motion)         inertia force on the frame, a `Support`, of its masses that turn with the crank; then also
+                            ``crank_inertia``, added to the crank, kg m2 or None, and ``plane`` along the crankshaft, m
     rests_on_frame(mechanism)  whether the frame takes a force or couple of it
     support(motion)         that force and couple, a `Support`; by default its wrenches on the frame, about O
 
