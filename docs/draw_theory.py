@@ -521,6 +521,38 @@ def planes():
     return figure
 
 
+def balance_shafts():
+    """A harmonic of the force as an ellipse of two circles; a crank-slider with counterweight and three shafts."""
+    figure, (one, two) = plt.subplots(1, 2, width_ratios=(1.0, 1.5))
+    turn, angle, forward, backward = np.exp(1j * TURN), 0.7, 1.0, 0.45
+    for radius, centre in ((forward, 0.0), (backward, forward * np.exp(1j * angle))):
+        circle = centre + radius * turn
+        one.plot(circle.real, circle.imag, color=INK, lw=0.6, ls="--")
+    ellipse = forward * turn + backward * turn.conj()
+    one.plot(ellipse.real, ellipse.imag, color=LOAD, lw=1.6)
+    middle = forward * np.exp(1j * angle)
+    tip = middle + backward * np.exp(-1j * angle)
+    ends = [np.array([part.real, part.imag]) for part in (0j, middle, tip)]
+    for start, end, colour in ((0, 1, STEEL), (1, 2, STEEL), (0, 2, LOAD)):
+        arrow(one, ends[start], ends[end], "", colour)
+    for place, name, colour in (
+        ((0.0, 0.28), "$+n$", STEEL),
+        ((0.93, 0.6), "$-n$", STEEL),
+        ((0.6, 0.06), "$F_n$", LOAD),
+    ):
+        one.text(*place, name, color=colour)
+    machine = ks.Scene(ks.crank_slider(0.05, 0.17, slider=ks.Link(1.0)), 100.0)
+    places = {-1.0: (-0.11, 0.0), 2.0: (0.06, 0.09), -2.0: (0.06, -0.09)}
+    found = ks.balancing.shafts(machine, at=places, crank=ks.Counterweight(arm=-0.022))
+    ks.plots.mechanism(found.scene.solve(np.radians([40.0])), angles=(40,), ax=two)
+    for ratio, (x, y) in {**places, 1.0: (-0.01, -0.05)}.items():
+        two.text(x - 0.02, y + 0.012, f"${ratio:+g}$", ha="right", va="bottom", color=ACCENT)
+    one.set_aspect("equal")
+    for ax in (one, two):
+        ax.axis("off")
+    return figure
+
+
 def springs():
     """A helical spring with its dimensions; a slider between springs that press and pull, and between opposed ones."""
     figure, (one, two) = plt.subplots(1, 2, width_ratios=(1.0, 1.6))
@@ -556,6 +588,7 @@ DRAWINGS = {
     "../parts/foundation": (foundation, (6.4, 3.2)),
     "../parts/play": (play, (4.4, 3.6)),
     "../parts/springs": (springs, (6.4, 3.0)),
+    "../machines/balance_shafts": (balance_shafts, (7.0, 3.0)),
     "../parts/planes": (planes, (6.4, 3.2)),
     "../parts/bearings": (bearings, (6.4, 2.6)),
 }

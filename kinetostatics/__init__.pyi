@@ -59,6 +59,7 @@ from .machine.groups.yoke import YokeGroup as YokeGroup
 from .machine.guide import Guide as Guide
 from .machine.laws import laws as laws
 from .machine.links import Link as Link
+from .machine.loads import BalanceShaft as BalanceShaft
 from .machine.loads import Force as Force
 from .machine.loads import GasSpring as GasSpring
 from .machine.loads import Gravity as Gravity

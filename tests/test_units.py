@@ -121,6 +121,12 @@ DOORS = {
         {"mass": (8.0, "kg"), "crank_speed": (4.0, "rad/s"), "free_position": (0.5, "m"), "spring_mass": (2.0, "kg")},
         {},
     ),
+    "BalanceShaft": (
+        ks.BalanceShaft,
+        {"unbalance": (0.5, "kg*m"), "ratio": (-2.0, "1"), "phase": (0.5, "rad"), "at": ((0.5, 0.25), "m")}
+        | {"inertia": (0.25, "kg*m**2"), "mass": (2.0, "kg"), "plane": (0.125, "m")},
+        {},
+    ),
     "GasSpring": (
         ks.GasSpring,
         {
@@ -376,6 +382,11 @@ DOORS = {
         {},
     ),
     "Counterweight.arm": (ks.balancing.Counterweight, {"arm": (0.5, "m"), "plane": (0.125, "m")}, {}),
+    "shafts": (
+        ks.balancing.shafts,
+        {"harmonics": ((1.0, 2.0), "1"), "at": ((0.5, 0.25), "m")},
+        {"scene": SOLVED},
+    ),
     "in_two_planes": (
         ks.balancing.in_two_planes,
         {"reciprocating": (0.5, "1")},
@@ -620,6 +631,7 @@ RESULTS = {
 }
 RESULTS |= {
     "Balanced",
+    "WithShafts",
     "Grashof",
     "LawCam",
     "Segment",

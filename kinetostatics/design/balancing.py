@@ -24,16 +24,19 @@ from ..numbers import checks
 from ..solution.scene import mechanism_problem
 from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
+from .lanchester import WithShafts, shafts
 from .linkage import crank_sliders, four_bar_shape
 
 __all__ = [
     "Balanced",
     "Counterweight",
+    "WithShafts",
     "counterweight",
     "full",
     "in_two_planes",
     "optimal",
     "partial",
+    "shafts",
 ]
 
 NAMED_RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}

@@ -28,9 +28,9 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.group import FRAME
+from ..machine.group import CRANK, FRAME
 from ..machine.links import Wrench, acceleration_of, load, virtual_work
-from ..machine.loads import spring_masses
+from ..machine.loads import balance_shafts, spring_masses
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
 from ..numbers.planar import (
@@ -258,7 +258,10 @@ class Dynamics(Motion):
     @property
     def shaking_force(self):
         """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
-        return principal_points(self.mechanism, self.loads).shaking_force(self)
+        found = principal_points(self.mechanism, self.loads).shaking_force(self)
+        for item in balance_shafts(self.loads):
+            found = found + self.as_vector(item.shaking(self).force)
+        return found
 
     @property
     def shaking_moment(self):
@@ -268,6 +271,8 @@ class Dynamics(Motion):
             for name, wrench in self.inertia.items()
         ]
         moments += [moment(self.placement.links[name].joint.position, force) for name, force in self.spring_inertia]
+        for force, point, couple in (item.shaking(self) for item in balance_shafts(self.loads)):
+            moments += [moment(point, force), couple]
         return self._scalar(reduce(plus, moments))
 
     @property
@@ -321,8 +326,12 @@ class Dynamics(Motion):
 
     @cached_property
     def mass_loads(self):
-        """Wrench of inertia and weight by link."""
-        return {name: self._mass_load(name, self.gravity) for name in self.mechanism.links}
+        """Wrench of inertia and weight by link; on the crank also the inertia of balance shafts."""
+        found = {name: self._mass_load(name, self.gravity) for name in self.mechanism.links}
+        for item in balance_shafts(self.loads):
+            torque = minus(None, product(item.crank_inertia, self.accelerating[1]))
+            found[CRANK] = found[CRANK].plus(Wrench(None, torque))
+        return found
 
     @cached_property
     def spring_loads(self):

@@ -19,7 +19,7 @@ from ..errors import QuantityError
 from ..machine.cams import roller
 from ..machine.group import FRAME
 from ..machine.links import arm, first_at, second_at, virtual_work
-from ..machine.loads import spring_masses
+from ..machine.loads import balance_shafts, spring_masses
 from ..numbers import checks
 from ..numbers.arithmetic import sign
 from ..numbers.planar import minus, number_or_zero, plus, product, work
@@ -27,12 +27,13 @@ from .load_values import evaluate_load, slider_push
 
 
 def reduced_inertia(motion):
-    """Equivalent inertia of links and springs at the crank, (..., N), kg m2: twice the energy over speed squared."""
+    """Equivalent inertia of links, springs and shafts at the crank, (..., N), kg m2: 2 energy over speed squared."""
     links = [
         _reduced_inertia_of_link(motion.placement.links[name], link.body)
         for name, link in motion.mechanism.links.items()
     ]
-    return _sum([*links, *(product(mass, travel.first * travel.first) for mass, travel in _moving_springs(motion))])
+    springs = [product(mass, travel.first * travel.first) for mass, travel in _moving_springs(motion)]
+    return _sum([*links, *springs, *(item.crank_inertia for item in balance_shafts(motion.loads))])
 
 
 def reduced_inertia_slope(motion):
@@ -52,7 +53,7 @@ def _moving_springs(motion):
 
 
 def kinetic_energy(motion):
-    """Kinetic energy of links and springs, (..., N), J."""
+    """Kinetic energy of links, springs and balance shafts, (..., N), J."""
     square, _ = motion.accelerating
     return product(0.5 * square, reduced_inertia(motion))
 

@@ -12,11 +12,11 @@ import numpy as np
 
 from ..errors import QuantityError
 from ..machine.group import CRANK
-from ..machine.loads import Gravity
+from ..machine.loads import Gravity, balance_shafts
 from ..machine.loads.points import PlacedLoad, point_on_link
 from ..machine.supports import pairs_of
 from ..numbers import checks
-from ..numbers.planar import cross, minus, scale_vector
+from ..numbers.planar import cross, minus, product, scale_vector
 from .load_values import evaluate_load, numbered_titles, slider_push
 from .pair_forces import pair_forces
 
@@ -106,6 +106,10 @@ def _masses(dynamics, link):
         yield "inertia", INERTIA, centre, force, couple
     if body.mass is not None and dynamics.gravity is not None:
         yield "weight", WEIGHT, centre, scale_vector(body.mass, dynamics.gravity), None
+    for item in balance_shafts(dynamics.loads) if link == CRANK else ():
+        torque = minus(None, product(item.crank_inertia, dynamics.accelerating[1]))
+        if torque is not None:
+            yield f"inertia of {item.title}", INERTIA, centre, None, torque
     for name, wrench in dynamics.spring_loads:
         if name == link:
             origin = dynamics.placement.links[link].joint.position

@@ -20,6 +20,7 @@ from functools import reduce
 from ..errors import QuantityError
 from ..machine.group import CRANK
 from ..machine.links import Wrench, acceleration_of, arm, first_at, present, second_at
+from ..machine.loads import balance_shafts
 from ..numbers import checks
 from ..numbers.arithmetic import sign
 from ..numbers.planar import add_vectors, left, minus, plus, product, scale_vector, subtract_vectors
@@ -36,7 +37,8 @@ def rocking_moment(state):
     planes = state.mechanism.planes
     forces = [(name, wrench.force) for name, wrench in state.inertia.items()] + state.spring_inertia
     moments = (scale_vector(present(planes[name]), force) for name, force in forces)
-    total = reduce(add_vectors, moments, _couple_of_crank(state))
+    shafts = (scale_vector(present(item.plane), item.shaking(state).force) for item in balance_shafts(state.loads))
+    total = reduce(add_vectors, (*moments, *shafts), _couple_of_crank(state))
     return None if total is None else left(total)
 
 

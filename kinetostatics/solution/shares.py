@@ -30,7 +30,7 @@ from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..machine.friction import NO_FRICTION, frictions_by_joint
 from ..machine.group import GROUND
-from ..machine.loads import Force, Gravity, spring_masses
+from ..machine.loads import Force, Gravity, balance_shafts, spring_masses
 from ..mechanics import jamming
 from ..mechanics.load_values import numbered_titles
 from ..mechanics.quantities import Quantity, components, magnitude, of_scene, without_bars
@@ -235,8 +235,9 @@ def sources_alone(solution):
     found = {f"inertia of {name}": (weightless.with_link(name, link), ()) for name, link in heavy.items()}
     found |= {f"weight of {name}": (weightless, (weight,)) for name, weight in _weights(solution).items()}
     gravity = tuple(item for item in solution.loads if isinstance(item, Gravity))
-    for title, item in _titled_loads(solution):  # the weight of a spring is its own
-        found[title] = weightless, (item, *gravity) if spring_masses((item,)) else (item,)
+    for title, item in _titled_loads(solution):  # the weight of a spring or shaft is its own
+        heavy_load = spring_masses((item,)) or balance_shafts((item,))
+        found[title] = weightless, (item, *gravity) if heavy_load else (item,)
     return {
         source: replace(solution, mechanism=mechanism, loads=loads, friction=NO_FRICTION, silent=True)
         for source, (mechanism, loads) in found.items()

@@ -29,10 +29,11 @@ DAMPER = (
 )
 LINE = ((0.0, 0.0), (1.0, 0.0))
 ARROW = (*LINE, (0.7, 0.5), (1.0, 0.0), (0.7, -0.5))
-_HALF, _BENT = np.linspace(-2.4, 1.4, 24), np.linspace(0.0, 4.5 * np.pi, 60)
+_HALF, _BENT, _SPREAD = np.linspace(-2.4, 1.4, 24), np.linspace(0.0, 4.5 * np.pi, 60), np.linspace(-0.9, 0.9, 24)
 COUPLE = np.array([*np.transpose([np.cos(_HALF), np.sin(_HALF)]), (0.42, 0.72), (0.17, 0.985), (0.32, 1.3)])
 SPIRAL = np.transpose([_BENT * np.cos(_BENT), _BENT * np.sin(_BENT)]) / _BENT[-1]
 RING = np.transpose([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
+SECTOR = np.array([(0.0, 0.0), *np.transpose([np.cos(_SPREAD), np.sin(_SPREAD)])])
 RECTANGLE = np.array([(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)])
 
 
@@ -250,6 +251,9 @@ class Shape:
         elif sign.kind == "force":
             tip = sign.start + 5.0 * unit * sign.sense * sign.direction
             yield Stroke("force", span_sign(ARROW, sign.start, tip, unit))
+        elif sign.kind == "shaft":
+            yield Stroke("line", self._ring(sign.start, 2.0 * unit))
+            yield Stroke("counterweight", place_sign(SECTOR, sign.start, sign.direction, 2.0 * unit))
         elif sign.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
             yield Stroke(sign.kind, span_sign(shape, sign.start, sign.end, 0.5 * unit))
@@ -266,7 +270,9 @@ class Shape:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
             for sign in _signs(item, self.turn):
-                if sign.kind in ("spring", "damper", "line") and sign.end is not None:
+                if sign.kind == "shaft":
+                    yield sign.start[:, 0]
+                elif sign.kind in ("spring", "damper", "line") and sign.end is not None:
                     yield from (end[:, 0] for end in (sign.start, sign.end) if not np.ptp(end, axis=-1).any())
 
 

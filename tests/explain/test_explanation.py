@@ -286,6 +286,7 @@ LOADS = {
     "cubic spring": ks.Spring(1e3, 0.2, cubic=1e5),
     "spring with mass": ks.Spring(1e3, 0.2, mass=0.001),
     "gas spring": ks.GasSpring(1e-3, 3e-4, 3e5, at=0.2),
+    "balance shaft": ks.BalanceShaft(0.01, -2, 0.3, (0.1, 0.0), 0.01),
     "table over the angle": ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [1.0, 5.0, 2.0])),
     "table over travel": ks.ProcessForce(ks.Table([0.1, 0.2, 0.3], [9.0, 5.0, 7.0], over="travel")),
 }

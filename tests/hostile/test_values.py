@@ -28,6 +28,10 @@ CONSTRUCTORS = {
         ks.GasSpring,
         {"area": 2e-3, "volume": 4e-4, "pressure": 4e5, "at": 0.3, "exponent": 1.3, "ambient": 1e5},
     ),
+    "BalanceShaft": (
+        ks.BalanceShaft,
+        {"unbalance": 0.1, "phase": 0.4, "at": (0.1, 0.2), "inertia": 0.01, "mass": 2.0, "plane": 0.3},
+    ),
     "ProcessForce": (ks.ProcessForce, {"force": 30.0}),
     "Force": (partial(ks.Force, at="B"), {"value": 30.0, "direction": 0.4}),
     "Force at a place": (lambda along: ks.Force(1.0, at=("coupler", along)), {"along": 0.1}),
@@ -110,6 +114,7 @@ SIZES = [
     *(("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("Spring", "stiffness")),
     *(("PointSpring", "stiffness"), ("PointSpring", "free_length"), ("PointDamper", "coefficient")),
     *(("TorsionSpring", "stiffness"), ("TorsionDamper", "coefficient")),
+    *(("BalanceShaft", name) for name in ("unbalance", "inertia", "mass")),
     *((kind, "mu") for kind in CONSTRUCTORS if kind.endswith("Friction")),
 ]
 

@@ -249,6 +249,7 @@ def pump(speed=10.0, acceleration=0.0, friction=None, loads=()):
     links = {"crank": ks.Link(2.0, (0.03, 0.01), 0.02), "coupler": ks.Link(1.0, (0.1, 0.01), 0.01)}
     machine = ks.crank_slider(0.1, 0.35, guide_offset=0.03, guide_angle=0.2, slider=ks.Link(4.0), **links)
     springs = ks.Spring(500.0, 0.35, mass=0.05), ks.GasSpring(1e-3, 4e-4, 2e5, at=0.35, side=-1)
+    springs = *springs, ks.BalanceShaft(0.01, -2, 0.6, (0.1, -0.05), 0.01, mass=1.0)
     own = (ks.Gravity(direction=-2.0), *springs, *loads)
     return ks.Scene(machine, speed, acceleration, own, friction or {})
 

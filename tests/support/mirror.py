@@ -236,6 +236,7 @@ IMAGES: dict[type, Callable] = {
     ks.Gravity: lambda load: replace(load, direction=negated(load.direction)),
     ks.Spring: lambda load: load,
     ks.GasSpring: lambda load: load,
+    ks.BalanceShaft: lambda load: replace(load, phase=negated(load.phase), at=across(load.at)),
     ks.TorsionDamper: lambda load: load,
     ks.ProcessForce: lambda load: replace(load, force=reflected_value(load.force)),
     ks.Force: _of_force,

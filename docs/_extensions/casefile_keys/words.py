@@ -9,6 +9,7 @@ import typing
 import pydantic
 
 from kinetostatics.casefile.schema import parts, tables, texts, variants
+from kinetostatics.machine.loads.balance_shaft import RatioRule
 from kinetostatics.numbers import checks
 
 from .examples import toml
@@ -20,6 +21,7 @@ DIMENSIONS = {
     "m^3": "volume",
     "rad": "angle",
     "kg": "mass",
+    "kg m": "unbalance",
     "kg m^2": "moment of inertia",
     "rad/s": "angular speed",
     "rad/s^2": "angular acceleration",
@@ -146,6 +148,8 @@ def by_rule(rule):
         return ", ".join(f"`{json.dumps(word)}`" for word in rule.words)
     if isinstance(rule, checks.Number):
         return in_unit(rule.unit, rule.low, rule.strict)
+    if isinstance(rule, RatioRule):
+        return 'number or fraction, `-1`, `0.5`, `"1/3"`'
     if isinstance(rule, checks.Pair):
         return f"pair of {in_unit(rule.unit)}"
     return "name" if isinstance(rule, checks.Name) else "names of two joints"

@@ -5,6 +5,7 @@ May import errors, numbers and the modules of `machine` that describe links and 
 
 # ruff: noqa: F401 - other rooms import from here
 
+from .balance_shaft import BalanceShaft, balance_shafts
 from .gas_spring import GasSpring
 from .gravity import Gravity
 from .load import (
@@ -26,6 +27,6 @@ from .torsion import Torque, TorsionDamper, TorsionSpring
 
 KINDS = (
     *(Gravity, Spring, ProcessForce, GasSpring, Force, PointForce, PointSpring, PointDamper),
-    *(Torque, TorsionSpring, TorsionDamper),
+    *(Torque, BalanceShaft, TorsionSpring, TorsionDamper),
 )
 """Every load of the library."""

@@ -16,6 +16,8 @@ and inertia nearly cancel.
     misplaced(mechanism)    problems of the joints and links it names
     refusals(motion)        sentences on crank angles at which it has no value; REFUSES says that there may be any
     signs(motion)           symbols by which it is drawn
+    shaking(motion)         inertia force on the frame, a `Support`, of its masses that turn with the crank; then also
+                            ``crank_inertia``, added to the crank, kg m2 or None, and ``plane`` along the crankshaft, m
     rests_on_frame(mechanism)  whether the frame takes a force or couple of it
     support(motion)         that force and couple, a `Support`; by default its wrenches on the frame, about O
 
@@ -50,14 +52,14 @@ class Symbol(NamedTuple):
 
     Attributes
     ----------
-    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+    kind : "spring", "damper", "line", "force", "couple", "spiral", "ring" or "shaft"
         Springs, dampers and lines run from `start` to `end`; all others stand at `start`. A damper on a slider stands
-        for a cylinder with gas.
+        for a cylinder with gas, a shaft for a wheel with a weight.
     start : array (2, N)
     end : array (2, N), optional
         None for a spring or gas spring on a slider, which is drawn along the guide.
     direction : array (2, N), optional
-        Unit vector of a positive force.
+        Unit vector of a positive force, or to the weight of a shaft.
     slider : str
         Slider of a spring along a guide.
     sense : array (N,) or float

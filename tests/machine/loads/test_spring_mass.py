@@ -391,7 +391,7 @@ def test_case_files_refuse_masses_that_are_none(tmp_path, mass, words):
 def test_counterweights_of_the_links_alone_are_refused(tmp_path):
     more = '[variants.plain.balancing]\nmethod = "partial"\nratio = 0.5\ncrank = { arm = "-0.3 m" }'
     written(tmp_path, "0 kg", more)
-    with pytest.raises(ks.CaseError, match="counterweights of the links alone, but a spring has mass"):
+    with pytest.raises(ks.CaseError, match="counterweights of the links alone, but a spring or shaft has mass"):
         written(tmp_path, "300 kg", more).solve("plain")
 
 
