@@ -253,7 +253,10 @@ class Sawing(StrokeLoad):
 
     def _resistance_of_chip(self, motion):
         far, near = self.stroke(motion)
-        return self.resistance(self.feed_per_stroke * self.pitch / abs(far - near))
+        found = self.resistance(self.feed_per_stroke * self.pitch / abs(far - near))
+        if checks.not_a_number(found) is None and np.any(np.less(found, 0.0)):
+            raise ParameterError(f"{self.title}: its resistance must not be negative, got {checks.shown(found)}")
+        return found
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
