@@ -63,10 +63,12 @@ from .machine.loads import BalanceShaft as BalanceShaft
 from .machine.loads import Force as Force
 from .machine.loads import GasSpring as GasSpring
 from .machine.loads import Gravity as Gravity
+from .machine.loads import Mowing as Mowing
 from .machine.loads import PointDamper as PointDamper
 from .machine.loads import PointForce as PointForce
 from .machine.loads import PointSpring as PointSpring
 from .machine.loads import ProcessForce as ProcessForce
+from .machine.loads import Sawing as Sawing
 from .machine.loads import Spring as Spring
 from .machine.loads import Table as Table
 from .machine.loads import Torque as Torque

@@ -145,6 +145,22 @@ DOORS = {
         {"value": (8.0, "N"), "direction": (0.5, "rad"), "at": ((0.5, 0.25), "m")},
         {},
     ),
+    "Sawing": (
+        ks.Sawing,
+        {"kerf": (0.5, "m"), "height": (0.25, "m"), "saws": (8.0, ""), "feed_per_stroke": (0.125, "m")}
+        | {"resistance": (5e7, "Pa"), "thrust": (0.25, ""), "overhang": (0.5, "m")},
+        {},
+    ),
+    "Sawing.pitch": (
+        ks.Sawing,
+        {"pitch": (0.03125, "m")},
+        {"kerf": 0.5, "height": 0.25, "saws": 8, "feed_per_stroke": 0.125, "resistance": lambda chip: 5e7},
+    ),
+    "Mowing": (
+        ks.Mowing,
+        {"force": (8.0, "N"), "pitch": (0.5, "m"), "start": (0.125, "m"), "end": (0.25, "m")},
+        {},
+    ),
     "Torque": (ks.Torque, {"value": (8.0, "N*m")}, {"on": "crank"}),
     "PointForce": (ks.PointForce, {"value": (8.0, "N")}, {"between": ("A", "B")}),
     "PointSpring": (
@@ -586,8 +602,8 @@ NO_NUMBERS = {
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
-    *("precision", "device", "reaction", "before", "spring", "left", "right", "result", "marks"),
-    *("precision", "device", "reaction", "spring", "left", "right", "result", "marks", "planet"),
+    *("precision", "device", "reaction", "before", "opposing", "cuts", "spring", "left", "right", "result", "marks"),
+    "planet",
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

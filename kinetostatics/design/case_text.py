@@ -196,7 +196,7 @@ def _value(value, rule, name):
     if isinstance(value, str):
         return _quoted(value)
     if isinstance(value, int):
-        return str(value)
+        return str(value).lower()  # of a truth value too
     if isinstance(rule, PlacePairRule):
         return f"[{', '.join(_value(part, PlaceRule(), name) for part in value)}]"
     if isinstance(value, tuple):

@@ -257,6 +257,8 @@ class Recorder:
 
     def _load(self, load, place, idle):
         """The load, with its values from a table if it takes plain numbers only."""
+        if getattr(load, "STROKE", False):
+            load = replace_unchecked(load, ends=self._stroke(load, place, idle))
         if not isinstance(load, Load):
             if self._is_elementwise(load, lambda angle: [load.push(without_forces(replace(idle, crank_angle=angle)))]):
                 return load
@@ -269,6 +271,22 @@ class Recorder:
         ):
             return load
         return replace_unchecked(load, **{load.VALUE: self._given(load, place)})
+
+    def _stroke(self, load, place, idle):
+        """Coordinates of the dead centres of a load's slider, at their crank angles from a table.
+
+        By these alone they change with no length to first order, so derivatives are exact. Beside a cam from a table
+        the coordinates are from one themselves.
+        """
+        mechanism = idle.mechanism
+        is_tabled = any(isinstance(getattr(group, "cam", None), _Tabled) for group in mechanism.groups)
+        rows = self._tabled(
+            (("s_f", 0, "m"), ("s_n", 0, "m")) if is_tabled else (("phi_f", 0, "rad"), ("phi_n", 0, "rad")),
+            lambda motion, leaves: loads.dead_centres(motion, load.on)[is_tabled],
+            f"{load.title} beside a cam of samples" if is_tabled else "",
+            place,
+        )
+        return rows if is_tabled else [mechanism.place(row).travels[load.on].position for row in rows]
 
     def _given(self, load, place):
         """Values of a load given by user code, from a table."""

@@ -121,15 +121,14 @@ def _loads(dynamics, link):
     loads = [item for item in dynamics.loads if not isinstance(item, Gravity)]
     origin = dynamics.placement.links[link].joint.position
     for title, item in zip(numbered_titles(loads), loads, strict=True):
-        if hasattr(item, "push"):
-            if item.on == link:
-                direction = tuple(dynamics.mechanism.guides[link].direction)
-                yield title, LOAD, origin, scale_vector(slider_push(item, dynamics), direction), None
-        elif isinstance(item, PlacedLoad):
+        if hasattr(item, "push") and item.on == link:
+            direction = tuple(dynamics.mechanism.guides[link].direction)
+            yield title, LOAD, origin, scale_vector(slider_push(item, dynamics), direction), None
+        if isinstance(item, PlacedLoad):
             for place, force in evaluate_load(item, dynamics).forces(dynamics):
                 if point_on_link(dynamics.mechanism, place).link == link:
                     yield title, LOAD, dynamics.spot(place).position, force, None
-        else:
+        elif hasattr(item, "wrenches"):
             for name, (force, moment) in evaluate_load(item, dynamics).wrenches(dynamics):
                 if name == link:
                     yield title, LOAD, dynamics.spot(link).position if force is None else origin, force, moment

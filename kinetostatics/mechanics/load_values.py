@@ -21,6 +21,8 @@ from ..numbers.arithmetic import is_foreign_array
 from ..numbers.parameter_tree import replace_unchecked
 from .motion import Motion
 
+VALUE_NAMES = {"N m": "torque", "Pa": "resistance"}
+"""What a function of a load returns, by its unit, if it is no force."""
 SPEED_AT_REST = 1e-150
 """Crank speed, rad/s, that functions see at rest, times the sense of rotation or the crank acceleration.
 
@@ -132,7 +134,7 @@ def _checked(item, found, motion):
         return found
     unit, title = getattr(item, "UNIT", "N"), title_of(item)
     found = checks.to_plain_named(title, "what its function returns", found, unit.replace(" ", "*"))
-    owner, what = f"{title}: its function", "torque" if unit == "N m" else "force"
+    owner, what = f"{title}: its function", VALUE_NAMES.get(unit, "force")
     wanted = f"must return its {what} in {unit}, a number or an array of shape {motion.shape}, one for each crank angle"
     words = None if hasattr(found, "to_numpy") else checks.not_a_number(found)
     if words:

@@ -243,7 +243,9 @@ IMAGES: dict[type, Callable] = {
     ks.PointForce: _of_point_force,
     ks.PointSpring: lambda load: replace(load, between=tuple(map(at_point, load.between))),
     ks.PointDamper: lambda load: replace(load, between=tuple(map(at_point, load.between))),
-    ks.Torque: lambda load: replace(load, value=reflected_value(load.value, -1.0)),
+    ks.Sawing: lambda load: replace(load, thrust=negated(load.thrust)),
+    ks.Mowing: lambda load: load,
+    ks.Torque: lambda load: load if load.opposing else replace(load, value=reflected_value(load.value, -1.0)),
     ks.TorsionSpring: lambda load: replace(load, free_angle=negated(load.free_angle), moment=negated(load.moment)),
     ks.drive.Motor: lambda motor: replace(motor, transmission=-motor.transmission),  # the crank turns the other way
     ks.Counterweight: lambda weight: weight,

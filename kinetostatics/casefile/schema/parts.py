@@ -16,7 +16,7 @@ from ...machine.groups.slider import SliderGroup
 from ...machine.groups.yoke import YokeGroup
 from ...machine.guide import Guide
 from ...machine.links import Link
-from ...machine.loads import KINDS, Gravity, ProcessForce, Spring
+from ...machine.loads import KINDS, Gravity, ProcessForce, Sawing, Spring
 from ...machine.loads.points import PLACE_FORMS, PlacePairRule, PlaceRule
 from ...numbers import checks
 from ...numbers.units import quoted, to_si
@@ -136,6 +136,7 @@ SPECIAL_FIELDS: dict[Any, dict[str, Any]] = {
     CamRoller: {"cam": Cam, "roller": RollerTable | None},
     Spring: {"stiffness": Stiffness},
     ProcessForce: {"period": None},  # a table has one, a constant none
+    Sawing: {"resistance": field_of(Sawing.RULES.rules["resistance"].rule), "pitch": None},  # no functions in files
 }
 """Fields whose type in a case file differs from their rule."""
 LOADS = {kind.PATH.replace("_", " "): kind for kind in KINDS if kind is not Gravity}

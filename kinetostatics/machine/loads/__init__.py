@@ -24,9 +24,10 @@ from .slider import ProcessForce, Spring, spring_masses
 from .table import Table
 from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
+from .work import Mowing, Sawing, dead_centres
 
 KINDS = (
-    *(Gravity, Spring, ProcessForce, GasSpring, Force, PointForce, PointSpring, PointDamper),
+    *(Gravity, Spring, ProcessForce, Sawing, Mowing, GasSpring, Force, PointForce, PointSpring, PointDamper),
     *(Torque, BalanceShaft, TorsionSpring, TorsionDamper),
 )
 """Every load of the library."""

@@ -28,10 +28,15 @@ A load or its value (a `Table`, a function of the motion) may declare kinks and 
     bends(motion, straight),    the same for each of many designs, without kinks smaller than `straight` times its
     is_bent(straight)           largest value, as `Table` does
 
+A load that jumps where a motion changes its sense has these in its `jumps`, a `Jumps`. STROKE marks a load that takes
+the dead centres of its slider; a program gives it their coordinates in its field `ends`.
+
 Functions without declared kinks are sampled at the resolution of the scene; narrower features may be missed.
 """
 
+from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import reduce
 from typing import Any, ClassVar, NamedTuple
 
@@ -41,6 +46,7 @@ from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.paths import Batched
 from ..group import FRAME
+from ..kinematic_state import SENSE_REMEDY, has_no_sense
 from ..links import Wrench
 from ..supports import Support
 from .table import Table
@@ -84,6 +90,7 @@ class Load(checks.Checked, Batched):
     LENGTHS: ClassVar[tuple[str, ...]] = ()
     REFUSES: ClassVar[bool] = False
     DISSIPATES: ClassVar[bool] = False
+    STROKE: ClassVar[bool] = False
 
     @property
     def value_now(self) -> Any:
@@ -153,6 +160,41 @@ class Load(checks.Checked, Batched):
         return np.where(here == 0, -1.0 if largest < 0 else 1.0, np.sign(here))
 
 
+@dataclass(frozen=True)
+class Jumps:
+    """Jumps of a load where the motion that it opposes changes its sense, or a work begins and ends.
+
+    Attributes
+    ----------
+    angles : function
+        From a motion to the crank angles of its jumps over the period of the motion, (1 or designs, J), rad; NaN pads
+        the rows.
+    """
+
+    angles: Callable[[Any], Any]
+
+    def kinks(self, motion):
+        found = self.angles(motion)
+        return np.empty(0), found[~np.isnan(found)]
+
+    def bends(self, motion, straight):
+        found = self.angles(motion)
+        return found, np.ones(found.shape[1], dtype=bool), 0.0
+
+    def is_bent(self, straight):
+        return True
+
+    def period_on(self, mechanism):
+        return TURN * mechanism.turns
+
+
+def unknown_sense(item, motion):
+    """Sentence on a load against the motion where the crank rests and its sense is unknown; at most one."""
+    still = has_no_sense(motion)
+    if still.any():
+        yield checks.Problem(f"{item.title}: it acts against the motion, {SENSE_REMEDY}", still)
+
+
 def has_no_user_code(item):
     """Whether a load consists of checked numbers, without code of the user's."""
     return isinstance(item, Load) and not callable(item.value_now)
@@ -174,8 +216,8 @@ def value_rule(unit):
 
 
 def kink_sources(loads):
-    """Loads and values of loads that declare kinks, a list."""
-    parts = (part for item in loads for part in (item, value_of(item)))
+    """Loads, values and jumps of loads that declare kinks, a list."""
+    parts = (part for item in loads for part in (item, value_of(item), getattr(item, "jumps", None)))
     return [part for part in parts if hasattr(part, "kinks")]
 
 

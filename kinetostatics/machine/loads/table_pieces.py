@@ -241,29 +241,27 @@ SAMPLE_OFFSET = 1e-3
 """First of these crank angles, rad: none meets a dead centre."""
 
 
-def stops_and_crossings(motion, slider, levels):
+def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
     """Crank angles at which a slider stops, (designs, E), and passes levels, (designs, K), in its period, rad.
 
-    `levels` are coordinates along its guide, rising, m; the crank angles of `motion` have no effect. Rows end with NaN
-    where a design has fewer than another. Between two stops a slider passes each level once, so stops come first and no
-    crossing near a stop is missed.
+    `levels` are coordinates along its guide, rising, m, or in units of `unit` from an `origin` (numbers, or arrays
+    (designs, 1)); the crank angles of `motion` have no effect. Rows end with NaN where a design has fewer than another.
+    Between two stops a slider passes each level once, so stops come first and no crossing near a stop is missed.
     """
     turns = motion.mechanism.turns
 
     def travel(angle):
         return motion.mechanism.place(angle).travels[slider]
 
+    def height(angle):
+        return (travel(angle).position - origin) / unit
+
     with np.errstate(invalid="ignore", divide="ignore"):
-        grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
-        rate = np.broadcast_arrays(*np.atleast_2d(travel(grid).first, grid))[0]
-        turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & ~np.isnan(np.diff(rate))
-        design, place = np.nonzero(turning)
-        low, high = pad_rows(design, len(rate), grid[0, place], grid[0, place + 1])
-        stops = _roots(lambda angle: travel(angle).first, low, high)
+        grid, rate, stops = sign_changes(lambda angle: travel(angle).first, turns)
         knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), stops]), axis=1)
 
         # each crossing by the levels between the coordinates at both knots
-        there = np.broadcast_to(travel(knots).position, knots.shape)
+        knots, there = np.broadcast_arrays(knots, height(knots))
         above = np.searchsorted(levels, there)
         before, after = above[:, :-1], above[:, 1:]
         many = np.abs(after - before) * ~np.isnan(np.diff(there))
@@ -273,8 +271,21 @@ def stops_and_crossings(motion, slider, levels):
         level = levels[first + np.arange(number.sum())]
         design, place = np.repeat(design, number), np.repeat(place, number)
         low, high, level = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
-        passed = _roots(lambda angle: travel(angle).position - level, low, high)
+        passed = roots(lambda angle: height(angle) - level, low, high)
     return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
+
+
+def sign_changes(function, turns):
+    """Crank angles of a grid (1, N), values (designs, N) there, and angles (designs, E) at which they change sign.
+
+    The grid spans the period of `turns` turns; rows end with NaN where a design has fewer changes than another.
+    """
+    grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
+    values = np.broadcast_arrays(*np.atleast_2d(function(grid), grid))[0]
+    turning = (np.signbit(values[:, :-1]) != np.signbit(values[:, 1:])) & ~np.isnan(np.diff(values))
+    design, place = np.nonzero(turning)
+    low, high = pad_rows(design, len(values), grid[0, place], grid[0, place + 1])
+    return grid, values, roots(function, low, high)
 
 
 def pad_rows(design, count, *values):
@@ -285,7 +296,7 @@ def pad_rows(design, count, *values):
     return rows
 
 
-def _roots(function, low, high):
+def roots(function, low, high):
     """Angles between `low` and `high`, (designs, K), at which a function of such angles is 0; NaN where they are."""
 
     def values(angle, places):

@@ -10,14 +10,14 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.arithmetic import atan
+from ...numbers.arithmetic import atan, sign
 from ...numbers.planar import minus, number_or_zero, product, rotate_back
 from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
 from ..supports import Support
-from .load import Load, Symbol, value_rule
-from .table_pieces import TURN
+from .load import Jumps, Load, Symbol, unknown_sense, value_rule
+from .table_pieces import TURN, sign_changes
 
 ANGLE_SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is tested for half a turn."""
@@ -28,6 +28,12 @@ TERMS = {
 """Symbol and meaning of lines of the kernels in hand calculations."""
 
 
+DRAG = checks.Number("N*m", "an opposing value", low=0.0)
+"""Rule of the magnitude of an opposing torque."""
+PROBE_ANGLES = np.linspace(0.1, 6.1, 12)
+"""Crank angles of a turn, rad, at which the link of an opposing torque must turn somewhere."""
+MIN_RATIO = 1e-9
+"""Angular velocity of a link that turns, over the crank speed."""
 LINK_RULES = {"on": checks.Name(), "against": checks.Optional(checks.Name())}
 
 
@@ -75,6 +81,11 @@ class Couple(Load):
         """The other link, None for the frame."""
         return None if self.against == FRAME else self.against
 
+    def _ratio(self, placement):
+        """Angular velocity of the link relative to the other over the crank speed; None where it is 0."""
+        links = placement.links
+        return minus(links[self.on].ratio, None if self._other is None else links[self._other].ratio)
+
 
 @dataclass(frozen=True, eq=False)
 class Torque(Couple):
@@ -85,6 +96,11 @@ class Torque(Couple):
     value : float, array, Table or function
         N m, counter-clockwise on the link; an array has one value for each crank angle, a function takes the `Motion`
         and returns such values.
+    opposing : bool
+        Coulomb drag, as of a brake, a seal or a chain: the torque has the constant magnitude `value`, not negative, and
+        acts against the angular velocity of `on` relative to `against`. It jumps where that changes its sense. At rest
+        it opposes the motion about to begin (`sense`, or the crank acceleration); a machine at rest that the other
+        loads cannot move against it sticks (`ks.drive.coast`, `ks.drive.start`).
     on : str
         Link that it acts on: "rocker", "coupler", "crank" ...
     against : str, optional
@@ -93,7 +109,9 @@ class Torque(Couple):
     Raises
     ------
     ParameterError
-        A value is not a finite number; when a scene is made: there is no such link, or both are the same.
+        A value is not a finite number, or an opposing one no number or negative; when a scene is made: there is no such
+        link, both are the same, or an opposing torque acts where nothing turns; when it is solved: an opposing torque
+        acts at rest, in an unknown sense.
 
     Examples
     --------
@@ -102,18 +120,57 @@ class Torque(Couple):
     >>> s = ks.solve(bar, 0.7, crank_speed=10.0, loads=ks.Torque(50.0, on="rocker"))
     >>> abs(round(float(s.balancing_torque + 50.0 * s.rate("rocker") / 10.0), 9))
     0.0
+    >>> dragged = ks.solve(bar, [0.7, 3.7], crank_speed=10.0, loads=ks.Torque(50.0, on="rocker", opposing=True))
+    >>> [round(float(power), 9) for power in dragged.balancing_torque * 10.0 - 50.0 * abs(dragged.rate("rocker"))]
+    [0.0, 0.0]
     """
 
     value: Any
     on: str = field(kw_only=True)
     against: Any = field(default=None, kw_only=True)
+    opposing: bool = field(default=False, kw_only=True)
 
     PATH, VALUE, OVER_ANGLES = "torque", "value", ("value",)
-    RULES = checks.Rules("torque", value=value_rule("N*m"), **LINK_RULES)
+    REFUSES = DISSIPATES = property(lambda self: self.opposing, doc="Whether it opposes the motion.")
+    RULES = checks.Rules("torque", value=value_rule("N*m"), **LINK_RULES, opposing=checks.Truth())
+
+    def __post_init__(self):
+        super().__post_init__()
+        if self.opposing:
+            _, problem = DRAG.check(self.value)
+            checks.require("torque", problem)
 
     def couple(self, motion):
         """Couple on the link, N m."""
-        return self.value
+        if not self.opposing:
+            return self.value
+        return minus(None, self.value * sign(number_or_zero(self._ratio(motion.placement))) * motion.crank_sense)
+
+    def misplaced(self, mechanism):
+        """Sentences as of all couples, or if an opposing torque acts where nothing turns."""
+        problems = [*filter(None, super().misplaced(mechanism))]
+        yield from problems
+        if self.opposing and not problems:
+            ratio = np.asarray(number_or_zero(self._ratio(mechanism.place(PROBE_ANGLES * mechanism.turns))))
+            with np.errstate(invalid="ignore"):
+                still = np.abs(ratio) < MIN_RATIO
+            if ratio.dtype == float and still.all(axis=-1).any():
+                yield f"{self.title}: the link does not turn against {self.against or FRAME!r}, so there is no drag"
+
+    def refusals(self, motion):
+        """Sentence on rest in an unknown sense."""
+        return unknown_sense(self, motion)
+
+    @property
+    def jumps(self):
+        """Where the relative angular velocity of an opposing torque changes its sense."""
+        return Jumps(self._reversals) if self.opposing else None
+
+    def _reversals(self, motion):
+        mechanism = motion.mechanism
+        with np.errstate(invalid="ignore", divide="ignore"):
+            *_, found = sign_changes(lambda angle: number_or_zero(self._ratio(mechanism.place(angle))), mechanism.turns)
+        return np.mod(found, TURN * mechanism.turns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,6 +332,5 @@ class TorsionDamper(Couple):
 
     def couple(self, motion):
         """Couple on the link, N m."""
-        links = motion.placement.links
-        ratio = minus(links[self.on].ratio, None if self._other is None else links[self._other].ratio)
+        ratio = self._ratio(motion.placement)
         return number_or_zero(product(product(present(self.coefficient), -motion.crank_speed), ratio))

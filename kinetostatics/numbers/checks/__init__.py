@@ -41,6 +41,7 @@ from .rules import (
     Rules,
     Series,
     Sign,
+    Truth,
     Word,
     check_values,
     implausibility,

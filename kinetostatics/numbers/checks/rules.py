@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import HintWarning
 from ..fingerprint import LIBRARY
-from .messages import Problem, broadcast_problem, choice, require, shown
+from .messages import Problem, broadcast_problem, choice, require, shown, truth
 from .values import (
     DimensionError,
     NotANumberError,
@@ -356,6 +356,17 @@ class Word:
 
     def check(self, value, field=""):
         return value, choice(field, value, self.words)
+
+
+class Truth:
+    """True or False."""
+
+    def quick(self, value):
+        return value if type(value) is bool else UNDECIDED
+
+    def check(self, value, field=""):
+        problem = truth(field, value)
+        return value if problem else bool(value), problem
 
 
 class Rules:

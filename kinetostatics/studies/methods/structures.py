@@ -207,6 +207,8 @@ class LoadForces:
     def effects(self):
         """Effects of all loads but gravity, as those of one load."""
         for item in self.solution.loads:
+            if hasattr(item, "push") and hasattr(item, "wrenches"):
+                raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
             if hasattr(item, "push"):
                 place, along, *_ = self.at(item.on)
                 yield item.on, self.push(item, dot(along, place)) * along, place, 0.0
@@ -244,9 +246,13 @@ class LoadForces:
 
     def couple(self, item):
         """Couple of a load on its link, N m."""
-        if isinstance(item, Torque):
+        if isinstance(item, Torque) and not item.opposing:
             return self.value(item)
         (_, axis, _, spin), (_, base, _, turning) = self.posture(item.on), self.posture(item.against)
+        if isinstance(item, Torque):
+            if np.any(np.equal(self.solution.crank_speed, 0.0)):
+                raise NotGivenError("an opposing torque at rest has no independent formula")
+            return self.value(item) * self.where(spin < turning, 1.0, -1.0)
         if isinstance(item, TorsionDamper):
             return -self.number(item.coefficient) * (spin - turning)
         angle = self.arg(axis / base * self.expj(-self.number(item.free_angle)))

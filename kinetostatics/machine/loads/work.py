@@ -1,0 +1,395 @@
+"""Work of a slider on its stroke: a saw that cuts on one of its strokes, a mower's knife that cuts on both.
+
+With the far dead centre x_f of the slider from the crank and the near one x_n, coordinates along its guide, the stroke
+is S = |x_f - x_n|. A log that advances by D for each cutting stroke gives the saws wood of the volume b H D each, b the
+kerf and H the height of the cut. With the specific cutting resistance K, the work for a volume, the force on n saws is
+
+    F = K n b H D / S        work of a stroke F S        power F S n_s at n_s strokes a second
+
+It is the same all over the cutting stroke, since log and saw move in proportion to one another there.
+
+The sections of a knife stand midway between two fingers at mid-stroke, x_m = (x_f + x_n) / 2, and pass a pitch p from
+one finger to the next. The edge of a section meets that of the finger ahead from `start` to `end`, distances from where
+the section stood in the finger behind: with half widths of section and finger, w and f, it does so at height y over
+the bar where w(y) + f(y) is what is left of the pitch, so
+
+    start = p - w(0) - f(0)        end = p - w(h) - f(h)        h the height of the edges
+
+Straight edges shift the cut at even speed along them, and stalks that stand evenly make the force constant from start
+to end. Sections cut where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from the middle of that part.
+"""
+
+import math
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ...errors import NotGivenError, ParameterError
+from ...numbers import checks
+from ...numbers.arithmetic import cos, is_foreign_array, sign
+from ...numbers.planar import minus, number_or_zero, product, rotate
+from ..links import Wrench, present
+from ..supports import Support
+from .load import Jumps, Symbol, unknown_sense
+from .slider import REACTIONS, SliderLoad
+from .table import Table
+from .table_pieces import SAMPLE_OFFSET, STOP_SAMPLES, TURN, roots, stops_and_crossings
+
+CUTS = {"toward crank": -1.0, "away": 1.0}
+"""Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
+CENTRED = 1e-9
+"""Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
+MILLIMETRES = "is it in mm?"
+TERMS = {
+    "stroke.far": ("s_f", "coordinate of the far dead centre"),
+    "stroke.near": ("s_n", "coordinate of the near dead centre"),
+    "_push.far": ("s_f", "coordinate of the far dead centre"),
+    "_push.near": ("s_n", "coordinate of the near dead centre"),
+    "_push.work": ("W", "work of the cutting stroke"),
+    "push.way": ("d", "sense of the motion along the guide"),
+    "push.beyond": ("u", "distance of a section from the middle of the cut"),
+    "push.meeting": ("q", "cosine of its phase less that where the cut begins: positive while sections cut"),
+}
+"""Symbols and meanings of kernel lines in hand calculations."""
+
+
+class StrokeLoad(SliderLoad):
+    """A load on the stroke of a slider, which goes to and fro once in the period of the motion.
+
+    `ends` are the coordinates of its far and its near dead centre from the crank, m, where they are known.
+    """
+
+    ends: Any
+    reaction: str
+    REFUSES = STROKE = True
+
+    def stroke(self, motion):
+        """Coordinates of the far and of the near dead centre, m."""
+        return dead_centres(motion, self.on)[1] if self.ends is None else self.ends
+
+    def outward(self, motion):
+        """Whether the slider moves from its near dead centre to the far one, or is about to: 1, else -1."""
+        far, near = self.stroke(motion)
+        return sign((far - near) * motion.placement.travels[self.on].first) * motion.crank_sense
+
+    def refusals(self, motion):
+        """Sentence on rest in an unknown sense."""
+        return unknown_sense(self, motion)
+
+    @property
+    def jumps(self):
+        """Where the force begins and ends."""
+        return Jumps(self.jump_angles)
+
+    def jump_angles(self, motion):
+        """Crank angles of the dead centres, (1 or designs, J), rad."""
+        return stops_and_crossings(motion, self.on, np.empty(0))[0]
+
+    def rests_on_frame(self, mechanism):
+        return self.reaction == "frame"
+
+    def signs(self, motion):
+        """Symbol of a force along the guide."""
+        along = motion.as_vector(motion.mechanism.guides[self.on].direction)
+        here = motion.position(motion.mechanism.references[self.on])
+        yield Symbol("force", here, direction=along, sense=self.sense(motion))
+
+
+_DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+"""By mechanism and slider: its dead centres."""
+
+
+def dead_centres(motion, slider):
+    """Crank angles, rad, and coordinates, m, of the far and the near dead centre of a slider: two pairs.
+
+    Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. On a slider whose stroke is
+    centred on O, as that of a yoke, the far dead centre is ahead in the direction of the guide. `ParameterError` if the
+    slider does not go to and fro once, `NotGivenError` if lengths are traced numbers or enclosures.
+    """
+    known = _DEAD_CENTRES.setdefault(motion.mechanism, {})
+    if slider not in known:
+        known[slider] = _dead_centres(motion.mechanism, slider)
+    return known[slider]
+
+
+def _dead_centres(mechanism, slider):
+    period, count = TURN * mechanism.turns, STOP_SAMPLES * mechanism.turns
+    grid, step = SAMPLE_OFFSET + np.linspace(0.0, period, count, endpoint=False), period / count
+
+    def travel(angle):
+        return mechanism.place(angle).travels[slider]
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        position, rate, _ = travel(grid)
+        if is_foreign_array(position) or position.dtype == object:
+            raise NotGivenError(f"the stroke of {slider!r} takes plain lengths, on which its dead centres are computed")
+        position, rate, _ = np.broadcast_arrays(position, rate, grid)
+        open_somewhere = np.isnan(position).any(axis=-1)
+        changes = np.sum(np.signbit(rate) != np.signbit(np.roll(rate, 1, axis=-1)), axis=-1)
+        wrong = ~open_somewhere & (changes != 2)
+        if wrong.any():
+            raise ParameterError(
+                f"a stroke needs a slider that goes to and fro once in a turn, but {slider!r} of {mechanism.name} "
+                f"changes its direction {np.max(np.where(wrong, changes, 0))} times",
+                wrong if wrong.ndim else None,
+            )
+        middle = np.stack([grid[position.argmax(axis=-1)], grid[position.argmin(axis=-1)]])[..., None]
+        ends = [roots(lambda angle: travel(angle).first, part - step, part + step) for part in middle]
+        angle = [np.where(open_somewhere[..., None], np.nan, part) for part in ends]
+        high, low = (np.broadcast_to(travel(part).position, part.shape) for part in angle)
+    is_far = high + low >= -CENTRED * (high - low)
+    pairs = [(np.where(is_far, up, down), np.where(is_far, down, up)) for up, down in (angle, (high, low))]
+    return tuple(tuple(float(part[0]) if part.ndim == 1 else part for part in pair) for pair in pairs)
+
+
+def _resistance_rule():
+    number = checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, "is it in N/m2?", least=1e4))
+    return checks.OrFunction(number)
+
+
+@dataclass(frozen=True, eq=False)
+class Sawing(StrokeLoad):
+    """Cut of the saws on a slider: a constant force against the motion on the cutting stroke, none on the other.
+
+    Parameters
+    ----------
+    kerf : float or array
+        Width b of the cut of one saw, m.
+    height : float or array
+        Height H of the cut, m; of a round log its mean over the saws.
+    saws : float or array
+        Number n of the saws in the log.
+    feed_per_stroke : float or array
+        Advance D of the log for each cutting stroke, m.
+    resistance : float, array or function
+        Specific cutting resistance K, Pa (N/m2; 1 MPa is 1 N/mm2, or 1 J/cm3); a function takes the mean thickness of
+        a chip, ``feed_per_stroke * pitch / S``, m, and returns K.
+    cuts : "toward crank" or "away"
+        Stroke on which it cuts.
+    thrust : float or array
+        Force of the log on the saws across the guide while they cut, as a fraction of the cutting force; positive to
+        the left of the guide's direction.
+    overhang : float or array
+        Distance of the log from the slider's pin at mid-stroke along the guide, m. The log stands still, so the arm of
+        the thrust about the pin is less by what the pin has travelled from there.
+    pitch : float or array, optional
+        Pitch of the teeth, m; for a resistance by the thickness of the chip alone.
+    on : str
+        Slider with the saws. Its stroke S is that of the mechanism.
+    reaction : "frame" or "outside"
+        What takes the opposite force: the frame, on whose rollers the log rests, or something outside.
+
+    Raises
+    ------
+    ParameterError
+        A value is negative (but thrust and overhang), or no finite number; a function without a pitch, or a pitch
+        without a function; when a scene is made: there is no such slider; when it is solved: the slider does not go
+        to and fro once in a turn, or stands still in an unknown sense.
+
+    Notes
+    -----
+    F = K n b H D / S: work K for each volume of wood, spread over the stroke. Power F S times the strokes a second.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> frame = ks.crank_slider(0.3, 2.0, slider=ks.Link(mass=600.0))
+    >>> cut = ks.Sawing(kerf=3.2e-3, height=0.25, saws=8, feed_per_stroke=0.02, resistance=50e6, cuts="toward crank")
+    >>> s = ks.solve(frame, [1.0, 5.0], crank_speed=33.5, loads=cut)
+    >>> [round(float(force)) for force in cut.push(s)]  # N: 50e6 * 8 * 3.2e-3 * 0.25 * 0.02 / 0.6 = 10667
+    [10667, 0]
+    """
+
+    kerf: Any = field(kw_only=True)
+    height: Any = field(kw_only=True)
+    saws: Any = field(kw_only=True)
+    feed_per_stroke: Any = field(kw_only=True)
+    resistance: Any = field(kw_only=True)
+    cuts: str = field(default="toward crank", kw_only=True)
+    thrust: Any = field(default=0.0, kw_only=True)
+    overhang: Any = field(default=0.0, kw_only=True)
+    pitch: Any = field(default=None, kw_only=True)
+    on: str = field(default="slider", kw_only=True)
+    reaction: str = field(default="frame", kw_only=True)
+    ends: Any = field(default=None, init=False, repr=False)
+
+    PATH, VALUE, UNIT = "sawing", "resistance", "Pa"
+
+    def _joint_problems(self):
+        """Sentences on a resistance and a pitch that do not go together."""
+        by_chip = callable(self.resistance)
+        if isinstance(self.resistance, Table):
+            yield "resistance must be a number or a function of the chip thickness, got a Table"
+        elif by_chip != (self.pitch is not None):
+            yield (
+                "a resistance that is a function of the chip thickness needs the pitch of the teeth"
+                if by_chip
+                else "pitch is for a resistance that is a function of the chip thickness; leave it out"
+            )
+
+    RULES = checks.Rules(
+        "sawing",
+        _joint_problems,
+        kerf=checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.1, MILLIMETRES, 1e-3)),
+        height=checks.Number("m", low=0.0, usual=checks.PlausibleRange(5.0, MILLIMETRES, 1e-3)),
+        saws=checks.Number("1", low=0.0),
+        feed_per_stroke=checks.Number("m", low=0.0, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
+        resistance=_resistance_rule(),
+        cuts=checks.Word(tuple(CUTS)),
+        thrust=checks.Number("1", usual=checks.PlausibleRange(5.0, "is it in percent, or in N?", 0.01)),
+        overhang=checks.Number("m"),
+        pitch=checks.Optional(checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.5, MILLIMETRES, 1e-3))),
+        on=checks.Name(),
+        reaction=checks.Word(REACTIONS),
+    )
+
+    @property
+    def value_now(self):
+        """The specific cutting resistance, or the function of the motion that gives it."""
+        return self._resistance_of_chip if callable(self.resistance) else self.resistance
+
+    def _resistance_of_chip(self, motion):
+        far, near = self.stroke(motion)
+        found = self.resistance(self.feed_per_stroke * self.pitch / abs(far - near))
+        if checks.not_a_number(found) is None and np.any(np.less(found, 0.0)):
+            raise ParameterError(f"{self.title}: its resistance must not be negative, got {checks.shown(found)}")
+        return found
+
+    def push(self, motion):
+        """Force on the slider along the guide, N."""
+        return number_or_zero(self._push(motion))
+
+    def _push(self, motion):
+        """The same; None without a cut."""
+        far, near = self.stroke(motion)
+        way = CUTS[self.cuts]
+        factors = self.resistance, self.saws, self.kerf, self.height, self.feed_per_stroke
+        work = reduce(product, map(present, factors))
+        return product(work, 0.5 * (-way - self.outward(motion)) / (far - near))
+
+    def wrenches(self, motion):
+        """Thrust of the log across the guide, with its moment about the slider's pin."""
+        across = self._across(motion)
+        if across is not None:
+            arm = self.foot(motion) - motion.placement.travels[self.on].position
+            yield self.on, Wrench(rotate((0.0, across), motion.mechanism.guides[self.on].direction), across * arm)
+
+    def _across(self, motion):
+        """Thrust of the log, N; None without."""
+        push = None if present(self.thrust) is None else self._push(motion)
+        return None if push is None else self.thrust * abs(push)
+
+    def foot(self, motion):
+        """Coordinate of the log along the guide, m."""
+        far, near = self.stroke(motion)
+        return 0.5 * (far + near) + self.overhang
+
+    def support(self, motion):
+        """Force of the log on the frame, at the log."""
+        found = super().support(motion)
+        across = self._across(motion)
+        if across is None:
+            return found
+        line = motion.mechanism.guides[self.on].line
+        return Support(rotate((minus(None, self.push(motion)), -across), line.direction), found.point)
+
+    def sense(self, motion):
+        """Sign of the cutting force along the guide."""
+        far, near = self.stroke(motion)
+        return -CUTS[self.cuts] * sign(far - near)
+
+
+@dataclass(frozen=True, eq=False)
+class Mowing(StrokeLoad):
+    """Cut of a mower's knife on a slider: a constant force against the motion while sections meet fingers.
+
+    At mid-stroke the sections stand midway between two fingers; both strokes cut.
+
+    Parameters
+    ----------
+    force : float or array
+        Of all sections together while they cut, N.
+    pitch : float or array
+        Distance of two fingers, m. A knife with a longer stroke passes several.
+    start, end : float or array
+        Distances of a section from the middle of the finger that it leaves, m, between which it cuts at the next one:
+        ``pitch`` less half the widths of section and finger, at the foot of their edges and at their tips.
+    on : str
+        Slider that is the knife.
+    reaction : "frame" or "outside"
+        What takes the opposite force: the fingers on the frame, against which the knife presses the stalks, or the
+        ground in which they stand.
+
+    Raises
+    ------
+    ParameterError
+        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made: there is no such slider; when
+        it is solved: the slider does not go to and fro once in a turn, or stands still in an unknown sense.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> knife = ks.crank_slider(0.038, 0.4, slider=ks.Link(mass=4.0))
+    >>> crop = ks.Mowing(600.0, pitch=0.0762, start=0.026, end=0.060)
+    >>> s = ks.solve(knife, [0.3, 1.5, 4.7], crank_speed=60.0, loads=crop)
+    >>> [round(float(force)) for force in crop.push(s)]  # N
+    [0, 600, -600]
+    """
+
+    force: Any
+    pitch: Any = field(kw_only=True)
+    start: Any = field(kw_only=True)
+    end: Any = field(kw_only=True)
+    on: str = field(default="slider", kw_only=True)
+    reaction: str = field(default="frame", kw_only=True)
+    ends: Any = field(default=None, init=False, repr=False)
+
+    PATH = "mowing"
+
+    def _joint_problems(self):
+        """Sentence unless start, end and pitch follow one another."""
+        row = (self.start, self.end, self.pitch)
+        if all(map(checks.has_known_values, row)) and np.any((self.start >= self.end) | (self.end > self.pitch)):
+            yield "start must be less than end, and end at most the pitch; got " + ", ".join(map(checks.shown, row))
+
+    RULES = checks.Rules(
+        "mowing",
+        _joint_problems,
+        force=checks.Number("N", low=0.0),
+        pitch=checks.Number("m", low=0.0, strict=True, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
+        start=checks.Number("m", low=0.0),
+        end=checks.Number("m", low=0.0, strict=True),
+        on=checks.Name(),
+        reaction=checks.Word(REACTIONS),
+    )
+
+    def push(self, motion):
+        """Force on the slider along the guide, N."""
+        way = sign(motion.placement.travels[self.on].first) * motion.crank_sense
+        passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
+        beyond = passed - 0.5 * way * (self.start + self.end)
+        meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
+        return number_or_zero(product(present(self.force), 0.5 * (-way - way * sign(meeting))))
+
+    def _passed(self, position, ends):
+        """Distance along the guide from where the sections stand in fingers half a pitch before mid-stroke, m."""
+        return position - 0.5 * (ends[0] + ends[1]) + 0.5 * self.pitch
+
+    def jump_angles(self, motion):
+        """Crank angles of the dead centres, and of start and end of the cut, (1 or designs, J), rad."""
+        ends = self.stroke(motion)
+        most = int(np.ceil(np.max(np.abs(ends[0] - ends[1]) / self.pitch))) + 2
+        found = []
+        for place in (self.start, self.end, -self.start, -self.end):  # each of both senses of motion
+            origin = place - self._passed(0.0, ends)
+            stops, passed = stops_and_crossings(motion, self.on, np.arange(-most, most + 1.0), origin, self.pitch)
+            found.append(passed)
+        rows = max(len(stops), *map(len, found))
+        return np.column_stack([np.broadcast_to(part, (rows, part.shape[1])) for part in (stops, *found)])
+
+    def sense(self, motion):
+        """Sign of the force along the guide: against the motion."""
+        return -sign(motion.placement.travels[self.on].first) * motion.crank_sense
