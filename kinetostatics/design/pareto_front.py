@@ -1,6 +1,7 @@
 """Pareto fronts: the best of one output for each value of another, between the best of each alone."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -9,12 +10,13 @@ from ..numbers import checks
 from .constraints import Constraint, parse_constraints, parse_output
 from .optimisation import ANGLES, optimise
 from .problem import choose_design, compared_value, scene_of
-from .result import Found
 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Designs of which none is better in both outputs; made by `pareto`, drawn by `ks.plots.front`.
+    """Designs of which none is better in both outputs; made by `pareto` and `balancing.pareto`.
+
+    `ks.plots.front` draws it.
 
     Attributes
     ----------
@@ -22,6 +24,7 @@ class Front:
     table : pandas.DataFrame
         A row for each design: both outputs, and the numbers that varied.
     designs : tuple of Found
+        Of `balancing.pareto` of Balanced.
     before : (float, float)
         Outputs of the source.
 
@@ -38,7 +41,7 @@ class Front:
 
     outputs: tuple[str, str]
     table: object = field(repr=False)
-    designs: tuple[Found, ...] = field(repr=False)
+    designs: tuple[Any, ...] = field(repr=False)
     before: tuple[float, float]
 
 
@@ -83,7 +86,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     checks.require(
         "pareto",
         None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
-        checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
+        points_problem(points),
         *(checks.choice("option", name, ("angles", "engine", "progress")) for name in options),
     )
     pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
@@ -122,6 +125,11 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         tuple(found),
         tuple(outputs(scene_of(item))),
     )
+
+
+def points_problem(points):
+    """Sentence on a wrong number of designs on a front, or None."""
+    return checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}")
 
 
 def _front_table(found, outputs, pair):
