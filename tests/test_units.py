@@ -485,8 +485,13 @@ SLOW = {
     ),
     "optimal": (
         ks.balancing.optimal,
-        {},
-        {"mechanism": PUMP},
+        {"about": ((0.25, 0.5), "m")},
+        {"mechanism": PUMP, "norm": "largest moment", "angles": 12, "crank": ks.balancing.Counterweight(arm=0.03)},
+    ),
+    "pareto": (
+        ks.balancing.pareto,
+        {"about": ((0.25, 0.5), "m"), "crank_speed": (2.0, "rad/s")},
+        {"mechanism": PUMP, "points": 2, "angles": 12, "crank": ks.balancing.Counterweight(arm=0.03)},
     ),
     "needs": (ks.needs, {"within": (0.5, "1")}, {"scene": SOLVED, "quantity": "O"}),
     "cam.export": (

@@ -360,7 +360,8 @@ def _balance(mechanism, table):
         if getattr(table, name) is not None
     }
     if table.method == "optimal":
-        return balancing.optimal(mechanism, table.norm, phase=table.phase, weights=table.weights, **weights)
+        given = {name: getattr(table, name) for name in ("norm", "phase", "weights", "about")}
+        return balancing.optimal(mechanism, **given, **weights)
     if "crank" not in weights:
         raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
     if table.method == "partial" and set(weights) != {"crank"}:

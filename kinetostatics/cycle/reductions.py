@@ -270,8 +270,8 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
     ----------
     text : str
         "largest O", or "main_bearing.life_hours" where `parts` has the part "main_bearing".
-    parts : mapping of name to part, optional
-        Parts to be sized, as `sizing.Part`.
+    parts : mapping of name to part or number, optional
+        Parts to be sized, as `sizing.Part`; a `SolutionNumber` by its name.
 
     Raises
     ------
@@ -282,6 +282,9 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
         return text
     words = str(text).split()
     ratio = words[:1] == ["ratio"]
+    own = (parts or {}).get(" ".join(words[ratio:]))
+    if isinstance(own, SolutionNumber):
+        return replace(own, ratio=ratio)
     part, point, number = "".join(words[ratio:]).partition(".")
     if point and parts and len(words) == 1 + ratio:
         checks.require(f"output {text!r}", checks.choice("part", part, tuple(parts)))

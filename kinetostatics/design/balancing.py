@@ -26,6 +26,7 @@ from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .lanchester import WithShafts, shafts
 from .linkage import crank_sliders, four_bar_shape
+from .pareto_front import Front, points_problem
 
 __all__ = [
     "Balanced",
@@ -35,6 +36,7 @@ __all__ = [
     "full",
     "in_two_planes",
     "optimal",
+    "pareto",
     "partial",
     "shafts",
 ]
@@ -136,28 +138,45 @@ def partial(mechanism, ratio="overall", *, crank):
     return _set_static_moment(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
 
 
-WEIGHT_RULES = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
-PEAK_NORMS = ("largest", "along", "across")
-"""Norms that are a largest value over the turn."""
-NORMS = ("largest", "mean", "along", "across", "weighted")
+WEIGHT_RULES = {
+    "weights force": checks.Number("N**-1"),
+    "weights moment": checks.Number("N**-1*m**-1"),
+    "about": checks.Pair("m"),
+}
+NORMS = ("largest", "mean", "along", "across", "weighted", "largest moment", "largest weighted")
+MEAN_NORMS = ("mean", "weighted")
+"""Norms that are no largest value over the turn."""
+MAX_REFINEMENTS = 8
+"""Times that true peaks join the crank angles of a search."""
+PEAK_TOLERANCE = 1e-10
+"""Excess of a true peak over the largest value at the crank angles, relative to the reference."""
+LEVEL_TOLERANCE = 1e-6
+"""Excess over the least moment at the end of a front, relative to the moment without counterweights."""
+ZERO_NORM = 1e-11
+"""Norm relative to the reference that is 0 but for rounding."""
+FLAT_TOLERANCE = 1e-12
+"""Relative change of a norm by a counterweight that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class _ShakingSearch:
-    """Norm of the shaking force over unbalances of counterweights, in units of `scale`, the largest static moment.
+    """Norm of shaking force and moment over unbalances in units of `scale`, the largest static moment of a link.
 
-    `weights` are of force and moment, 1/N and 1/(N m); `size` is 2 if an unbalance may leave its link's line, else 1;
-    `turn` holds the crank angles of the norm, rad; `reference` is the norm without counterweights, or 1.
+    `weights` are of force and moment, 1/N and 1/(N m); `about` is the point of the moment, m; `size` is 2 if an
+    unbalance may leave its link's line, else 1; `turn` holds the crank angles of the norm, rad; `reference` is the norm
+    without counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
     """
 
     mechanism: Any
     norm: str
     weights: tuple[float, float]
+    about: tuple[float, float]
     counterweights: dict[str, Counterweight]
     size: int
     turn: Any
     scale: float
     reference: float = 1.0
+    moment_limit: float = np.inf
 
     @property
     def none(self):
@@ -181,24 +200,61 @@ class _ShakingSearch:
         """Solution of that mechanism at crank speed 1 rad/s."""
         return Solution(self.balanced(unknowns).mechanism, self.turn, 1.0, 0.0)
 
-    def force_sizes(self, solution):
-        """Size of the shaking force, or of its component, at each crank angle, N."""
+    def moments(self, solution):
+        """Size of the shaking moment about the point at each crank angle, N m."""
+        (x, y), (along_x, along_y) = self.about, solution.shaking_force
+        return np.abs(solution.shaking_moment - (x * along_y - y * along_x))
+
+    def values(self, solution):
+        """Size of what the norm is of at each crank angle."""
+        if self.norm == "largest moment":
+            return self.moments(solution)
         if self.norm in ("along", "across"):
             return np.abs((along_guide if self.norm == "along" else across_guide)(solution))
-        return magnitude(solution.shaking_force)
+        force = magnitude(solution.shaking_force)
+        if self.norm not in ("weighted", "largest weighted"):
+            return force
+        return np.hypot(self.weights[0] * force, self.weights[1] * self.moments(solution))
 
     def sizes(self, unknowns):
         """Sizes under the norm at each crank angle, relative to the reference."""
-        return self.force_sizes(self.solved(unknowns)) / self.reference
+        return self.values(self.solved(unknowns)) / self.reference
+
+    def margins(self, unknowns):
+        """Margins of the largest moment at each crank angle, relative to it."""
+        return 1.0 - self.moments(self.solved(unknowns)) / self.moment_limit
 
     def objective(self, unknowns):
         """The norm relative to the reference."""
-        solved = self.solved(unknowns)
+        sizes = self.sizes(unknowns)
         if self.norm == "weighted":
-            by_force, by_moment = self.weights
-            force, moment = by_force * magnitude(solved.shaking_force), by_moment * solved.shaking_moment
-            return np.sqrt(np.mean(force * force + moment * moment)) / self.reference
-        return (np.mean if self.norm == "mean" else np.max)(self.force_sizes(solved)) / self.reference
+            return np.sqrt(np.mean(sizes * sizes))
+        return np.mean(sizes) if self.norm == "mean" else np.max(sizes)
+
+    def best(self):
+        """Unknowns of the least norm over the turn."""
+        # one start on each side where weights keep out of a hole
+        kept_out = any(weight.keep_out for weight in self.counterweights.values())
+        starts = (self.none - 0.5, self.none + 0.5) if kept_out else (self.none,)
+        best = min((_minimise_norm(self.objective, start) for start in starts), key=self.objective)
+        return best if self.norm in MEAN_NORMS or self.objective(best) < ZERO_NORM else self.refined(best)
+
+    def refined(self, best):
+        """Unknowns of the least true peak from a start: peaks between the crank angles join them."""
+        search, limited = self, self.moment_limit < np.inf
+        for _ in range(MAX_REFINEMENTS):
+            found = _minimise_peak(search, best)
+            best = found if limited else min(best, found, key=search.objective)
+            solved = search.solved(best)
+            peaks = [extremes(solved, search.values)]
+            excess = [peaks[0].range[1] / search.reference - search.objective(best)]
+            if limited:
+                peaks.append(extremes(solved, search.moments))
+                excess.append(peaks[1].range[1] / self.moment_limit - 1.0)
+            if max(excess) <= PEAK_TOLERANCE:
+                break
+            search = replace(search, turn=np.concatenate([search.turn, *(peak.angle for peak in peaks)]))
+        return best
 
 
 def _minimise_norm(objective, start):
@@ -206,7 +262,7 @@ def _minimise_norm(objective, start):
     from scipy.optimize import minimize
 
     def stop_at_zero(intermediate_result):
-        if intermediate_result.fun < 1e-11:
+        if intermediate_result.fun < ZERO_NORM:
             raise StopIteration
 
     options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
@@ -215,62 +271,26 @@ def _minimise_norm(objective, start):
     return start
 
 
-def _minimise_peak(sizes, start):
-    """Minimiser of the largest of many sizes: of a level above all of them (SLSQP)."""
+def _minimise_peak(search, start):
+    """Minimiser of the largest size of a search: of a level above all sizes (SLSQP), under the limit of the moment."""
     from scipy.optimize import minimize
 
+    margins = [lambda unknowns: unknowns[-1] - search.sizes(unknowns[:-1])]
+    if search.moment_limit < np.inf:
+        margins.append(lambda unknowns: search.margins(unknowns[:-1]))
     found = minimize(
         lambda unknowns: unknowns[-1],
-        np.append(start, np.max(sizes(start))),
+        np.append(start, np.max(search.sizes(start))),
         jac=lambda unknowns: np.append(np.zeros(start.size), 1.0),
-        constraints={"type": "ineq", "fun": lambda unknowns: unknowns[-1] - sizes(unknowns[:-1])},
+        constraints=[{"type": "ineq", "fun": margin} for margin in margins],
         method="SLSQP",
         options={"ftol": 1e-15, "maxiter": 200},
     )
     return found.x[:-1]
 
 
-def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angles=360, **counterweights):
-    """Counterweights whose unbalances minimise a norm of the shaking force over the turn, at constant crank speed.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-    norm : "largest", "mean", "along", "across" or "weighted"
-        Largest or mean magnitude of the shaking force, its largest component along or across the guide, or the root
-        mean square of force and moment with the given weights.
-    phase : bool
-        Whether a counterweight may lie beside its link's line.
-    weights : (force, moment)
-        For "weighted": 1/N and 1/(N m). A counterweight on the crank alone does not change the shaking moment.
-    angles : int
-        Crank angles at which the norm is taken; for the largest of a force, its true extremes join them.
-    **counterweights : Counterweight
-        By link, as ``crank=Counterweight(arm=0.03)``; the search finds the side, whatever the sign of the arm, and
-        keeps the limits.
-
-    Returns
-    -------
-    Balanced
-
-    Raises
-    ------
-    ParameterError
-        An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, or forces
-        along and across guides that are not parallel.
-    AssemblyError
-        The mechanism does not close all round the turn, with the crank angles.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import kinetostatics as ks
-    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
-    >>> found = ks.balancing.optimal(mower, "mean", crank=ks.Counterweight(arm=0.035), angles=12)
-    >>> before, after = (ks.Scene(item, 62.8).solve(12).shaking_force for item in (mower, found.mechanism))
-    >>> print(f"{np.hypot(*after).mean() / np.hypot(*before).mean():.2f}")
-    0.56
-    """
+def _search(mechanism, norm, phase, weights, about, angles, counterweights):
+    """Checked search for counterweights under a norm."""
     _require_masses(mechanism)
     problems = [] if counterweights else ["give at least one counterweight, such as crank=Counterweight(arm=0.03)"]
     for name, weight in counterweights.items():
@@ -284,7 +304,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     found = checks.check_values(
         "optimal balancing",
         WEIGHT_RULES,
-        dict(zip(WEIGHT_RULES, weights if paired else (1.0, 0.0), strict=True)),
+        dict(zip(WEIGHT_RULES, (*(weights if paired else (1.0, 0.0)), about), strict=True)),
         checks.choice("norm", norm, NORMS),
         None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
         *problems,
@@ -294,21 +314,126 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     assembly.require_turn(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
     scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
-    search = _ShakingSearch(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn, scale)
+    *pair, point = found.values()
+    search = _ShakingSearch(mechanism, norm, tuple(pair), point, counterweights, 2 if phase else 1, turn, scale)
     search = replace(search, reference=search.objective(search.none) or 1.0)
-    # one start on each side where weights keep out of a hole
-    kept_out = any(weight.keep_out for weight in counterweights.values())
-    starts = (search.none - 0.5, search.none + 0.5) if kept_out else (search.none,)
-    best = min((_minimise_norm(search.objective, start) for start in starts), key=search.objective)
-    if norm not in PEAK_NORMS:
-        return search.balanced(best)
-    for _ in range(8):  # peaks between the angles join them
-        best = min(best, _minimise_peak(search.sizes, best), key=search.objective)
-        peaks = extremes(search.solved(best), search.force_sizes)
-        if peaks.range[1] <= (search.objective(best) + 1e-10) * search.reference:
-            break
-        search = replace(search, turn=np.append(search.turn, peaks.angle))
-    return search.balanced(best)
+    trials = 0.5 * np.vstack([np.eye(search.none.size), -np.eye(search.none.size)])
+    if norm == "largest moment" and all(abs(search.objective(trial) - 1.0) <= FLAT_TOLERANCE for trial in trials):
+        raise ParameterError(
+            f"optimal balancing: a counterweight on {', '.join(counterweights)} does not change the shaking moment "
+            f"about ({point[0]:g}, {point[1]:g}) m; give one on another link, or another point"
+        )
+    return search
+
+
+def optimal(
+    mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), about=(0.0, 0.0), angles=360, **counterweights
+):
+    """Counterweights whose unbalances minimise a norm of shaking force or moment over the turn at constant crank speed.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    norm : "largest", "mean", "along", "across", "weighted", "largest moment" or "largest weighted"
+        Largest or mean magnitude of the shaking force, its largest component along or across the guide; largest
+        magnitude of the shaking moment; root mean square or largest value of the weighted force and moment together,
+        at each crank angle the root of the sum of their squares.
+    phase : bool
+        Whether a counterweight may lie beside its link's line.
+    weights : (force, moment)
+        Of "weighted" and "largest weighted": 1/N and 1/(N m). (0, 1) makes the root mean square of the moment least.
+    about : (x, y)
+        Point of the shaking moment, m; O by default, about which a counterweight on the crank alone does not change it.
+    angles : int
+        Crank angles at which the norm is taken; for a largest value, true extremes join them.
+    **counterweights : Counterweight
+        By link, as ``crank=Counterweight(arm=0.03)``; the search finds the side, whatever the sign of the arm, and
+        keeps the limits.
+
+    Returns
+    -------
+    Balanced
+
+    Raises
+    ------
+    ParameterError
+        An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, forces along
+        and across guides that are not parallel, or a moment that no counterweight changes.
+    AssemblyError
+        The mechanism does not close all round the turn, with the crank angles.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.optimal(mower, "mean", crank=ks.Counterweight(arm=0.035), angles=12)
+    >>> before, after = (ks.Scene(item, 62.8).solve(12).shaking_force for item in (mower, found.mechanism))
+    >>> print(f"{np.hypot(*after).mean() / np.hypot(*before).mean():.2f}")
+    0.56
+    """
+    search = _search(mechanism, norm, phase, weights, about, angles, counterweights)
+    return search.balanced(search.best())
+
+
+def pareto(mechanism, *, points=9, crank_speed=1.0, phase=False, about=(0.0, 0.0), angles=360, **counterweights):
+    """Counterweights with the least largest shaking force for each largest shaking moment.
+
+    Parameters
+    ----------
+    mechanism, phase, about, angles, counterweights
+        As for `optimal`.
+    points : int
+        Designs on the front, at least 2: evenly by the moment, from the least force to the least moment.
+    crank_speed : float
+        Of the force and moment in the table, rad/s; the counterweights are the same at any speed.
+
+    Returns
+    -------
+    design.Front
+        Its `designs` are `Balanced`.
+
+    Raises
+    ------
+    ParameterError, AssemblyError
+        As for `optimal`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> weight = ks.Counterweight(arm=0.05)
+    >>> front = ks.balancing.pareto(mower, points=3, crank_speed=62.8, about=(0.2, 0.0), angles=24, crank=weight)
+    >>> [type(design).__name__ for design in front.designs]
+    ['Balanced', 'Balanced', 'Balanced']
+    >>> bool((front.table["largest shaking_moment [N m]"].diff().dropna() < 0).all())
+    True
+    """
+    import pandas as pd
+
+    given = crank_speed, "rad/s", {"unequal": 0.0}
+    speed = checks.single_numbers("pareto", points_problem(points), crank_speed=given)["crank_speed"]
+    force, moment = (
+        _search(mechanism, norm, phase, (1.0, 0.0), about, angles, counterweights)
+        for norm in ("largest", "largest moment")
+    )
+
+    def outputs(unknowns):
+        solved = force.solved(unknowns)
+        return [float(speed**2 * extremes(solved, item.values).range[1]) for item in (force, moment)]
+
+    found = [force.best()]
+    high, least = outputs(found[0])[1], outputs(moment.best())[1]
+    for level in np.linspace(high, least + LEVEL_TOLERANCE * high, points)[1:]:
+        found.append(replace(force, moment_limit=level / speed**2).refined(found[-1]))
+    names = "largest shaking_force", "largest shaking_moment"
+    rows, designs = [], tuple(force.balanced(item) for item in found)
+    for item, design in zip(found, designs, strict=True):
+        row = dict(zip((f"{names[0]} [N]", f"{names[1]} [N m]"), outputs(item), strict=True))
+        for link, (mass, (along, across)) in design.counterweights.items():
+            row |= {f"{link} unbalance along [kg m]": mass * along, f"{link} unbalance across [kg m]": mass * across}
+        rows.append(row)
+    return Front(names, pd.DataFrame(rows), designs, tuple(outputs(force.none)))
 
 
 def _weight_problem(name, weight):

@@ -5,12 +5,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ..cycle.reductions import Output, SolutionNumber, parsed
-from ..errors import ParameterError
+from ..errors import ParameterError, QuantityError
 from ..machine.loads import Table, value_of
 from ..numbers import checks
 from ..numbers.units import NUMBER, base_factor, to_si
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
+MEAN = "mean"
+"""Name of the mean of all duties in limits."""
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
 
 
@@ -34,21 +36,29 @@ class Constraint:
         SI.
     span : float, optional
         Length, m, of the table over travel that sets the limit; the unit of its excess.
+    duty : str
+        Duty that it is of, or "mean"; empty for each.
     """
 
     output: Output | SolutionNumber
     relation: str
     value: float
     span: float | None = None
+    duty: str = ""
 
     @property
     def scale(self):
         """Size that makes excesses relative."""
         return self.span or abs(self.value) or 1.0
 
+    @property
+    def place(self):
+        """The output with its duty."""
+        return f"{self.duty}: {self.output}" if self.duty else str(self.output)
+
     def __str__(self):
         unit = self.output.unit if not self.output.ratio and not _is_plain(self.output.unit) else ""
-        return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
+        return f"{self.place} {self.relation} {self.value:.9g} {unit}".strip()
 
 
 def parse_constraint(text, known, parts=None) -> Constraint:
@@ -83,17 +93,22 @@ def parse_output(text, known, parts=None) -> Output | SolutionNumber:
     return output if output.unit else replace(output, unit="1")
 
 
-def parse_constraints(texts, known, parts=None):
-    """Constraints from texts; one error lists all faults."""
+def limit_list(texts):
+    """Limits as a tuple; one may be given alone."""
     if not isinstance(texts, str | Iterable):
         raise ParameterError(
             f'design: limits must be texts, such as ["largest O <= 0.75 kN"], got {checks.shown(texts)}'
         )
+    return (texts,) if isinstance(texts, str) else tuple(texts)
+
+
+def parse_constraints(texts, known, parts=None):
+    """Constraints from texts; one error lists all faults."""
     found, problems = [], []
-    for text in (texts,) if isinstance(texts, str) else texts:
+    for text in limit_list(texts):
         try:
             found.append(text if isinstance(text, Constraint) else parse_constraint(text, known, parts))
-        except ParameterError as error:
+        except (ParameterError, QuantityError) as error:
             problems.append(str(error))
     checks.require("design", *problems)
     return tuple(found)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,10 +11,11 @@ from ..cycle.reductions import Output, SolutionNumber
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
-from .constraints import Constraint, parse_constraints, parse_output
-from .problem import SHARED_NUMBERS, Problem, choose_design, progress_bar, scene_of, true_value, without_ratio
+from .constraints import MEAN, Constraint, parse_constraints, parse_output
+from .duties import DutyProblem, in_each, limits_of, read_duties
+from .problem import SHARED_NUMBERS, Problem, progress_bar, scene_of, true_value, without_ratio
 from .result import Found, active_prices
-from .robust import SampledOutput, spread_problem
+from .robust import sampled_output, spread_problem
 from .search import LIMIT_TOLERANCE, Goal, SearchEnd, better, excess_over, search_from, worst_excess
 
 ANGLES = 720
@@ -34,6 +35,7 @@ def optimise(
     limits=(),
     *,
     maximise=None,
+    numbers=(),
     variant=None,
     reference=None,
     robust=None,
@@ -50,8 +52,10 @@ def optimise(
 
     Parameters
     ----------
-    source : Case, Scene or variant
-        In a case, derived numbers follow the varied ones, as for `sweep`.
+    source : Case, Scene, variant or duties
+        In a case, derived numbers follow the varied ones, as for `sweep`. Duties are a dict of name to (scene, share of
+        the time) of one machine: ``{"idle": (scene, 0.2), "cut": (other, 0.8)}``. What varies is the same in all; the
+        goal is the mean of the output in each, weighted by the shares.
     vary : dict of path to (low, high)
         Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
     minimise, maximise : str
@@ -60,9 +64,13 @@ def optimise(
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
         Numbers of parts, "main_bearing.life_hours >= 20000 h" or `sizing.Part.limit`, have central differences for
-        derivatives.
+        derivatives. Of duties each limit holds in all, "cut: largest O <= 40 kN" in one, "mean: ..." of the weighted
+        mean.
+    numbers : sequence of SolutionNumber
+        Functions of a solution that goal and limits name, as the mains energy of a turn under a motor; their
+        derivatives are central differences.
     variant, reference : str
-        As for `sweep`; of a scene `reference` is a `Scene`.
+        As for `sweep`; of a scene `reference` is a `Scene`, of duties one for all or a dict.
     robust : Spread, optional
         Makes a quantile of the output over spreads of numbers the goal.
     begin : dict of path to float, optional
@@ -80,6 +88,7 @@ def optimise(
     Returns
     -------
     Found
+        Of duties its scenes are dicts by name.
 
     Raises
     ------
@@ -99,17 +108,53 @@ def optimise(
     >>> round(found.report().loc["ratio mean_absolute balancing_torque [1]", "after"])
     67
     """
-    parts = getattr(source, "sizing", None)
-    source, reference = choose_design(source, variant, reference)
+    duties = read_duties(source, variant, reference)
     checks.require(
         "design", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE), *search_problems(starts, seed)
     )
-    task = parse_task(scene_of(source), minimise, maximise, limits, reference, angles, parts=parts)
-    quantities = [item.quantity for item in task.outputs if isinstance(item, Output)]
-    problem = Problem(source, vary, quantities or ["balancing_torque"], reference, angles, engine)
+    parts = named_numbers(source, numbers)
+    task, quantities = _duty_task(duties, minimise, maximise, limits, angles, parts)
+    if "" in duties:
+        (duty,) = duties.values()
+        problem: Any = Problem(duty.source, vary, quantities[""], duty.reference, angles, engine)
+    else:
+        problem = DutyProblem(duties, vary, quantities, angles, engine)
     begins = _starting_designs(problem, starts, seed, begin)
     reported = (*task.outputs, *(limit.output for limit in problem.table_limits))
     return best_design(problem, task, begins, reported, robust, progress)
+
+
+def named_numbers(source, numbers):
+    """Parts to be sized and numbers by name, of a case, variant, or all duties."""
+    several = isinstance(numbers, list | tuple)
+    wrong = [item for item in numbers if not isinstance(item, SolutionNumber)] if several else [numbers]
+    checks.require("design", *(f"numbers must be SolutionNumbers, got {checks.shown(item)}" for item in wrong))
+    items = [pair[0] for pair in source.values()] if isinstance(source, Mapping) else [source]
+    parts = {name: part for item in items for name, part in (getattr(item, "sizing", None) or {}).items()}
+    return parts | {item.name: item for item in numbers}
+
+
+def _duty_task(duties, minimise, maximise, limits, angles, parts):
+    """Task of a search, its limits each of their duty, and the quantities that each duty needs by name."""
+    limited = {"": limits} if "" in duties else limits_of(limits, duties)
+
+    def own_task(name, duty):
+        scene = scene_of(duty.source)
+        own, of_mean = (
+            parse_task(scene, minimise, maximise, limited.get(key, ()), duty.reference, angles, parts=parts)
+            for key in (name, MEAN)
+        )
+        means = tuple(replace(limit, duty=MEAN) for limit in of_mean.limits)
+        return own._replace(limits=tuple(replace(limit, duty=name) for limit in own.limits)), means
+
+    tasks = in_each(duties, own_task)
+    task, means = next(iter(tasks.values()))
+    outputs = {name: (*own.outputs, *(limit.output for limit in mean)) for name, (own, mean) in tasks.items()}
+    quantities = {
+        name: [item.quantity for item in items if isinstance(item, Output)] or ["balancing_torque"]
+        for name, items in outputs.items()
+    }
+    return task._replace(limits=(*(limit for own, _ in tasks.values() for limit in own.limits), *means)), quantities
 
 
 class Task(NamedTuple):
@@ -158,7 +203,7 @@ def _starting_designs(problem, count, seed, begin=None):
         if not isinstance(begin, Mapping):
             raise ParameterError(f"design: begin must be a dict of path to number, got {checks.shown(begin)}")
         wrong = [checks.choice("begin", path, problem.names) for path in begin]
-        units = problem.source.units
+        units = problem.units
         given: dict = {f"begin {path}": (value, units.get(path, ""), {}) for path, value in begin.items()}
         own = checks.single_numbers("design", *wrong, **given)
         first = np.array([own.get(f"begin {name}", value) for name, value in zip(problem.names, first, strict=True)])
@@ -183,11 +228,8 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         if robust is None or isinstance(output, Output)
         else f"{str(output)!r} is a number of a part, which cannot be robust; make it a limit",
     )
-    goal = Goal(output if robust is None else SampledOutput(problem, output, robust, sign), sign)
-    searched, plain = goal, limits
-    reference = None if problem.reference is None else scene_of(problem.reference)
-    if reference is not None and not set(problem.names) & set(SHARED_NUMBERS):
-        searched, plain = _without_ratios(goal, limits, reference)
+    goal = Goal(output if robust is None else sampled_output(problem, output, robust, sign), sign)
+    searched, plain = _without_ratios(problem, goal, limits)
     # limits by tables over travel join them; of a robust goal they hold for each machine of the spread
     own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
     kept = (*limits, *own)
@@ -199,7 +241,7 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         best = _tighten_limits(problem, searched, (*plain, *own), best)
     goals = [searched.sign * end.goal if end.missed <= MISSED else np.inf for end in ends]
     if robust is None and searched.output.ratio != output.ratio:
-        above = true_value(without_ratio(output), reference)
+        above = true_value(without_ratio(output), scene_of(problem.reference))
         goals = [above / end for end in goals]
     evaluations = problem.evaluations
     active, prices = active_prices(problem, goal, kept, best.values)
@@ -208,7 +250,7 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         problem.scene(best.values),
         problem.numbers(best.values),
         scene_of(problem.source),
-        reference,
+        problem.reference and scene_of(problem.reference),
         kept,
         f"{'least' if sign > 0 else 'greatest'} {of}{text}",
         tuple(dict.fromkeys(reported)),
@@ -217,19 +259,23 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         evaluations,
         goals,
         spread=None if robust is None else (output, robust, sign),
+        shares={} if "" in problem.shares else problem.shares,
     )
 
 
-def _without_ratios(goal, limits, reference):
-    """Goal and limits with ratios replaced by their denominators, for a reference that does not vary."""
+def _without_ratios(problem, goal, limits):
+    """Goal and limits with ratios replaced by their denominators, where the reference does not vary."""
+    if set(problem.names) & set(SHARED_NUMBERS):
+        return goal, limits
     turned, found = {"<=": ">=", ">=": "<=", "=": "="}, []
     for limit in limits:
-        output = limit.output
-        if isinstance(output, Output) and output.ratio and limit.value > 0:
+        output, part = limit.output, problem.duty(limit.duty)
+        if isinstance(output, Output) and output.ratio and limit.value > 0 and limit.duty != MEAN:
             plain = without_ratio(output)
-            limit = Constraint(plain, turned[limit.relation], true_value(plain, reference) / limit.value)
+            value = true_value(plain, scene_of(part.reference)) / limit.value
+            limit = replace(limit, output=plain, relation=turned[limit.relation], value=value)
         found.append(limit)
-    if not isinstance(goal.output, Output) or not goal.output.ratio:
+    if not isinstance(goal.output, Output) or not goal.output.ratio or "" not in problem.parts:
         return goal, tuple(found)
     return Goal(without_ratio(goal.output), -goal.sign), tuple(found)
 
@@ -242,9 +288,10 @@ def _failure_text(problem, goal, limits, best, count):
         obstacle = f"the one with {numbers} runs, but outputs asked for have no value"
         whose = ""
         try:
-            solution = problem.scene(best.values).solve(problem.angles)
-            for name in problem.quantities:
-                values_of(solution, name)
+            for part in problem.parts.values():
+                solution = part.scene(best.values).solve(problem.angles)
+                for name in part.quantities:
+                    values_of(solution, name)
             if callable(goal.output):
                 spreads = ", ".join(goal.output.spread.spreads)
                 whose = f", of which a machine within the spread of {spreads} fails"
@@ -256,7 +303,7 @@ def _failure_text(problem, goal, limits, best, count):
             f"{', '.join(problem.names)}, or begin with a machine that runs"
         )
     reached = [
-        f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}"
+        f"{limit}, where it comes to {problem.duty(limit.duty).output(limit.output, best.values)[0]:.6g}"
         for limit in limits
         if worst_excess(problem, [limit], best.values) > MISSED
     ]
@@ -301,13 +348,13 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
 
 
 def _true_excess_of(problem, limit, values):
-    """`true_excess` of a design; of an output over a spread or a ratio, at the crank angles of the search."""
+    """Excess of a design over a limit at true extremes, not positive if it is kept; of an equality the difference.
+
+    Of an output over a spread or a ratio it is that at the crank angles of the search.
+    """
     if not isinstance(limit.output, Output) or limit.output.ratio:
         return excess_over(problem, limit, values)[0][0]
-    return true_excess(limit, problem.scene(values))
-
-
-def true_excess(limit, scene):
-    """Excess of a scene over a limit at true extremes, not positive if it is kept; of an equality the difference."""
-    excess = true_value(limit.output, scene) - limit.value
-    return -excess if limit.relation == ">=" else excess
+    whole = problem.duty(limit.duty)
+    parts = whole.parts.items()
+    mean = sum(whole.shares[name] * true_value(limit.output, part.scene(values)) for name, part in parts)
+    return limit.value - mean if limit.relation == ">=" else mean - limit.value

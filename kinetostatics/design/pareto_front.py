@@ -1,20 +1,23 @@
 """Pareto fronts: the best of one output for each value of another, between the best of each alone."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..errors import DesignError
 from ..numbers import checks
-from .constraints import Constraint, parse_constraints, parse_output
-from .optimisation import ANGLES, optimise
-from .problem import choose_design, compared_value, scene_of
-from .result import Found
+from .constraints import MEAN, Constraint, limit_list, parse_output
+from .duties import in_each, mean_value, read_duties
+from .optimisation import ANGLES, named_numbers, optimise
+from .problem import scene_of
 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Designs of which none is better in both outputs; made by `pareto`, drawn by `ks.plots.front`.
+    """Designs of which none is better in both outputs; made by `pareto` and `balancing.pareto`.
+
+    `ks.plots.front` draws it.
 
     Attributes
     ----------
@@ -22,6 +25,7 @@ class Front:
     table : pandas.DataFrame
         A row for each design: both outputs, and the numbers that varied.
     designs : tuple of Found
+        Of `balancing.pareto` of Balanced.
     before : (float, float)
         Outputs of the source.
 
@@ -38,7 +42,7 @@ class Front:
 
     outputs: tuple[str, str]
     table: object = field(repr=False)
-    designs: tuple[Found, ...] = field(repr=False)
+    designs: tuple[Any, ...] = field(repr=False)
     before: tuple[float, float]
 
 
@@ -48,14 +52,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`.
+        As for `optimise`; of duties both outputs are weighted means.
     minimise : (str, str)
         Two outputs; a "-" before one maximises it: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
     points : int
         Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
     **options
-        `angles`, `engine` and `progress` of `optimise`.
+        `angles`, `engine`, `numbers` and `progress` of `optimise`.
 
     Returns
     -------
@@ -83,33 +87,37 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     checks.require(
         "pareto",
         None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
-        checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
-        *(checks.choice("option", name, ("angles", "engine", "progress")) for name in options),
+        points_problem(points),
+        *(checks.choice("option", name, ("angles", "engine", "numbers", "progress")) for name in options),
     )
     pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
-    parts = getattr(source, "sizing", None)
-    item, compared = choose_design(source, variant, reference)
-    shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
-    first, second = (parse_output(text, scene_of(item), parts) for text, _ in pair)
-    kept = parse_constraints(limits, scene_of(item), parts)
+    parts = named_numbers(source, options.get("numbers", ()))
+    duties = read_duties(source, variant, reference)
+    shared = {"variant": variant, "reference": reference, "seed": seed, "starts": starts, "angles": ANGLES} | options
+
+    def parsed_pair(_, duty):
+        return [parse_output(text, scene_of(duty.source), parts) for text, _ in pair]
+
+    first, second = next(iter(in_each(duties, parsed_pair).values()))
+    kept, mean = limit_list(limits), "" if "" in duties else MEAN
 
     def best(number, more=(), begin=None):
         text, greatest = pair[number]
         goal = {"maximise" if greatest else "minimise": text}
-        return optimise(item, vary, limits=(*kept, *more), begin=begin, **goal, **shared)
+        return optimise(source, vary, limits=(*kept, *more), begin=begin, **goal, **shared)
 
-    def outputs(scene):
-        return [compared_value(output, scene, scene_of(compared)) for output in (first, second)]
+    def outputs(duties):
+        return [float(mean_value(output, duties)) for output in (first, second)]
 
     ends = [best(0), best(1)]
-    levels = [outputs(end.scene)[1] for end in ends]
+    levels = [outputs(end.duties())[1] for end in ends]
     logarithmic = second.ratio and min(levels) > 0
     first_level, last_level = map(float, levels)
     between = (np.geomspace if logarithmic else np.linspace)(first_level, last_level, points)
     found, last = [ends[0]], ends[0]
     relation = ">=" if pair[1][1] else "<="
     for level in between[1:-1]:
-        limit = Constraint(second, relation, float(level))
+        limit = Constraint(second, relation, float(level), duty=mean)
         try:
             last = best(0, (limit,), last.values)
         except DesignError:
@@ -120,18 +128,21 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         (str(first), str(second)),
         _front_table(found, outputs, (first, second)),
         tuple(found),
-        tuple(outputs(scene_of(item))),
+        tuple(outputs(duties)),
     )
+
+
+def points_problem(points):
+    """Sentence on a wrong number of designs on a front, or None."""
+    return checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}")
 
 
 def _front_table(found, outputs, pair):
     import pandas as pd
 
     columns = [output.column for output in pair]
-    units = found[0].scene.units
     rows = [
-        dict(zip(columns, outputs(design.scene), strict=True))
-        | {f"{path} [{units[path]}]": value for path, value in dict(design.values).items()}
+        dict(zip(columns, outputs(design.duties()), strict=True)) | design.numbers()["after"].to_dict()
         for design in found
     ]
     return pd.DataFrame(rows)

@@ -142,6 +142,10 @@ class Problem:
         self._parted = lru_cache(MAX_CACHED_DESIGNS * len(self.quantities))(
             lambda output, design: self._on_pieces(output, np.frombuffer(design))
         )
+        self._numbers = lru_cache(MAX_CACHED_DESIGNS)(
+            lambda output, design: self._number(output, np.frombuffer(design))
+        )
+        self.units, self.parts, self.shares = source.units, {"": self}, {"": 1.0}
         self._of_reference = cache(lambda output: true_value(output, scene_of(reference)))
         self._shared = [place for place, name in enumerate(self.names) if name in SHARED_NUMBERS]
         self._compared: Problem | None = None
@@ -158,6 +162,10 @@ class Problem:
         scene = scene_of(self.source).parameters
         values = [value if isinstance(value := own[name], float) else scene[name] for name in self.names]
         return np.clip(np.array(values, dtype=float), self.low, self.high)
+
+    def duty(self, name):
+        """Problem of a duty: this one, for it has no others."""
+        return self
 
     def numbers(self, values):
         """Numbers of a design by their paths."""
@@ -203,7 +211,7 @@ class Problem:
         if callable(output):
             return output(values)
         if isinstance(output, SolutionNumber):
-            return self._number(output, values)
+            return self._numbers(output, values.tobytes())
         found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
@@ -273,14 +281,14 @@ def choose_design(source, variant, reference):
         return source.variant(name), source.variant(compared)
     checks.require(
         "design",
-        _design_problem("source", source, "a Case, as of ks.load_case, or a Scene"),
+        design_problem("source", source, "a Case, as of ks.load_case, or a Scene"),
         None if variant is None else "variant is for cases; a Scene has none",
-        None if reference is None else _design_problem("reference", reference, "a Scene, as the source is"),
+        None if reference is None else design_problem("reference", reference, "a Scene, as the source is"),
     )
     return source, reference
 
 
-def _design_problem(name, item, kinds):
+def design_problem(name, item, kinds):
     """Sentence about an object that is not one design, or None."""
     if not hasattr(item, "varied") or not hasattr(item, "units"):
         return f"{name} must be {kinds}, got {checks.shown(item)}"

@@ -1,19 +1,19 @@
 """The result of a search: the better machine, its active limits, and the price of each limit and bound."""
 
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..cycle.load_functions import with_resolution
-from ..cycle.reductions import Output
 from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
 from . import measures
-from .constraints import Constraint, parse_output
+from .constraints import MEAN, Constraint, parse_output
+from .duties import Duty, mean_value
 from .problem import compared_value
 from .robust import quantile
 from .search import excess_over, is_peak
@@ -34,12 +34,12 @@ class Found:
 
     Attributes
     ----------
-    scene : Scene
+    scene : Scene, of duties a dict of them by name
     values : dict of path to float
         Of the numbers that varied, SI.
-    before : Scene
+    before : Scene or dict
         What the search began with.
-    reference : Scene or None
+    reference : Scene, dict or None
         What ratios refer to.
     limits : tuple of Constraint
     goal : str
@@ -58,6 +58,8 @@ class Found:
         Of a robust design: output, spread, and sign (-1: maximised) of its quantile.
     shaft_radius : float or None
         Of the shaft at O, m, where it is known.
+    shares : dict of str to float
+        Of the time, by duty; empty without duties.
 
     Examples
     --------
@@ -87,14 +89,44 @@ class Found:
     bound: float = np.inf
     spread: tuple | None = field(default=None, repr=False)
     shaft_radius: float | None = None
+    shares: dict[str, float] = field(default_factory=dict)
 
     def __repr__(self):
-        numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
+        numbers = f"{len(self.values)} numbers of {self._first.mechanism.name} varied"
         binds = f"{', '.join(self.active)} binds" if self.active else "nothing binds"
         return f"<Found: {self.goal}; {numbers}, {binds}; {self.evaluations} evaluations>"
 
+    @property
+    def _first(self):
+        """The scene, or that of the first duty: all have the same mechanism."""
+        return next(iter(self.duties().values())).source
+
+    def duties(self, before=False):
+        """Duties by name, after the search or before; one without a name of a search without duties."""
+        scenes = self.before if before else self.scene
+        if not self.shares:
+            return {"": Duty(scenes, self.reference, 1.0)}
+        compared = self.reference or {}
+        return {name: Duty(scenes[name], compared.get(name), share) for name, share in self.shares.items()}
+
+    def duty(self, name):
+        """The result for one duty alone, as plots of one machine take it.
+
+        Raises
+        ------
+        ParameterError
+            The search had no such duty.
+        """
+        checks.require("found", checks.choice("duty", name, tuple(self.shares)))
+        after, before = self.duties()[name], self.duties(before=True)[name]
+        limits = tuple(replace(limit, duty="") for limit in self.limits if limit.duty == name)
+        scenes = {"scene": after.source, "before": before.source, "reference": after.reference}
+        return replace(self, **scenes, limits=limits, active=(), prices={}, spread=None, shares={})
+
     def report(self):
         """Outputs before and after, with their limits and what these cost; a pandas DataFrame.
+
+        Of duties a row for each, and for the mean of the goal.
 
         Warns
         -----
@@ -104,36 +136,42 @@ class Found:
         """
         import pandas as pd
 
-        mechanism = self.scene.mechanism
+        mechanism = self._first.mechanism
         if self.shaft_radius is not None and CAM_RADIUS in of_scene(self.scene):
             nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
             hint = shaft_hint(nearest, mechanism.rollers.get("A"), self.shaft_radius)
             if hint:
                 warnings.warn(HintWarning(mechanism.name, hint), stacklevel=2)
-        for text in self.scene.check_resolution().hints:
+        duties, before = self.duties(), self.duties(before=True)
+        scenes = [duty.source for duty in duties.values()]
+        for text in dict.fromkeys(text for scene in scenes for text in scene.check_resolution().hints):
             warnings.warn(HintWarning(mechanism.name, text), stacklevel=2)
         limits: dict[str, list[Constraint]] = {}
         for limit in self.limits:
-            limits.setdefault(str(limit.output), []).append(limit)
+            limits.setdefault(limit.place, []).append(limit)
         rows = {}
         if self.spread is not None:
             output, spread, sign = self.spread
-            before, after = (
-                quantile(scene, self.reference, output, spread, sign) if output.quantity in of_scene(scene) else np.nan
-                for scene in (self.before, self.scene)
-            )
+            values = [quantile(item, output, spread, sign) for item in (before, duties)]
             alone = {"limit": "", "binds": False, "price": np.nan}
-            rows[f"{spread.quantile:g} quantile of {output.column}"] = {"before": before, "after": after, **alone}
+            pair = dict(zip(("before", "after"), values, strict=True))
+            rows[f"{spread.quantile:g} quantile of {output.column}"] = pair | alone
         for output in self.outputs:
-            own = limits.get(str(output), [])
-            rows[output.column] = {
-                "before": self._of(output, self.before),
-                "after": self._of(output, self.scene),
-                "limit": ", ".join(f"{limit.relation} {limit.value:.9g}" for limit in own),
-                "binds": any(str(limit) in self.active for limit in own),
-                "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
-            }
-        return with_resolution(pd.DataFrame.from_dict(rows, orient="index").rename_axis("output"), self.scene)
+            own_rows = {name: [name] for name in duties}
+            if self.shares and (output is self.outputs[0] or f"{MEAN}: {output}" in limits):
+                own_rows = {MEAN: list(duties)} | own_rows
+            for name, of in own_rows.items():
+                own = limits.get(f"{name}: {output}" if name else str(output), [])
+                share = 1.0 if name == MEAN else duties[name].share
+                found = [mean_value(output, {key: items[key] for key in of}) / share for items in (before, duties)]
+                rows[f"{name}: {output.column}" if name else output.column] = {
+                    "before": found[0],
+                    "after": found[1],
+                    "limit": ", ".join(f"{limit.relation} {limit.value:.9g}" for limit in own),
+                    "binds": any(str(limit) in self.active for limit in own),
+                    "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
+                }
+        return with_resolution(pd.DataFrame.from_dict(rows, orient="index").rename_axis("output"), *scenes)
 
     def numbers(self):
         """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
@@ -142,7 +180,7 @@ class Found:
         """
         import pandas as pd
 
-        own, units = self.before.parameters, self.scene.units
+        own, units = next(iter(self.duties(before=True).values())).source.parameters, self._first.units
         rows = {
             f"{path} [{units[path]}]": {
                 "before": own.get(path, np.nan),
@@ -176,14 +214,14 @@ class Found:
             None if known else f"name must be a text, not one of {RESERVED_NAMES}, got {name!r}",
             None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
         )
-        scenes = {} if self.reference is None else {"reference": self.reference}
-        scenes |= {"before": self.before, name: self.scene}
+        scenes = named_scenes("reference", self.reference or {})
+        scenes |= named_scenes("before", self.before) | named_scenes(name, self.scene)
         return write_case(path, title or f"Design for the {self.goal}", scenes)
 
-    def _of(self, output, scene):
-        if isinstance(output, Output) and output.quantity not in of_scene(scene):
-            return np.nan
-        return compared_value(output, scene, self.reference)
+
+def named_scenes(name, scenes):
+    """Scenes by the names of their variants: of duties with the duty's name behind."""
+    return {f"{name}-{duty}": scene for duty, scene in scenes.items()} if isinstance(scenes, dict) else {name: scenes}
 
 
 def shaft_hint(nearest, roller_radius, shaft_radius):
@@ -206,12 +244,14 @@ def active_prices(problem, goal, limits, values):
     from scipy.optimize import lsq_linear
 
     output, sign = goal
-    if not is_peak(output, sign):
-        slopes = sign * problem.output(output, values)[1][:, None]
-    else:  # a column for each of equal peaks, the highest first
-        heights, slopes = measures.bounded(output.reduction, problem.curve(output, values))
-        order = np.argsort(-heights)
-        slopes = slopes[:, order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]]
+    first, others = sign * problem.output(output, values)[1], np.empty((values.size, 0))
+    if is_peak(output, sign):  # of each duty a column for each of equal peaks, less that of the highest
+        first = np.zeros(values.size)
+        for name, part in problem.parts.items():
+            heights, slopes = measures.bounded(output.reduction, part.curve(output, values))
+            order, share = np.argsort(-heights), problem.shares[name]
+            slopes = share * slopes[:, order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]]
+            first, others = first + slopes[:, 0], np.hstack([others, slopes[:, 1:] - slopes[:, :1]])
     reach = problem.high - problem.low
     names, columns, free = [], [], []
     for limit in limits:
@@ -231,7 +271,7 @@ def active_prices(problem, goal, limits, values):
     matrix = np.array(columns).T * reach[:, None]
     weight = np.linalg.norm(matrix, axis=0)
     weight[weight == 0] = 1.0
-    first, others = slopes[:, 0] * reach, (slopes[:, 1:] - slopes[:, :1]) * reach[:, None]
+    first, others = first * reach, others * reach[:, None]
     shares = others.shape[1]  # of the goal's peaks beside the first, where several compete
     low = np.concatenate([np.where(free, -np.inf, 0.0), np.zeros(shares)])
     solved = lsq_linear(np.hstack([matrix / weight, others]), -first, (low, np.full(low.size, np.inf)))

@@ -25,7 +25,8 @@ from ..solution.piecewise_turns import START_ANGLES, PiecewiseTurns, unchecked_t
 from ..solution.program import compile as compiled
 from . import measures
 from .constraints import parse_output, table_limits
-from .problem import DerivedNumbers, choose_design, scene_of, turns_of, without_ratio
+from .duties import in_each, read_duties
+from .problem import DerivedNumbers, scene_of, turns_of, without_ratio
 
 MAX_SAMPLES = 2**20
 
@@ -200,20 +201,26 @@ class SampledOutput:
         """The quantile, and its derivatives (n,) by the numbers that vary."""
         nothing = np.nan, np.full(values.size, np.nan)
         try:
-            design, changes = self._design(values)
-            found, own, numbers = self._evaluated(design)
+            found, slopes_of = self.sampled(values)
             order = np.argsort(found)
             quantile = self.weights @ found[order]
             if np.isnan(quantile):
                 return nothing
             counted = self.weights > NEGLIGIBLE_WEIGHT * self.weights.max()
-            samples = order[counted]
-            slopes = self._derivatives(numbers, samples, changes)
+            return quantile, self.weights[counted] @ slopes_of(order[counted])
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return nothing
-        if self.output.ratio:
-            slopes *= -(found / own)[samples, None]
-        return quantile, self.weights[counted] @ slopes
+
+    def sampled(self, values):
+        """The output of each sample, (samples,), and a function of samples to its derivatives (samples, n)."""
+        design, changes = self._design(values)
+        found, own, numbers = self._evaluated(design)
+
+        def slopes_of(samples):
+            slopes = self._derivatives(numbers, samples, changes)
+            return slopes * -(found / own)[samples, None] if self.output.ratio else slopes
+
+        return found, slopes_of
 
     def outputs(self, values):
         """The output of each sample, (samples,)."""
@@ -376,6 +383,35 @@ class SampledOutput:
         checks.require("spread", problem)
 
 
+class MeanSampledOutput(SampledOutput):
+    """Mean of the sampled outputs of several duties, weighted by their shares; each sample is one machine in all."""
+
+    def __init__(self, parts, shares):
+        first = next(iter(parts.values()))
+        self.parts, self.shares, self.output, self.spread = parts, shares, first.output, first.spread
+        self.weights, self.roughness = first.weights, first.roughness
+
+    def sampled(self, values):
+        """As of one duty."""
+        found, slopes = zip(*(part.sampled(values) for part in self.parts.values()), strict=True)
+        shares = np.array(list(self.shares.values()))
+        return shares @ np.array(found), lambda samples: np.tensordot(shares, [rise(samples) for rise in slopes], 1)
+
+    def outputs(self, values):
+        """The mean output of each sample, (samples,)."""
+        return self.sampled(values)[0]
+
+    def within_tables(self):
+        """Limits that keep all samples within load tables over travel, in each duty."""
+        return tuple(replace(limit, duty=name) for name, part in self.parts.items() for limit in part.within_tables())
+
+
+def sampled_output(problem, output, spread, sign, samples=None):
+    """`SampledOutput` of a problem, or the mean of those of its duties."""
+    parts = {name: SampledOutput(part, output, spread, sign, samples) for name, part in problem.parts.items()}
+    return parts[""] if "" in parts else MeanSampledOutput(parts, problem.shares)
+
+
 def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
     """An output of machines whose numbers deviate from the design's.
 
@@ -383,7 +419,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     ----------
     source, variant, reference
         As for `optimise`; for an optimised design pass its `.scene` and `.reference`. The reference gets the same
-        deviations, where it has the same number.
+        deviations, where it has the same number. Of duties it is the weighted mean, each machine the same in all.
     output : str
     spread : Spread
     samples : int
@@ -414,13 +450,14 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     5.2
     """
     checks.require("over_spread", spread_problem("spread", spread), samples_problem(samples))
-    item, compared = choose_design(source, variant, reference)
-    text = parse_output(output, scene_of(item))
+    duties = read_duties(source, variant, reference)
+    text = next(iter(in_each(duties, lambda _, duty: parse_output(output, scene_of(duty.source))).values()))
     checks.require(
         "over_spread", None if isinstance(text, Output) else f"{str(text)!r} is a number of a part; use ks.tolerances"
     )
-    assembly.require_turn(scene_of(item).mechanism)
-    sampled = _fixed_scene_output(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples)
+    for duty in duties.values():
+        assembly.require_turn(scene_of(duty.source).mechanism)
+    sampled = _fixed_output(duties, text, spread, -1.0 if text.ratio else 1.0, samples)
     found = sampled.outputs(np.empty(0))
     without = np.count_nonzero(np.isnan(found))
     checks.require(
@@ -433,19 +470,23 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     return found
 
 
-def quantile(scene, reference, output, spread, sign):
-    """The quantile of a scene's output over a spread; NaN where a machine within it cannot be built."""
+def quantile(duties, output, spread, sign):
+    """The quantile of the output of duties over a spread; NaN where a machine within it cannot be built."""
     try:
-        sampled = _fixed_scene_output(scene, reference, output, spread, sign)
+        sampled = _fixed_output(duties, output, spread, sign)
         return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
     except KinetostaticsError:
         return np.nan
 
 
-def _fixed_scene_output(scene, reference, output, spread, sign, samples=None):
-    """`SampledOutput` of a scene with no number that varies, so it has no derivatives."""
-    bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
-    return SampledOutput(bare, output, spread, sign, samples)
+def _fixed_output(duties, output, spread, sign, samples=None):
+    """`sampled_output` of duties by name with no number that varies, so it has no derivatives."""
+    given = {"names": (), "engine": "numpy", "start": np.empty(0)}
+    parts = {
+        name: SimpleNamespace(source=duty.source, reference=duty.reference, **given) for name, duty in duties.items()
+    }
+    whole: Any = SimpleNamespace(parts=parts, shares={name: duty.share for name, duty in duties.items()})
+    return sampled_output(whole, output, spread, sign, samples)
 
 
 def _between(one, other, share):

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..cycle.reductions import Output
 from . import measures
-from .constraints import Constraint
+from .constraints import MEAN, Constraint
 
 MAX_ROUNDS = 8
 """Rounds of a search; each rescales the variables."""
@@ -187,8 +187,8 @@ def excesses_over(problem, limits, values):
 
 def excess_over(problem, limit, values):
     """Excess of a design over a limit (parts,), not positive if it is kept, and derivatives (n, parts)."""
-    output, sign = limit.output, -1.0 if limit.relation == ">=" else 1.0
-    if limit.relation != "=" and is_peak(output, sign):
+    output, sign, problem = limit.output, -1.0 if limit.relation == ">=" else 1.0, problem.duty(limit.duty)
+    if limit.relation != "=" and is_peak(output, sign) and "" in problem.parts:
         found, slopes = measures.bounded(output.reduction, problem.curve(output, values))
         return found - sign * limit.value, slopes
     found, slopes = problem.output(output, values)
@@ -200,7 +200,9 @@ class _ScaledProblem:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised = is_peak(*goal)  # bounded by an extra unknown
+        peaks = list(problem.parts) if is_peak(*goal) else []
+        self.levels = [(problem.parts[name], problem.shares[name]) for name in peaks]
+        self.raised = len(self.levels)  # each peak is bounded by an extra unknown
         self._last: tuple[Any, Any] = None, None
         first = self.reached(start)
         self.unit = abs(first) or 1.0
@@ -209,23 +211,28 @@ class _ScaledProblem:
         if np.isfinite(first):
             self.matrix = self.matrix @ self._turn()
         self.zero = np.zeros(count + self.raised)
-        if self.raised:
-            self.zero[-1] = first / self.unit
+        for place, (part, _) in enumerate(self.levels, count):
+            self.zero[place] = goal.sign * part.output(goal.output, start)[0] / self.unit
         self.walls = np.vstack([self.matrix, -self.matrix]) / np.tile(problem.high - problem.low, 2)[:, None]
-        self.walls = np.hstack([self.walls, np.zeros((2 * count, int(self.raised)))])
+        self.walls = np.hstack([self.walls, np.zeros((2 * count, self.raised))])
 
     def _turn(self):
         """Directions of the unit box, each scaled to change goal and limits by about their size, at most to the box."""
-        curves, rows = self.problem.curves(self.start), []
+        rows, goal = [], self.goal_of.output
         # derivatives of limits and goal along the period, in units of their sizes
-        for output, unit in [*((item.output, item.scale) for item in self.limits), (self.goal_of.output, self.unit)]:
+        for duty, output, unit in [
+            *((item.duty, item.output, item.scale) for item in self.limits),
+            (MEAN, goal, self.unit),
+        ]:
+            problem = self.problem.duty(duty)
             if not isinstance(output, Output):
-                rows.append(self.problem.output(output, self.start)[1][None] / unit)
+                rows.append(problem.output(output, self.start)[1][None] / unit)
                 continue
-            slopes, size = curves[output.quantity].slopes, unit
-            if output.ratio:
-                size = np.sqrt(np.mean(curves[output.quantity].values ** 2)) or 1.0
-            rows.append(slopes.T / (size * np.sqrt(slopes.shape[1])))
+            for name, part in problem.parts.items():
+                curve, size = part.curves(self.start)[output.quantity], unit
+                if output.ratio:
+                    size = np.sqrt(np.mean(curve.values**2)) or 1.0
+                rows.append(problem.shares[name] * curve.slopes.T / (size * np.sqrt(curve.slopes.shape[1])))
         stacked = np.vstack(rows) * (self.problem.high - self.problem.low)
         if not np.isfinite(stacked).all():
             return np.eye(self.start.size)
@@ -247,7 +254,8 @@ class _ScaledProblem:
     def goal(self, unknowns):
         """The goal in units of the start's, and its derivatives."""
         if self.raised:
-            return unknowns[-1], np.append(np.zeros(self.start.size), 1.0)
+            shares = np.append(np.zeros(self.start.size), [share for _, share in self.levels])
+            return shares @ unknowns, shares
         output, sign = self.goal_of
         value, slopes = self.problem.output(output, self.values(unknowns))
         found = sign * value / self.unit
@@ -270,15 +278,16 @@ class _ScaledProblem:
     def _computed_margins(self, unknowns):
         values = self.values(unknowns)
         excess, slopes, equal = excesses_over(self.problem, self.limits, values)
-        if self.raised:  # the goal, below the extra unknown
+        counts = [excess.size]
+        for (part, _), unknown in zip(self.levels, unknowns[self.start.size :], strict=True):  # each below its unknown
             output, sign = self.goal_of
-            level = Constraint(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit, self.unit)
-            above, changes, _ = excesses_over(self.problem, [level], values)
-            by_level = np.repeat([0.0, 1.0], [excess.size, above.size])
+            level = Constraint(output, "<=" if sign > 0 else ">=", sign * unknown * self.unit, self.unit)
+            above, changes, _ = excesses_over(part, [level], values)
+            counts.append(above.size)
             excess, slopes = np.append(excess, above), np.hstack([slopes, changes])
             equal = np.append(equal, np.zeros(above.size, dtype=bool))
         rows = -(self.matrix.T @ slopes).T
-        rows = np.column_stack([rows, by_level]) if self.raised else rows
+        rows = np.column_stack([rows, *np.repeat(np.eye(len(counts))[1:], counts, axis=1)])
         return np.nan_to_num(-excess, nan=-INFEASIBLE_GOAL), np.nan_to_num(rows), equal
 
 

@@ -229,6 +229,101 @@ def test_weight_on_moment_trades_force_for_moment():
     assert sizes(optimum(mower(), "largest", False).mechanism)[1] == pytest.approx(bare[1], rel=1e-12)
 
 
+# Moment
+
+PAIR = {"crank": Counterweight(arm=0.05), "coupler": Counterweight(arm=0.05)}
+POINT = (0.2, -0.1)
+
+
+def moment(mechanism, about=(0.0, 0.0), count=360):
+    """Shaking moment of a crank-slider about a point at 10 rad/s: less the rate of its angular momentum, by Fourier."""
+    s = ks.solve(mechanism, 2 * np.pi * np.arange(count) / count, crank_speed=10.0)
+    order = np.fft.fftfreq(count, 1.0 / count)
+    crank, coupler, slider = (mechanism.links[name] for name in ("crank", "coupler", "slider"))
+    pin, end = (np.array([1, 1j]) @ s.position(joint) for joint in "AB")
+    along = end - pin
+    lines = [
+        (crank, 0.0, pin / abs(pin)),
+        (coupler, pin, along / abs(along)),
+        (slider, end, complex(*mechanism.groups[0].guide.direction) + 0.0 * pin),
+    ]
+
+    def rate(values):
+        return np.fft.ifft(10.0j * order * np.fft.fft(values))
+
+    momentum = np.zeros(count)
+    for link, joint, line in lines:
+        place = joint + complex(*link.centre) * line - complex(*about)
+        momentum += (np.conj(place) * rate(place)).imag * link.mass + link.inertia * (np.conj(line) * rate(line)).imag
+    return -rate(momentum).real
+
+
+def largest_moment(balanced, about):
+    """True peak of the moment."""
+    return np.abs(moment(balanced.mechanism, about, 5760)).max()
+
+
+@pytest.mark.slow
+@every(("mechanism", "about"), [(mower(), POINT), (mower(0.0), (0.0, 0.0)), (INCLINED, POINT)])
+def test_least_largest_moment_beats_a_scan(mechanism, about):
+    """One counterweight of given mass, on the coupler: over a grid of its arms no moment is less."""
+    found = optimal(mechanism, "largest moment", about=about, coupler=HEAVY)
+    least = largest_moment(found, about)
+    arms = unbalance(found, "coupler")[0] / 5.0 + 0.5 * np.linspace(-1, 1, 41)
+    others = [counterweight(mechanism, "coupler", 5.0 * arm, HEAVY) for arm in arms]
+    moments = [largest_moment(other, about) for other in others]
+    assert least <= min(moments) * (1 + 1e-9)
+    assert np.ptp(moments) > 0.1 * least
+
+
+def test_a_crank_counterweight_changes_the_moment_about_another_point_alone():
+    """By the lever of its force there: F x p is in proportion to its unbalance, which decides."""
+    weight = {"crank": Counterweight(mass=2.0)}
+    with pytest.raises(ks.ParameterError, match=r"crank does not change the shaking moment about \(0, 0\) m"):
+        optimal(mower(), "largest moment", angles=24, **weight)
+    found = optimal(mower(), "largest moment", about=POINT, angles=24, **weight)
+    turn = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+    lever = POINT[1] * np.cos(turn) - POINT[0] * np.sin(turn)  # of a unit force along the crank
+    size = np.linspace(-0.5, 0.5, 2001)[:, None]
+    by_hand = np.abs(moment(mower(), POINT, turn.size) + 100.0 * size * lever).max(axis=1)
+    assert unbalance(found)[0] == pytest.approx(float(size[by_hand.argmin(), 0]), abs=1e-3)
+    assert largest_moment(found, POINT) <= by_hand.min() * (1 + 1e-4)
+
+
+@pytest.mark.slow
+def test_weights_of_a_peak_lead_from_force_to_moment():
+    """With weight on one alone it is that norm; with both no arm of a scan has a lower weighted peak."""
+    crank = {"crank": HEAVY, "angles": 72, "about": POINT}
+    for weights, norm in (((1e-3, 0.0), "largest"), ((0.0, 1e-3), "largest moment")):
+        pair = optimal(mower(), "largest weighted", weights=weights, **crank), optimal(mower(), norm, **crank)
+        assert unbalance(pair[0])[0] == pytest.approx(unbalance(pair[1])[0], rel=1e-5)
+    bare = NORMS["largest"](shaking(mower())), np.abs(moment(mower(), POINT)).max()
+
+    def peak(balanced):
+        force = np.abs(shaking(balanced.mechanism)) / bare[0]
+        return np.max(np.hypot(force, moment(balanced.mechanism, POINT) / bare[1]))
+
+    found = optimal(mower(), "largest weighted", weights=100.0 / np.array(bare), **crank)
+    arms = unbalance(found)[0] + 0.1 * np.linspace(-1, 1, 41)
+    scanned = [peak(counterweight(mower(), "crank", arm, HEAVY)) for arm in arms]
+    assert peak(found) <= min(scanned) * (1 + 2e-5)
+    assert np.ptp(scanned) > 0.1
+
+
+@pytest.mark.slow
+def test_a_front_falls_from_least_force_to_least_moment():
+    front = ks.balancing.pareto(mower(), points=4, crank_speed=10.0, angles=72, about=POINT, **PAIR)
+    force, level = front.table.iloc[:, :2].to_numpy().T
+    assert (np.diff(force) > 0).all()
+    assert (np.diff(level) < 0).all()
+    assert np.ptp(np.diff(level)) < 1e-5 * level[0]
+    for design, own_force, own in zip(front.designs, force, level, strict=True):
+        assert largest_moment(design, POINT) == pytest.approx(own, rel=1e-6)
+        assert largest(shaking(design.mechanism)) == pytest.approx(own_force, rel=1e-3, abs=1e-6)
+    assert front.before[1] == pytest.approx(np.abs(moment(mower(), POINT, 5760)).max(), rel=1e-6)
+    assert ks.plots.front(front).has_data()
+
+
 # Bad input
 
 BOTH = {"crank": HEAVY, "coupler": HEAVY}
@@ -260,6 +355,11 @@ BOTH = {"crank": HEAVY, "coupler": HEAVY}
         (lambda: optimal(mower(), crnk=HEAVY), "link is 'crnk', allowed: .* did you mean 'crank'"),
         (lambda: optimal(mower()), "give at least one counterweight"),
         (lambda: optimal(mower(), "weighted", weights=(np.nan, 1.0), crank=HEAVY), "must be finite"),
+        (lambda: optimal(mower(), "largest moment", about=0.3, crank=HEAVY), r"about must be a pair \(x, y\)"),
+        (lambda: optimal(mower(), "largest moment", about=(0.3, np.inf), crank=HEAVY), "about .* must be finite"),
+        (lambda: ks.balancing.pareto(mower(), points=1, **BOTH), "points must be at least 2, got 1"),
+        (lambda: ks.balancing.pareto(mower(), crank_speed=0.0, **BOTH), "crank_speed must .* 0"),
+        (lambda: ks.balancing.pareto(mower(), crank=HEAVY), "crank does not change the shaking moment"),
     ],
 )
 def test_impossible_balancing_is_refused_with_reason(balance, message):

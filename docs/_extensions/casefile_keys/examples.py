@@ -17,6 +17,7 @@ LONGEST = 64
 """Letters of an example."""
 BY_KEY: dict[str, list[Any]] = {
     "against": ["coupler"],
+    "about": [["0 mm", "-20 mm"]],
     "along": ["coupler"],
     "assembly": [1],
     "reaction": ["frame"],

@@ -231,10 +231,12 @@ class BalancingTable(Table):
     """The whole shaking force, a part of it by the crank alone, or the least norm of it."""
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
     """Of a partial balance: "across", "along", "overall", or the ratio of unbalances, a number."""
-    norm: Literal["largest", "mean", "along", "across", "weighted"] = "largest"
+    norm: Literal["largest", "mean", "along", "across", "weighted", "largest moment", "largest weighted"] = "largest"
     """What an optimal balance makes least."""
+    about: Point = (0.0, 0.0)
+    """Point of the shaking moment."""
     weights: tuple[Weight, Weight] = (1.0, 0.0)
-    """Of force, 1/N, and moment, 1/(N m), for the norm "weighted"."""
+    """Of force, 1/N, and moment, 1/(N m), for the norms "weighted" and "largest weighted"."""
     phase: Annotated[bool, Field(strict=True)] = False
     """Whether a counterweight may lie beside its link's line."""
     crank: CounterweightTable | None = None
