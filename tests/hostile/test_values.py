@@ -40,7 +40,7 @@ CONSTRUCTORS = {
     "PinFriction": (ks.PinFriction, {"mu": 0.1, "radius": 0.02}),
     "GuideFriction": (ks.GuideFriction, {"mu": 0.1, "half_length": 0.04}),
     "SlotFriction": (ks.SlotFriction, {"mu": 0.1, "half_length": 0.04}),
-    "RollerFriction": (ks.RollerFriction, {"mu": 0.1, "pin_radius": 0.01, "roller_radius": 4.0}),
+    "RollerFriction": (ks.RollerFriction, {"mu": 0.1, "pin_radius": 0.01, "roller_radius": 4.0, "rolling_arm": 1e-3}),
     "Crank": (ks.Crank, {"length": 0.3}),
     "SliderGroup": (ks.SliderGroup, {"coupler_length": 1.1}),
     "RockerGroup": (ks.RockerGroup, {"coupler_length": 0.4, "rocker_length": 0.3, "pivot": (0.35, 0.1)}),
@@ -110,6 +110,7 @@ SIZES = [
     *(("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("Spring", "stiffness")),
     *(("PointSpring", "stiffness"), ("PointSpring", "free_length"), ("PointDamper", "coefficient")),
     *(("TorsionSpring", "stiffness"), ("TorsionDamper", "coefficient")),
+    ("RollerFriction", "rolling_arm"),
     *((kind, "mu") for kind in CONSTRUCTORS if kind.endswith("Friction")),
 ]
 

@@ -13,6 +13,7 @@ from support.chains import LOAD_KINDS, chain, load
 from support.every import every
 from support.followers import ANGLES, scene
 from support.followers import KINDS as FOLLOWERS
+from support.friction_machines import FOLLOWERS as RUBBING_FOLLOWERS
 from support.friction_machines import KINDS, Drawn
 from support.scenes import six_bar
 
@@ -103,7 +104,7 @@ def test_links_on_fixed_pins():
     assert_balanced(s)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [*KINDS, *RUBBING_FOLLOWERS])
 @every("seed", range(3))
 def test_friction_in_every_joint(kind, seed):
     made = Drawn(kind, seed, 0.5).scene
