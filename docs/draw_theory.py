@@ -313,6 +313,31 @@ def friction():
     return figure
 
 
+def rolling_arm():
+    """A roller on its cam: the force of the cam ahead of the contact, that along the curve, and those of the pin."""
+    figure, ax = plt.subplots()
+    around = np.linspace(0.0, 2.0 * np.pi, 200)
+    circle = np.array([np.cos(around), np.sin(around)])
+    ax.fill(*circle, fc="0.92", ec=INK, lw=1.2)
+    ax.fill(*(0.2 * circle), fc="white", ec=INK, lw=1.2)
+    ax.plot(*strokes.hatched_line(np.array([-2.2, -1.02]), np.array([2.4, -1.02]), 0.18), color=INK, lw=0.8)
+    arrow(ax, np.array([0.3, -2.2]), np.array([0.3, -1.02]), "K", tail=True)
+    arrow(ax, np.array([0.3, -1.0]), np.array([-0.8, -1.0]), "")
+    ax.text(-0.75, -0.9, "$K_t$", color=ACCENT, ha="right")
+    ax.plot([0.0, 0.0], [-2.0, 0.0], color=STEEL, lw=0.8, ls="--")
+    ax.text(-0.15, -1.6, "e", ha="right", va="center")
+    ax.annotate("", (0.0, -1.6), (0.3, -1.6), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+    arrow(ax, np.array([0.3, 0.0]), np.array([1.6, 0.0]), "v", INK)
+    angle_mark(ax, np.zeros(2), 0.55, np.radians(60), np.radians(150), r"$p\,\sqrt{K^2 + K_t^2}$", ACCENT, 2.4)
+    ax.text(0.66, 0.3, "$R_r$", ha="left")
+    ax.plot([0.0, np.cos(0.6)], [0.0, np.sin(0.6)], color=INK, lw=0.8)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.08)
+    ax.axis("off")
+    return figure
+
+
 def sections():
     """A coupler between its pins with its point masses, and a part of it with the forces at the section."""
     figure, (bar, part) = plt.subplots(2, 1)
@@ -584,6 +609,7 @@ DRAWINGS = {
     "yoke": (yoke, (6.4, 2.3)),
     "cam_roller": (cam_roller, (7.0, 1.6)),
     "friction": (friction, (6.4, 2.5)),
+    "rolling_arm": (rolling_arm, (4.4, 2.6)),
     "../parts/sections": (sections, (6.4, 4.2)),
     "../parts/foundation": (foundation, (6.4, 3.2)),
     "../parts/play": (play, (4.4, 3.6)),

@@ -186,7 +186,12 @@ DOORS = {
     "SlotFriction": (ks.SlotFriction, {"mu": (0.125, "1"), "half_length": (0.25, "m")}, {}),
     "RollerFriction": (
         ks.RollerFriction,
-        {"mu": (0.125, "1"), "pin_radius": (0.25, "m"), "roller_radius": (0.5, "m")},
+        {
+            "mu": (0.125, "1"),
+            "pin_radius": (0.25, "m"),
+            "roller_radius": (0.5, "m"),
+            "rolling_arm": (0.015625, "m"),
+        },
         {},
     ),
     "Circle": (ks.cams.Circle, {"radius": (0.5, "m"), "centre": ((0.125, 0.0), "m")}, {}),

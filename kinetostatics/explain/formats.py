@@ -47,6 +47,7 @@ LETTERS = {
     "radius": "r",
     "pin_radius": "r",
     "roller_radius": "R",
+    "rolling_arm": "e",
     "half_length": "h",
     "mu": "mu",
     "free_position": "s0",

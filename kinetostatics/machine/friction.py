@@ -16,6 +16,7 @@ COEFFICIENT = checks.Number(
     usual=checks.PlausibleRange(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?"),
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
+ROLLING_ARM = checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.02, "is it in mm?", 1e-3))
 PIN_RADIUS = replace(SIZE, usual=checks.PlausibleRange(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES_BY_SOLVER = (3, 6, 12)
 """Numbers of passes over the directions of all reactions, to try in turn; each pass doubles the digits."""
@@ -48,6 +49,7 @@ class PinFriction(checks.Checked, Batched):
     mu: Any
     radius: Any
 
+    COEFFICIENTS = ("mu",)
     RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN_RADIUS)
 
 
@@ -57,6 +59,8 @@ class SlidingFriction(checks.Checked, Batched):
 
     mu: Any
     half_length: Any = None
+
+    COEFFICIENTS = ("mu",)
 
 
 SLIDING_RULES = {"mu": COEFFICIENT, "half_length": checks.Optional(SIZE)}
@@ -119,7 +123,7 @@ class SlotFriction(SlidingFriction):
 
 @dataclass(frozen=True, eq=False)
 class RollerFriction(checks.Checked, Batched):
-    """Friction in the pin of a cam roller, felt as a force along the profile.
+    """Friction of a cam roller in its pin and as it rolls, felt as a force along the profile.
 
     Parameters
     ----------
@@ -127,11 +131,14 @@ class RollerFriction(checks.Checked, Batched):
         In the pin, or of its bearing.
     pin_radius, roller_radius : float or array
         m.
+    rolling_arm : float or array, optional
+        Arm of rolling friction, m: the cam's force acts by so much ahead of the contact.
 
     Raises
     ------
     ParameterError
-        The coefficient is negative, a size not greater than 0, or mu times pin_radius not less than roller_radius.
+        The coefficient or the arm is negative, a size not greater than 0, or mu times pin_radius plus the arm not less
+        than roller_radius.
 
     Examples
     --------
@@ -142,22 +149,37 @@ class RollerFriction(checks.Checked, Batched):
     >>> s = ks.Scene(saw, 33.5, friction={"cam": roller}).solve(360)
     >>> round(s.losses.friction["cam"])  # W
     12237
+    >>> rolling = ks.RollerFriction(mu=0.02, pin_radius=0.03, roller_radius=0.06, rolling_arm=0.5e-3)
+    >>> s = ks.Scene(saw, 33.5, friction={"cam": rolling}).solve(360)
+    >>> round(s.losses.friction["cam"])  # W
+    20739
     """
 
     mu: Any
     pin_radius: Any
     roller_radius: Any
+    rolling_arm: Any = 0.0
+
+    COEFFICIENTS = ("mu", "rolling_arm")
 
     def _rolls(self):
         """Yield the problem of a roller that would slide."""
-        if all(map(checks.has_known_values, (self.mu, self.pin_radius, self.roller_radius))):
-            arm = np.asarray(self.mu) * self.pin_radius
-            text = f"mu times pin_radius, {np.max(arm):.6g} m, must be less than roller_radius, "
+        if all(map(checks.has_known_values, (self.mu, self.pin_radius, self.roller_radius, self.rolling_arm))):
+            arm = np.asarray(self.mu) * self.pin_radius + self.rolling_arm
+            plus = " plus rolling_arm" if np.any(self.rolling_arm) else ""
+            text = f"mu times pin_radius{plus}, {np.max(arm):.6g} m, must be less than roller_radius, "
             text += f"{np.min(self.roller_radius):.6g} m: the roller would not turn"
             if np.any(stuck := arm >= self.roller_radius):
                 yield checks.Problem(text, stuck)
 
-    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN_RADIUS, roller_radius=SIZE)
+    RULES = checks.Rules(
+        "roller friction",
+        _rolls,
+        mu=COEFFICIENT,
+        pin_radius=PIN_RADIUS,
+        roller_radius=SIZE,
+        rolling_arm=ROLLING_ARM,
+    )
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
@@ -169,6 +191,11 @@ def friction_kind(pair):
     if isinstance(pair, Sliding):
         return GuideFriction if pair.against == "frame" else SlotFriction
     return PinFriction if isinstance(pair, Turning) else RollerFriction
+
+
+def _acts(friction):
+    """Whether a coefficient of friction is not zero."""
+    return any(present(getattr(friction, name)) is not None for name in friction.COEFFICIENTS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,7 +255,7 @@ class Frictions(Mapping, Batched):
     @property
     def acting(self):
         """Friction by joint, without zero coefficients."""
-        return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
+        return {rub.joint: rub.friction for rub in self.rubs if _acts(rub.friction)}
 
     @property
     def senses(self):

@@ -298,6 +298,8 @@ class Part:
         """Reactions and other forces by name, those of guides last."""
         found: dict[str, Output] = {}
         for name, pair in sorted(self.pairs.items(), key=lambda item: item[1].against == FRAME):
+            if isinstance(pair, Rolling):
+                continue  # its group declares the force
             if isinstance(pair, Sliding):
                 guided = pair.against == FRAME
                 on = f"{'ground' if guided else pair.against} on {pair.link}"

@@ -15,7 +15,15 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.arithmetic import sign, where_zero
-from ..numbers.planar import length, length_with_error, number_or_zero
+from ..numbers.planar import (
+    add_vectors,
+    left,
+    length,
+    length_with_error,
+    number_or_zero,
+    scale_vector,
+    subtract_vectors,
+)
 from .links import Joint, LinkMotion, present
 
 
@@ -90,6 +98,15 @@ class Placement:
     def course(self, joint) -> Course:
         """`Course` of a joint."""
         return self.courses.get(joint, UNKNOWN_COURSE)
+
+    def rate_from(self, joint, link):
+        """First kinematic coefficient of a joint as seen from a link, or from the frame."""
+        position, first, _ = self.joints[joint]
+        if link == "frame":
+            return first
+        body = self.links[link]
+        carried = scale_vector(body.ratio, left(subtract_vectors(position, body.joint.position)))
+        return subtract_vectors(first, add_vectors(body.joint.first, carried))
 
 
 def place(group, placement):

@@ -267,11 +267,15 @@ class Sliding(NamedTuple):
 
 
 class Rolling(NamedTuple):
-    """Roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
+    """Roller on a pin of `link` at `joint`, on a curve of the link `against`.
+
+    `force` acts on the roller along the left normal of its way as seen from the curve.
+    """
 
     link: str
     joint: str
     force: str
+    against: str = "frame"
 
 
 class Meshing(NamedTuple):

@@ -62,7 +62,7 @@ def pairs_of(mechanism) -> dict[str, Joining]:
             cams = {led.force.replace("_force", ""): led for led in part.led}
             for name, pair in part.pairs.items():
                 if isinstance(pair, Rolling):
-                    cams.setdefault(name, CamDriven(pair.link, pair.joint, FRAME, pair.force))
+                    cams.setdefault(name, CamDriven(pair.link, pair.joint, pair.against, pair.force))
                 else:
                     against = pair.against or mechanism.joints[pair.joint].link
                     found[name] = Joining(part, pair, pair.link, against)

@@ -15,11 +15,13 @@ from functools import reduce
 from typing import Any, NamedTuple
 
 from ..machine.group import FRAME, Resolved
-from ..machine.links import Rolling, Sliding, Turning, Wrench
+from ..machine.links import Rolling, Sliding, Turning, Wrench, present
+from ..machine.loads.points import wrench_at
 from ..numbers.arithmetic import clamped_sqrt, sign, sqrt, stop_gradient
 from ..numbers.planar import (
     SYMBOLIC_ZERO,
     add_vectors,
+    cross,
     length,
     minus,
     none_if_zero,
@@ -28,6 +30,7 @@ from ..numbers.planar import (
     product,
     quotient,
     scale_vector,
+    subtract_vectors,
     vector_or_zero,
 )
 
@@ -102,6 +105,24 @@ def pair_rate(part, name, pair, placement):
         return None
     against = None if pair.against == FRAME else placement.links[pair.against].ratio
     return minus(placement.links[pair.link].ratio, against)
+
+
+def rolling_resistance(friction):
+    """Force along the curve that turns a roller, and the couple of its pin, by the force across; None: no couple, m.
+
+    With the radius r, the pin's lever p = mu times its radius and the arm e of rolling friction the force t along the
+    curve follows from t r = e + p sqrt(1 + t^2).
+    """
+    mu, arm, radius = present(friction.mu), present(friction.rolling_arm), friction.roller_radius
+    if mu is None:
+        return arm / radius, None
+    lever = mu * friction.pin_radius / radius
+    if arm is None:
+        force = lever / sqrt(1.0 - lever * lever)
+        return force, force * radius
+    share = arm / radius
+    force = (share + lever * sqrt(1.0 - lever * lever + share * share)) / (1.0 - lever * lever)
+    return force, radius * lever * sqrt(1.0 + force * force)
 
 
 def size_of(kind, parts):
@@ -198,7 +219,8 @@ class FrictionSolver:
         amounts = self._amounts(equations, laws, placement)
         for law, amount in zip(laws, amounts, strict=True):
             if law.kind == "itself":  # the roller turns in the opposite sense on the other side of the cam
-                self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
+                turning = pair_rate(part, law.name, self.mechanism.pairs[law.name], placement)
+                self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=turning)
             else:
                 self.found[law.name] = PairFriction(amount, rates[law.name])
         if equations.margin is not None:
@@ -220,22 +242,10 @@ class FrictionSolver:
         return equations.solve(self.friction.passes, placement.angle)
 
     def _laws(self, part, name, placement, rates):
-        """Friction laws of a pair; its rate goes into `rates`.
-
-        The load of a roller's pin is the cam force and the tangential force that turns the roller; the couple acts on
-        the link that carries the pin.
-        """
+        """Friction laws of a pair; its rate goes into `rates`."""
         pair, friction = self.mechanism.pairs[name], self.acting[name]
         if isinstance(pair, Rolling):
-            first = vector_or_zero(placement.joints[pair.joint].first)
-            rates[name] = speed = length(first)
-            lever = friction.mu * friction.pin_radius / friction.roller_radius
-            slope = lever / sqrt(1.0 - lever * lever) * self.senses.get(name, self.direction)
-            tangent = (first[0] / speed, first[1] / speed)
-            force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
-            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "size", ((force, -1),))
-            slope, moment = slope * friction.roller_radius, ((_moment(pair.link), -1),)
-            yield FrictionLaw(name, slope, lambda found: (found.scalars[pair.force],), "itself", moment)
+            yield from self._rolling_laws(name, pair, placement, rates)
             return
         rate = pair_rate(part, name, pair, placement)
         if rate is None:
@@ -264,6 +274,33 @@ class FrictionSolver:
                 back = Wrench(scale_vector(-1.0, slide.direction), minus(None, slide.moment))
                 force = Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
             yield FrictionLaw(name, friction.mu * way, reaction, kind, ((force, -1),))
+
+    def _rolling_laws(self, name, pair, placement, rates):
+        """Force of friction along the curve of a roller, and the couple of its pin.
+
+        The pin carries the cam force and the force along the curve that turns the roller; the couple acts on the link
+        that carries the pin. The opposite of both acts on the link of the curve.
+        """
+        position, _, _ = placement.joints[pair.joint]
+        first = vector_or_zero(placement.rate_from(pair.joint, pair.against))
+        rates[name] = speed = length(first)
+        slope, couple = rolling_resistance(self.acting[name])
+        way = self.senses.get(name, self.direction)
+        tangent = (first[0] / speed, first[1] / speed)
+        wrenches = [wrench_at(placement, self.mechanism.joints[pair.joint], tangent)]
+        effects = [(_moment(pair.link), -1)]
+        if pair.against != FRAME:
+            lever = subtract_vectors(position, placement.links[pair.against].joint.position)
+            wrenches.append((pair.against, Wrench(scale_vector(-1.0, tangent), cross(tangent, lever))))
+            effects.append((_moment(pair.against), 1))
+        force = Channel(f"force of {name}", tuple(wrenches))
+
+        def reaction(found):
+            return (found.scalars[pair.force],)
+
+        yield FrictionLaw(name, slope * way, reaction, "size", ((force, -1),))
+        if couple is not None:
+            yield FrictionLaw(name, couple * way, reaction, "itself", tuple(effects))
 
     def _with_friction_forces(self, resolved, part, placement, acting, own):
         """The forces of a part, with friction added to reactions of guides and to demands on other links."""

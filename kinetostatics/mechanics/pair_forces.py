@@ -7,12 +7,12 @@
 
 They act on the `link` of the pair, and the other way round on the link against it: a force on the frame is the opposite
 of that of its pair. The pin friction of a roller turns it against a force along the curve, so both forces of a cam pass
-through the contact. A roller touches its curve on the side that the sign of the force says, at its radius from the
-centre; where the radius is not known the centre stands for the contact.
+through the contact, or ahead of it by the arm of rolling friction. A roller touches its curve on the side that the sign
+of the force says, at its radius from the centre; where the radius is not known the centre stands for the contact.
 """
 
 from ..machine.group import FRAME
-from ..machine.links import CamDriven, Meshing, Turning
+from ..machine.links import CamDriven, Meshing, Turning, present
 from ..machine.supports import Support
 from ..numbers.arithmetic import sign
 from ..numbers.planar import (
@@ -23,7 +23,6 @@ from ..numbers.planar import (
     minus,
     product,
     scale_vector,
-    subtract_vectors,
     vector_or_zero,
 )
 
@@ -67,16 +66,11 @@ def _of_slide(state, name, joining):
 def _of_cam(state, name, led):
     """Force of a cam on a roller or flat face."""
     placement = state.placement
-    joint, turning = placement.joints[led.joint], None
-    position, first = joint.position, joint.first
-    if led.body != FRAME:
-        body = placement.links[led.body]
-        turning = body.ratio
-        carried = scale_vector(turning, left(subtract_vectors(position, body.joint.position)))
-        first = subtract_vectors(first, add_vectors(body.joint.first, carried))
-    force, first = state.scalar(led.force), vector_or_zero(first)
+    position = placement.joints[led.joint].position
+    force, first = state.scalar(led.force), vector_or_zero(placement.rate_from(led.joint, led.body))
     if led.flat:
         link = placement.links[led.link]
+        turning = None if led.body == FRAME else placement.links[led.body].ratio
         away = dot(first, link.direction) / minus(turning, link.ratio)
         to_contact = scale_vector(-away, left(link.direction))
         return Support(scale_vector(force, link.direction), add_vectors(position, to_contact))
@@ -84,5 +78,8 @@ def _of_cam(state, name, led):
     friction = state.friction.acting.get(name)
     radius = state.mechanism.rollers.get(led.joint) if friction is None else friction.roller_radius
     to_contact = scale_vector(product(radius, -sign(force)), left(tangent))
-    total = add_vectors(scale_vector(force, left(tangent)), scale_vector(_friction(state, name), tangent))
+    along = _friction(state, name)
+    if friction is not None and present(friction.rolling_arm) is not None:
+        to_contact = add_vectors(to_contact, scale_vector(-friction.rolling_arm * sign(along), tangent))
+    total = add_vectors(scale_vector(force, left(tangent)), scale_vector(along, tangent))
     return Support(total, add_vectors(position, to_contact))

@@ -175,7 +175,10 @@ def _without_load(kind, solution):
 
 def _without_friction(kind, solution):
     gone = {joint for joint, friction in solution.friction.acting.items() if isinstance(friction, kind)}
-    left = {joint: replace(item, mu=0.0) if joint in gone else item for joint, item in solution.friction.items()}
+    left = {
+        joint: replace(item, **dict.fromkeys(item.COEFFICIENTS, 0.0)) if joint in gone else item
+        for joint, item in solution.friction.items()
+    }
     return replace(solution, friction=replace(friction_of(left), passes=solution.friction.passes)) if gone else None
 
 

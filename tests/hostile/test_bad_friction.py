@@ -59,6 +59,8 @@ def test_all_that_is_wrong_is_said_at_once():
 def test_a_roller_that_would_not_turn_is_refused():
     with pytest.raises(ks.ParameterError, match="the roller would not turn"):
         ks.RollerFriction(0.5, 0.1, 0.04)
+    with pytest.raises(ks.ParameterError, match=r"plus rolling_arm, 0\.04 m, must be less than roller_radius, 0\.04 m"):
+        ks.RollerFriction(0.1, 0.1, 0.04, rolling_arm=0.03)
 
 
 @pytest.mark.parametrize("speed", [0.0, 0, np.array([1.0, 0.0, 2.0, 3.0, 4.0])])

@@ -44,7 +44,7 @@ CONSTRUCTORS = {
     "PinFriction": (ks.PinFriction, {"mu": 0.1, "radius": 0.02}),
     "GuideFriction": (ks.GuideFriction, {"mu": 0.1, "half_length": 0.04}),
     "SlotFriction": (ks.SlotFriction, {"mu": 0.1, "half_length": 0.04}),
-    "RollerFriction": (ks.RollerFriction, {"mu": 0.1, "pin_radius": 0.01, "roller_radius": 4.0}),
+    "RollerFriction": (ks.RollerFriction, {"mu": 0.1, "pin_radius": 0.01, "roller_radius": 4.0, "rolling_arm": 1e-3}),
     "Crank": (ks.Crank, {"length": 0.3}),
     "SliderGroup": (ks.SliderGroup, {"coupler_length": 1.1}),
     "RockerGroup": (ks.RockerGroup, {"coupler_length": 0.4, "rocker_length": 0.3, "pivot": (0.35, 0.1)}),
@@ -115,6 +115,7 @@ SIZES = [
     *(("PointSpring", "stiffness"), ("PointSpring", "free_length"), ("PointDamper", "coefficient")),
     *(("TorsionSpring", "stiffness"), ("TorsionDamper", "coefficient")),
     *(("BalanceShaft", name) for name in ("unbalance", "inertia", "mass")),
+    ("RollerFriction", "rolling_arm"),
     *((kind, "mu") for kind in CONSTRUCTORS if kind.endswith("Friction")),
 ]
 

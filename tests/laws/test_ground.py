@@ -13,6 +13,7 @@ from support.chains import LOAD_KINDS, chain, load
 from support.every import every
 from support.followers import ANGLES, scene
 from support.followers import KINDS as FOLLOWERS
+from support.friction_machines import FOLLOWERS as RUBBING_FOLLOWERS
 from support.friction_machines import KINDS, Drawn
 from support.scenes import six_bar
 
@@ -44,7 +45,7 @@ def _is_fixed(mechanism, at):
 def error(s, about=ABOUT):
     """Largest errors of the sum and of the moment, relative to the largest forces and their levers."""
     total, turning = s.shaking_force, s.shaking_moment - (about[0] * s.shaking_force[1] - about[1] * s.shaking_force[0])
-    sizes, levers = [np.abs(total)], [np.abs(turning)]
+    sizes, levers = [np.abs(total), s.largest_force_term], [np.abs(turning), s.largest_torque_term]
     for force, (x, y) in outside(s):
         total = total + np.stack([np.broadcast_to(part, s.shape) for part in force])
         couple = (x - about[0]) * force[1] - (y - about[1]) * force[0]
@@ -103,7 +104,7 @@ def test_links_on_fixed_pins():
     assert_balanced(s)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [*KINDS, *RUBBING_FOLLOWERS])
 @every("seed", range(3))
 def test_friction_in_every_joint(kind, seed):
     made = Drawn(kind, seed, 0.5).scene

@@ -51,7 +51,7 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
     ]
     order = 1j * np.fft.fftfreq(TURN.size, 1.0 / TURN.size)
     found = []
-    for at, phi in enumerate(TURN):
+    for at in range(TURN.size):
         centres, right = [], []
         for link, place, direction, ratio in bodies:
             centre = place + complex(*link.centre) * direction

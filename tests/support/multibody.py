@@ -55,13 +55,17 @@ class Slide:
 
 @dataclass
 class Roller:
-    """Force on the pin of `on` along the inward normal of the path of a point; the roller is a body of its own."""
+    """Force on the pin of `on` along the left normal of the path of a point on `against`; the roller is a body.
+
+    `arm` is that of rolling friction, m.
+    """
 
     on: str
     at: Callable
     rho: Any = 0
     radius: Any = 1
-    against = None
+    against: Any = None
+    arm: Any = 0
 
 
 @dataclass
@@ -183,14 +187,14 @@ class _State:
         """Direction and rate of the motion along a joint; None of a pin."""
         if isinstance(joint, Pin):
             return None, None
-        first = self.first[name, "moving"]
-        if isinstance(joint, Roller):
-            return first / abs(first), abs(first)
-        e, carried = self.value[name, "along"], 0
+        first, carried = self.first[name, "moving"], 0
         if joint.against is not None:  # velocity of the point of `against` that is there now
             z, d = (self.value[joint.against, part] for part in ("point", "direction"))
             zd, dd = (self.first[joint.against, part] for part in ("point", "direction"))
             carried = zd + dd * ((self.value[name, "moving"] - z) / d)
+        if isinstance(joint, Roller):
+            return (first - carried) / abs(first - carried), abs(first - carried)
+        e = self.value[name, "along"]
         return e, mp.re(mp.conj(e) * (first - carried))
 
     def _put(self, name, joint, force, couple=0, into=None):
@@ -253,14 +257,17 @@ class _State:
         return force, -force * rate * self.system.speed, force * along, 0
 
     def _of_roller(self, joint, found, start, along, rate):
-        """Normal and tangential force at the cam, and the moment of the pin against the roller's rotation."""
+        """Normal and tangential force at the cam, and moments of pin and cam against the roller's rotation."""
         side = 1 if found[start] > 0 else -1  # the cam touches the roller outside, or inside
-        relative = -side * rate / joint.radius - self.turning[joint.on]
-        load = abs(found[start]) / mp.sqrt(1 - (joint.rho / joint.radius) ** 2)
-        on_roller = -joint.rho * load * mp.sign(relative * self._sense)
-        contact = -1j * along * side * joint.radius
-        force = -on_roller / mp.im(mp.conj(contact) * along)
-        return force, -on_roller * relative * self.system.speed, force * along, -on_roller
+        rolling = -side * rate / joint.radius
+        relative = rolling + self.turning[joint.against] - self.turning[joint.on]
+        of_cam = -joint.arm * abs(found[start]) * mp.sign(rolling * self._sense)
+        contact, force = -1j * along * side * joint.radius, mp.mpf(0)
+        for _ in range(100):
+            of_pin = -joint.rho * mp.hypot(found[start], force) * mp.sign(relative * self._sense)
+            force = -(of_pin + of_cam) / mp.im(mp.conj(contact) * along)
+        loss = -(of_pin * relative + of_cam * rolling) * self.system.speed
+        return force, loss, force * along, -of_pin
 
 
 def differences(function, angle, digits=DIGITS):

@@ -43,6 +43,7 @@ BY_KEY: dict[str, list[Any]] = {
     "block": [{"mass": "2 kg"}],
     "rocker": [{"mass": "30 kg", "centre": "mid-length"}, {"arm": "-80 mm"}],
     "lever": [{"mass": "25 kg", "centre": "230 mm"}],
+    "rolling_arm": ["0.5 mm"],
     "rod": [{"mass": "0.5 kg", "centre": "80 mm"}],
     "cylinder": [{"mass": "2 kg", "centre": "60 mm"}],
     "spring": [{"stiffness": "700 kN/m", "free_position": "2 m"}],

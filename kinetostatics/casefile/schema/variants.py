@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...machine.crank import Crank, Rotor
-from ...machine.friction import COEFFICIENT
+from ...machine.friction import COEFFICIENT, RollerFriction
 from ...machine.groups.lever import LeverGroup
 from ...machine.groups.rocker import RockerGroup
 from ...machine.groups.slider import SliderGroup
@@ -92,6 +92,8 @@ class FrictionTable(Table):
     """Of the pin of a cam roller."""
     roller_radius: Length | None = None
     """Of a cam roller."""
+    rolling_arm: field_of(RollerFriction.RULES.rules["rolling_arm"]) | None = None  # type: ignore[valid-type]
+    """Arm of rolling friction of a cam roller: the cam's force acts by so much ahead of the contact."""
 
 
 class MechanismVariant(Table):
@@ -116,7 +118,7 @@ class MechanismVariant(Table):
     loads: Loads = ()
     """A table for each load, under [[common.loads]] or [[variants.NAME.loads]]."""
     friction: dict[str, FrictionTable] = Field(default_factory=dict)
-    """A table for each joint that rubs, by its name: O, A, B, guide, slot, cam."""
+    """A table for each joint that rubs, by its name: O, A, B, guide, slot, cam; contact of a roller follower."""
 
 
 class RotorTable(LinkTable):

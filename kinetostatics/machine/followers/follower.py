@@ -20,7 +20,7 @@ from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
 from ..group import PLANE, Group, Output
 from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
-from ..links import CamDriven
+from ..links import CamDriven, Rolling
 
 GRID_ANGLES = 2048
 """Even crank angles among those at which Newton's iteration starts."""
@@ -208,7 +208,16 @@ class Follower(checks.Checked, Group):
         (link,) = self.LINKS
         pressure = {} if self.pressed is None else {"contact_pressure": LineContact(self.pressed, "contact_force")}
         led = CamDriven(link, self.pin, "crank", "contact_force", flat=self.BODY == "face")
-        return declaration._replace(led=(led,), contacts=pressure)
+        rolls = () if led.flat else (Rolling(link, self.pin, "contact_force", "crank"),)
+        return declaration._replace(led=(led,), contacts=pressure, pairs=(*declaration.pairs, *rolls))
+
+    @cached_property
+    def tightest(self):
+        """Smallest radius of curvature of the pitch curve, on a grid, m."""
+        _, first, second = self.disk.curve(turn_angles([knot.angle for knot in self.knots], GRID_ANGLES))
+        with np.errstate(divide="ignore"):
+            curved = abs(abs(first) ** 3 / (np.conj(first) * second).imag)
+        return curved.min(axis=-1, keepdims=True)
 
     @cached_property
     def outputs(self):

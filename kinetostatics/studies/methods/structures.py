@@ -337,16 +337,24 @@ class FrictionForces:
         return [(pair.link, force, place, 0.0), (pair.against, -force, place, 0.0)]
 
     def _rolling(self, name, pair, friction, forces):
-        """Effects at the pin of a roller: its friction couple, balanced by a force along the curve."""
+        """Effects of a roller on its link and the opposite on that of the curve, which turns it by a force along it.
+
+        The couple of its pin and that of the normal force, which acts ahead of the contact, balance this force.
+        """
         _, place, moving = self._acting.point(pair.joint)
-        way = moving / abs(moving) * self._sign(self._speed)
-        radius, mu = self._number(friction.roller_radius), self._number(friction.mu)
-        reach = mu * self._number(friction.pin_radius)
+        moving = moving - self._moving(pair.against, place)
+        way = moving / abs(moving)
+        radius, arm = self._number(friction.roller_radius), self._number(friction.rolling_arm)
+        reach = self._number(friction.mu) * self._number(friction.pin_radius)
         pressed = forces[pair.force]
-        side = self._sign(pressed)
-        turning = -side * dot(way, moving) / radius - self._acting.at(pair.link)[-1]
-        couple = reach * abs(pressed) / (1 - (reach / radius) ** 2) ** 0.5 * self._sign(turning)
-        return [(pair.link, couple / (side * radius) * way, place, couple)]
+        side = self._sign(pressed) * self._sign(self._speed)  # of the way along the curve
+        spin = self._acting.posture(pair.against)[-1] - side * abs(moving) / radius
+        # along and across the curve, force and pin load: along * radius = arm * across + reach * load
+        least = (radius**2 - reach**2) ** 0.5
+        along = abs(pressed) * (arm * radius + reach * (least**2 + arm**2) ** 0.5) / least**2
+        couple = reach * (pressed**2 + along**2) ** 0.5 * self._sign(spin - self._acting.at(pair.link)[-1])
+        force = -along * way
+        return [(pair.link, force, place, couple), (pair.against, -force, place, -couple)]
 
     _KINDS: ClassVar = {Turning: _turning, Sliding: _sliding, Rolling: _rolling}
 

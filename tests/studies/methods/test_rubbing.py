@@ -12,7 +12,7 @@ from kinetostatics.studies.methods.high_precision import certified, independent
 from kinetostatics.studies.methods.kane import equations
 from support.case_files import shipped
 from support.every import every
-from support.friction_machines import KINDS, Drawn
+from support.friction_machines import FOLLOWERS, KINDS, Drawn
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
 (NEWTON,) = newton.NEWTON_METHODS
@@ -28,7 +28,7 @@ def difference(s, quantity, found):
 
 
 @pytest.mark.slow
-@every("kind", KINDS)
+@every("kind", (*KINDS, *FOLLOWERS))
 def test_repeated_linear_systems_equal_the_kernels(kind):
     s = drawn(kind)
     for quantity in ("balancing_torque", *s.reactions, *(name for name in s.scalars if "force" in name)):
