@@ -1,5 +1,7 @@
 """Planetary crank: straight path of its pin, tooth and bearing forces, balance of its machine."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,15 @@ def test_pin_runs_straight(line):
 def test_pin_at_another_radius_runs_on_an_ellipse():
     x, y = ks.solve(drive(radius=0.4 * ARM), TURN, crank_speed=3.0).position("P") / ARM
     assert (x / 1.4) ** 2 + (y / 0.6) ** 2 == pytest.approx(1.0, rel=1e-14)
+
+
+def add_column(columns, centres, *actions):
+    """Column of an unknown: forces on bodies at places, and couples."""
+    column = np.zeros(12)
+    for body, force, place, couple in actions:
+        arm = place - centres[body]
+        column[3 * body : 3 * body + 3] += force.real, force.imag, (arm.conjugate() * force).imag + couple
+    columns.append(column)
 
 
 def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle):
@@ -68,14 +79,7 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
             ]
         for side in (1.0, -1.0):
             columns = []
-
-            def put(*actions):
-                column = np.zeros(12)
-                for body, force, place, couple in actions:
-                    arm = place - centres[body]
-                    column[3 * body : 3 * body + 3] += force.real, force.imag, (arm.conjugate() * force).imag + couple
-                columns.append(column)
-
+            put = partial(add_column, columns, centres)
             for unit in (1.0 + 0j, 1j):
                 put((0, unit, 0.0, 0.0))
             for unit in (1.0 + 0j, 1j):

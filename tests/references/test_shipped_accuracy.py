@@ -20,7 +20,9 @@ ERROR, BOUND = 5e-15, 2e-13
 ERROR_OF_TABLES, BOUND_OF_TABLES = 1e-13, 1e-12
 """With table loads, whose flanks magnify a rounding of the travel; their rows have four digits."""
 VANISHING = 0.02
-"""So is the guide of a knife that a rocker or lever leads, 1.3 and 1.2 % of the force in its link. So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
+"""So is the guide of a knife that a rocker or lever leads, 1.3 and 1.2 % of the force in its link.
+
+So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
 cam makes 4e-15 of it.
 """
 EVEN, BETWEEN = 720, 200
