@@ -36,6 +36,11 @@ def outside(s):
         elif isinstance(item, ks.Force) and not _is_fixed(s.mechanism, item.at):
             (_, (force, _)) = next(iter(evaluate_load(item, s).wrenches(s)))
             yield force, s.position(item.at)
+        elif isinstance(item, ks.BalanceShaft) and s.gravity is not None:  # weight at the axis, and of the unbalance
+            turned = item.ratio * s.crank_angle + item.phase
+            ends = np.array([np.cos(turned) + item.at[0], np.sin(turned) + item.at[1]])
+            for share, point in ((item.mass - item.unbalance, s.position(item.at)), (item.unbalance, ends)):
+                yield [share * part for part in s.gravity], point
 
 
 def _is_fixed(mechanism, at):
