@@ -5,11 +5,12 @@ from typing import Any
 
 from ..design import case_text
 from ..design.cam_start import Options, starting_machine
-from ..design.constraints import parse_constraint, parse_output
+from ..design.constraints import MEAN, parse_constraint, parse_output
+from ..design.duties import read_duties
 from ..design.optimisation import optimise
 from ..design.pareto_front import Front, pareto
 from ..design.problem import parse_bounds
-from ..design.result import Found
+from ..design.result import Found, named_scenes
 from ..design.torque_free import torque_free_cam
 from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
@@ -31,16 +32,15 @@ class Design:
     ----------
     name : str
         Name of the variant with the result.
-    source, reference : str
-        Variants at the start of the search, and in ratios.
+    sources : dict of str to str
+        Variant at the start of the search, of duties one for each, with its reference in ratios.
     kind : "optimum", "torque-free-cam" or "front"
     raw : dict
         Its table in the file.
     """
 
     name: str
-    source: str
-    reference: str
+    sources: dict[str, str]
     table: Any = field(repr=False)
     raw: dict = field(repr=False)
     _variants: Any = field(repr=False)
@@ -48,6 +48,25 @@ class Design:
     @property
     def kind(self):
         return self.table.kind
+
+    @property
+    def duties(self):
+        """Share of the time by variant; None of a search for one variant."""
+        return getattr(self.table, "duties", None)
+
+    @property
+    def source(self):
+        """Variant at the start of the search, the first of several duties."""
+        return next(iter(self.sources))
+
+    @property
+    def reference(self):
+        """Reference of that variant in ratios."""
+        return self.sources[self.source]
+
+    def variants_of(self, name):
+        """Variants of a result by name, each with its source: of duties with the duty's name behind."""
+        return {f"{name}-{source}": source for source in self.sources} if self.duties else {name: self.source}
 
     @property
     def spread(self):
@@ -65,6 +84,9 @@ class Design:
         """
         table = self.table
         source, reference = self._variants[self.source], self._variants[self.reference]
+        if self.duties:
+            source = {name: (self._variants[name], share) for name, share in self.duties.items()}
+            reference = {name: self._variants[other] for name, other in self.sources.items()}
         starts = table.starts if starts is None else starts
         shared = {"limits": table.limits, "reference": reference, "seed": table.seed, "starts": starts}
         shared["progress"] = progress
@@ -88,17 +110,22 @@ def write_found(path, case, found):
         A part of a scene is a function or object without a text in case files.
     """
     designs = [case.designs[name] for name in found]
-    names = dict.fromkeys([case.reference, *(name for item in designs for name in (item.reference, item.source))])
+    pairs = [pair for item in designs for pair in item.sources.items()]
+    names = dict.fromkeys([case.reference, *(name for source, other in pairs for name in (other, source))])
     scenes = {name: case.variant(name).scene for name in names}
     references = {name: reference for name in names if (reference := case.reference_of(name)) in names}
     for name, result in found.items():
+        ends = {name: result}
         if isinstance(result, Front):
-            made = {f"{name}-{number}": item.scene for number, item in enumerate(result.designs, 1)}
-        else:
-            made = {name: result.scene}
-        scenes |= made
-        references |= dict.fromkeys(made, case.designs[name].reference)
-    raw = {item.name: item.raw | {"variant": item.source, "reference": item.reference} for item in designs}
+            ends = {f"{name}-{number}": item for number, item in enumerate(result.designs, 1)}
+        for end, item in ends.items():
+            scenes |= named_scenes(end, item.scene)
+            of = case.designs[name].variants_of(end)
+            references |= {made: case.designs[name].sources[source] for made, source in of.items()}
+    raw = {
+        item.name: item.raw | ({} if item.duties else {"variant": item.source, "reference": item.reference})
+        for item in designs
+    }
     comment = f"Found by: kinetostatics design {case.path.name}"
     tables = {"designs": raw, "sizing": {name: part.raw for name, part in case.sizing.items()}}
     return case_text.write_case(path, case.title, scenes, case.source, comment=comment, references=references, **tables)
@@ -114,21 +141,29 @@ def read_designs(tables, reference, variants, problems):
             continue
         table = read.design
         first = next((other for other in variants if other not in (reference, name)), reference)
-        source = table.variant or first
-        own = variants[source].table.reference if variants.get(source) else None
-        chosen = source, table.reference or own or reference
-        given = {f"design.{name}.{key}": getattr(table, key) for key in ("variant", "reference")}
-        wrong = [checks.choice(key, word, tuple(variants)) for key, word in given.items() if word is not None]
-        wrong += [f"{key} is what it is to find: give another" for key, word in given.items() if word == name]
+        duties = getattr(table, "duties", None)
+        chosen = {}
+        for source in (table.variant or first,) if duties is None else duties:
+            own = variants[source].table.reference if variants.get(source) else None
+            chosen[source] = table.reference or own or reference
+        given = [(f"design.{name}.{key}", getattr(table, key)) for key in ("variant", "reference")]
+        given += [(f"design.{name}.duties", duty) for duty in duties or ()]
+        wrong = [checks.choice(key, word, tuple(variants)) for key, word in given if word is not None]
+        wrong += [f"{key} is what it is to find: give another" for key, word in given if word == name]
         problems += [problem for problem in wrong if problem]
-        if all(map(variants.get, chosen)):
-            problems += [f"design.{name}{text}" for text in _problems(table, *map(variants.get, chosen))]
-        found[name] = Design(name, *chosen, table, raw, variants)
+        if all(map(variants.get, (*chosen, *chosen.values()))):
+            pairs = {source: (variants[source], variants[other]) for source, other in chosen.items()}
+            texts = [f"design.{name}{text}" for source in chosen for text in _problems(table, source, *pairs[source])]
+            problems += dict.fromkeys(texts)
+            if duties is not None:
+                shared = {source: (variants[source], share) for source, share in duties.items()}
+                problems += [f"design.{name}{text}" for text in _problem_of(".duties", read_duties, shared, None, None)]
+        found[name] = Design(name, chosen, table, raw, variants)
     return found
 
 
-def _problems(table, source, reference):
-    """Faults of a design of right variants, each after its key."""
+def _problems(table, duty, source, reference):
+    """Faults of a design of right variants in one of its duties, each after its key."""
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, TorqueFreeCamTable):
         try:
@@ -145,7 +180,15 @@ def _problems(table, source, reference):
         texts = {f".minimise[{at}]": text.strip().removeprefix("-") for at, text in enumerate(table.minimise, 1)}
     else:
         texts = {f".{key}": text for key in ("minimise", "maximise") if (text := getattr(table, key)) is not None}
-    limits = {f".limits[{number}]": text for number, text in enumerate(table.limits, 1)}
+    limits = {}
+    for number, text in enumerate(table.limits, 1):
+        own, colon, rest = text.partition(":")
+        if not colon or getattr(table, "duties", None) is None:
+            limits[f".limits[{number}]"] = text
+        elif problem := checks.choice("duty", own.strip(), (*table.duties, MEAN)):
+            yield f".limits[{number}]: {problem}"
+        elif own.strip() in (duty, MEAN):
+            limits[f".limits[{number}]"] = rest
     for key, text in (texts | limits).items():
         yield from _problem_of(key, _require_output, text, key in limits, scene, reference.scene, source.sizing)
     if getattr(table, "robust", None) is not None:

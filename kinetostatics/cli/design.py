@@ -79,13 +79,19 @@ def _as_json(item, found):
         "goal": str(found.goal),
         "source": item.source,
         "reference": item.reference,
+        "shares": found.shares,
         "outputs": output.rows_by_name(found.report()),
         "numbers": output.rows_by_name(found.numbers()),
         "evaluations": found.evaluations,
         "ends_of_searches": found.starts,
         "bound": found.bound,
-        "power_residual": found.scene.solve(720).power_residual,
+        "power_residual": _power_residual(found),
     }
+
+
+def _power_residual(found):
+    """Largest imbalance of powers over the duties of a result."""
+    return max(duty.source.solve(720).power_residual for duty in found.duties().values())
 
 
 def _require_writable(case, names, options):
@@ -97,18 +103,21 @@ def _require_writable(case, names, options):
         there = f"{options.out} is there already; give another name" if os.path.lexists(options.out) else None
         checks.require("--out", there or files.write_problem(options.out, inputs=case.files, endings=(".toml",)))
         items = [case.designs[name] for name in names]
-        scenes = {name: case.variant(name).scene for item in items for name in (item.reference, item.source)}
-        case_text.tables(Path(options.out), scenes | {item.name: scenes[item.source] for item in items})
+        pairs = [pair for item in items for pair in item.sources.items()]
+        scenes = {name: case.variant(name).scene for source, other in pairs for name in (other, source)}
+        made = [pair for item in items for pair in item.variants_of(item.name).items()]
+        case_text.tables(Path(options.out), scenes | {name: scenes[source] for name, source in made})
 
 
 def _print_design(item, found):
     if isinstance(found, Front):
-        print_folded(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
+        print_folded(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {', '.join(item.sources)}\n")
         table: Any = found.table
         print_table(table.set_axis(range(1, len(table) + 1)).rename_axis("design"))
         return
-    ratios = f"ratios: {item.reference} / design, above 1 in favour of the design"
-    print_folded(f"\n{item.name}: {found.goal}, from {item.source}; {ratios}\n")
+    references = ", ".join(dict.fromkeys(item.sources.values()))
+    ratios = f"ratios: {references} / design, above 1 in favour of the design"
+    print_folded(f"\n{item.name}: {found.goal}, from {', '.join(item.sources)}; {ratios}\n")
     report = found.report()
     gain = "gain per unit"
     binds = report["binds"].map({True: "yes", False: ""})
@@ -124,10 +133,11 @@ def _print_design(item, found):
         lines.append("gain: by how much the goal would be better if what binds gave way by one of its unit")
     if np.isfinite(found.bound):
         lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
-    lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
+    lines.append(f"power balance of what was found: {_power_residual(found):.1e} of the largest power")
     if item.spread is not None:  # over more machines than in the search
         goal = item.table.minimise or item.table.maximise
-        values = over_spread(found.scene, goal, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
+        duties = {name: (found.scene[name], share) for name, share in found.shares.items()} or found.scene
+        values = over_spread(duties, goal, item.spread, reference=found.reference, samples=SPREAD_SAMPLES)
         value, share = np.quantile(values, item.spread.quantile), f"{item.spread.quantile:g}"
         lines.append(f"quantile {share} of {goal} over the spread, {SPREAD_SAMPLES} machines: {value:.6g}")
     print_folded("\n" + "\n".join(lines))

@@ -206,18 +206,33 @@ class Output:
 
 @dataclass(frozen=True)
 class SolutionNumber:
-    """One column of a sweep: a number that a function returns from the solution of each design.
+    """A number that a function returns from the solution of each design: an output of `sweep` and `design.optimise`.
 
     Attributes
     ----------
     name : str
-        Heading, without the unit.
+        Heading, without the unit; goals and limits name it so.
     function : function
-        From a `Solution` to a float; it can be pickled.
+        From a `Solution` to a float; for several workers one that can be pickled.
     unit : str
         SI, or another that the function returns, as "h".
     ratio : bool
         Whether the reference mechanism's number is divided by the design's.
+
+    Examples
+    --------
+    The energy of a turn under a motor, with the slip of its rotor, and the flywheel that makes it least:
+
+    >>> import kinetostatics as ks
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> def mains(solution):
+    ...     return ks.drive.steady(ks.Scene.of(solution), motor).air_gap_energy_per_turn
+    >>> number = ks.design.SolutionNumber("mains energy", mains, "J")
+    >>> crank = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, inertia=0.1), slider=ks.Link(1.0))
+    >>> pump = ks.Scene(crank, 100.0, loads=ks.ProcessForce(ks.Table([0.1, 0.3], [-200.0, -200.0], over="travel")))
+    >>> found = ks.design.optimise(pump, {"crank.inertia": (0.05, 0.5)}, "mains energy", numbers=[number])
+    >>> found.report().index.to_list()
+    ['mains energy [J]']
     """
 
     name: str

@@ -157,10 +157,11 @@ class Found:
             pair = dict(zip(("before", "after"), values, strict=True))
             rows[f"{spread.quantile:g} quantile of {output.column}"] = pair | alone
         for output in self.outputs:
-            own_rows = {name: [name] for name in duties}
-            if self.shares and (output is self.outputs[0] or f"{MEAN}: {output}" in limits):
-                own_rows = {MEAN: list(duties)} | own_rows
+            own_rows = {MEAN: list(duties)} if self.shares else {}
+            own_rows |= {name: [name] for name in duties}
             for name, of in own_rows.items():
+                if self.shares and output is not self.outputs[0] and f"{name}: {output}" not in limits:
+                    continue  # neither goal nor limited in this duty
                 own = limits.get(f"{name}: {output}" if name else str(output), [])
                 share = 1.0 if name == MEAN else duties[name].share
                 found = [mean_value(output, {key: items[key] for key in of}) / share for items in (before, duties)]

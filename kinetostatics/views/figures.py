@@ -303,10 +303,13 @@ ANGLES_PER_TURN = 720
 
 def draw_designs(case, found, folder, file_format="png"):
     """Draw results of a case's designs by name into a folder, a page each; returns the paths."""
-    pages = {
-        name: partial(_one_axes, front, item, 6.4, 4.4) if isinstance(item, Front) else partial(before_and_after, item)
-        for name, item in found.items()
-    }
+    pages: dict[str, Any] = {}
+    for name, item in found.items():
+        if isinstance(item, Front):
+            pages[name] = partial(_one_axes, front, item, 6.4, 4.4)
+        else:
+            alone = {f"{name}-{duty}": item.duty(duty) for duty in item.shares} or {name: item}
+            pages |= {page: partial(before_and_after, own) for page, own in alone.items()}
     return _draw_pages(case, pages, folder, file_format)
 
 

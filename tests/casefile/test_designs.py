@@ -5,7 +5,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.designs import write_found
-from support.case_files import FRONT, STIFFER, saw_with
+from support.case_files import DUTIES, FRONT, STIFFER, saw_with
+from support.every import every
 
 
 def test_a_design_of_a_file_finds_what_python_finds(tmp_path):
@@ -43,6 +44,57 @@ def test_found_designs_record_their_origin(tmp_path):
     assert once_more.values == pytest.approx(found["stiffer"].values, rel=1e-9)
     for name, item in case.designs.items():
         assert again.designs[name].raw == item.raw | {"variant": "cam-circle", "reference": "plain"}
+
+
+@pytest.mark.slow
+def test_duties_of_a_file_are_those_of_python(tmp_path):
+    """Written with a variant for each duty, found again; the cutting force is an addition to the circular cam."""
+    more = DUTIES.replace("shared", "front").replace("angles = 72", "angles = 72\npoints = 2")
+    more = more.partition("[design")[2].replace('"optimum"', '"front"').replace("maximise", "minimise")
+    goals = '["largest O", "-ratio mean_absolute balancing_torque"]'
+    more = "[design" + more.replace('"ratio mean_absolute balancing_torque"', goals)
+    case = ks.load_case(saw_with(DUTIES + more, tmp_path))
+    design = case.designs["shared"]
+    assert design.sources == {"cam-circle": "plain", "cutting": "plain"}
+    found = design.find()
+    by_hand = ks.design.optimise(
+        {name: (case.variants[name], share) for name, share in (("cam-circle", 0.25), ("cutting", 0.75))},
+        {"spring.stiffness": (6e5, 9e5)},
+        maximise="ratio mean_absolute balancing_torque",
+        limits=["cutting: largest O <= 40 kN"],
+        reference=case.variants["plain"],
+        angles=72,
+    )
+    assert found.values == by_hand.values
+    front = case.designs["front"].find()
+    again = ks.load_case(write_found(tmp_path / "again.toml", case, {"shared": found, "front": front}))
+    ends = [f"{name}-{duty}" for name in ("shared", "front-1", "front-2") for duty in design.sources]
+    assert list(again.variants) == ["plain", "cam-circle", "cutting", *ends]
+    np.testing.assert_allclose(
+        again.solve("shared-cutting", 24).balancing_torque, found.scene["cutting"].solve(24).balancing_torque, rtol=1e-9
+    )
+    assert again.designs["shared"].find().values == pytest.approx(found.values, rel=1e-6)
+    assert again.designs["front"].raw == case.designs["front"].raw
+
+
+@every(
+    ("change", "message"),
+    [
+        (("0.25", "0.35"), "design.shared.duties: the shares must sum to 1, got 1.1: cam-circle 0.35, cutting 0.75"),
+        (("0.25", "-0.25"), "design.shared.duties: share of cam-circle must be greater than 0, got -0.25"),
+        (("cam-circle = ", "cam-circel = "), "design.shared.duties is 'cam-circel', allowed: .* 'cam-circle'"),
+        (("cam-circle = ", "upright-plain = "), "of cutting, a cam-.*, differ from those of upright-plain"),
+        (("cutting: largest", "cuting: largest"), r"limits\[1\]: duty is 'cuting', allowed: .* did you mean 'cutting'"),
+        (("cutting: largest O", "cutting: larges O"), r"shared.limits\[1\]: output 'larges O'"),
+        (('"spring.stiffness"', '"process_force.force"'), "shared.vary: parameter is 'process_force.force'"),
+        (("angles = 72", 'angles = 72\nvariant = "plain"'), "design.shared has variant and duties: give one"),
+        (("cam-circle = 0.25", "shared = 0.25"), "design.shared.duties is what it is to find: give another"),
+    ],
+)
+def test_faults_of_duties_are_told_with_their_key(tmp_path_factory, change, message):
+    folder = tmp_path_factory.mktemp("duties")
+    with pytest.raises(ks.CaseError, match=message):
+        ks.load_case(saw_with(DUTIES.replace(*change), folder))
 
 
 def test_first_other_variant_is_varied_by_default(tmp_path):

@@ -1,12 +1,13 @@
 """The command ``design``: tables, figures and the new case file, and errors as of the other commands."""
 
+import json
 import signal
 
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.case_files import FRONT, STIFFER, saw_with
+from support.case_files import DUTIES, FRONT, STIFFER, saw_with
 from support.commands import held, printed_by
 
 pytestmark = pytest.mark.slow
@@ -33,6 +34,20 @@ def test_design_prints_gains_and_writes_a_case(saw, tmp_path, capsys):
     assert told.splitlines() == ["searching for stiffer", "searching for trade"]
     assert len(list((tmp_path / "figures").iterdir())) == 2
     assert main(["compare", str(out), "--variant", "stiffer"]) == 0
+
+
+def test_duties_are_printed_drawn_and_written_one_by_one(tmp_path, capsys):
+    saw, out, figures = saw_with(DUTIES, tmp_path), tmp_path / "found.toml", tmp_path / "figures"
+    printed = printed_by(["design", str(saw), "--out", str(out), "--plot", str(figures)], capsys)
+    words = " ".join(printed.split())
+    assert "balancing_torque, from cam-circle, cutting; ratios: plain / design" in words
+    for row in ("mean: ratio mean_absolute", "cam-circle: ratio mean_absolute", "cutting: largest O [N]"):
+        assert any(line.startswith(row) for line in printed.splitlines())
+    assert sorted(path.stem.rpartition("shared-")[2] for path in figures.iterdir()) == ["cam-circle", "cutting"]
+    told = json.loads(printed_by(["design", str(saw), "--json"], capsys))["found"]["shared"]
+    assert told["shares"] == {"cam-circle": 0.25, "cutting": 0.75}
+    assert told["power_residual"] < 1e-12
+    assert main(["compare", str(out), "--variant", "shared-cutting"]) == 0
 
 
 def test_only_named_designs_are_searched(saw, capsys):

@@ -122,6 +122,23 @@ vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"], "cam.centre.x" = ["-30 m
 points = 2
 angles = 72
 """
+CUTTING = """
+[variants.cutting]
+mechanism = "cam-crank-slider"
+coupler_length = "2.0219 m"
+cam = { kind = "circle", radius = "0.3 m", centre = ["-0.0219 m", "0 m"] }
+spring = { stiffness = "balance the slider", free_position = "2 m" }
+process_force = { force = "-2 kN" }
+"""
+DUTIES = f"""{CUTTING}
+[design.shared]
+kind = "optimum"
+duties = {{ cam-circle = 0.25, cutting = 0.75 }}
+maximise = "ratio mean_absolute balancing_torque"
+limits = ["cutting: largest O <= 40 kN"]
+vary = {{ "spring.stiffness" = ["600 kN/m", "900 kN/m"] }}
+angles = 72
+"""
 SAW = shipped_cases()["sawframe_2r63"].read_text(encoding="utf-8").partition("[tolerances]")[0]
 
 

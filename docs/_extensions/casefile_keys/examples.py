@@ -25,6 +25,7 @@ BY_KEY: dict[str, list[Any]] = {
     "between": [["B", ["1 m", "0 m"]]],
     "cubic": ["1 MN/m^3", ["0 N/m^3", "50 MN/m^3"]],
     "cosine": [["300 mm", "-2 mm"]],
+    "duties": [{"idle": 0.2, "cut": 0.8}],
     "ends": [["1.7 m", "2.3 m"]],
     "figures": [{"torque": "6a"}],
     "file": ["values.csv"],

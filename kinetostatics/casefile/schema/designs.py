@@ -65,21 +65,34 @@ class DesignTable(Table):
     """Of where the others begin."""
 
 
-class OptimumTable(DesignTable):
+class SearchTable(DesignTable):
+    """Keys of searches for any machine."""
+
+    vary: Vary
+    """Lowest and highest value, by path."""
+    duties: dict[str, Number] | None = None
+    """Share of the time by variant, in place of one variant: outputs are weighted means, limits hold in each."""
+    angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
+    """Crank angles over the period."""
+
+    @model_validator(mode="after")
+    def _variant_or_duties(self):
+        if self.variant is not None and self.duties is not None:
+            raise ValueError("has variant and duties: give one of them")
+        return self
+
+
+class OptimumTable(SearchTable):
     """The best of any machine within bounds and limits."""
 
     kind: Literal["optimum"]
     """The best of any machine within bounds and limits."""
-    vary: Vary
-    """Lowest and highest value, by path."""
     minimise: str | None = None
     """Output to be made least."""
     maximise: str | None = None
     """Output to be made largest, in place of that."""
     robust: RobustTable | None = None
     """A quantile over how numbers spread is the goal."""
-    angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
-    """Crank angles over the period."""
 
     @model_validator(mode="after")
     def _one_aim(self):
@@ -123,19 +136,15 @@ class TorqueFreeCamTable(DesignTable):
         return self
 
 
-class FrontTable(DesignTable):
+class FrontTable(SearchTable):
     """The best of one output for each value of another."""
 
     kind: Literal["front"]
     """The best of one output for each value of another."""
-    vary: Vary
-    """Lowest and highest value, by path."""
     minimise: Annotated[tuple[str, ...], Field(min_length=2, max_length=2)]
     """The two outputs."""
     points: Annotated[int, Field(strict=True, ge=2, le=100)] = 9
     """Designs on the front."""
-    angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
-    """Crank angles over the period."""
 
 
 KINDS = {"optimum": OptimumTable, "torque-free-cam": TorqueFreeCamTable, "front": FrontTable}

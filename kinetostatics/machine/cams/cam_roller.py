@@ -156,7 +156,8 @@ class CamRoller(checks.Checked, Group):
         angle = turn_angles([knot.angle for knot in self.knots], RADIUS_ANGLES.size)
         with np.errstate(divide="ignore"):
             curved = abs(1.0 / polar_curvature(*self.cam.polar(angle, ray(angle))))
-        return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
+        known = isinstance(curved, np.ndarray) and curved.dtype != object
+        return curved.min(axis=-1, keepdims=True) if known else None
 
     @property
     def rollers(self):
