@@ -330,6 +330,8 @@ class Group(Part):
     """Curves fixed to links, points (2, K) in the axes of each."""
     turns: Any = 1
     """Turns of the crank after which its branch closes."""
+    carrier: Any = ""
+    """Rocker on whose pin it passes change points; "" for none."""
 
     def with_link(self: Any, name, link):
         """The group with other mass properties of one link, whose field is called as the link but for the label."""

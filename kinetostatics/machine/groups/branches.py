@@ -8,6 +8,7 @@ whether the group comes so close to a limit position that `near_dead_centre` sav
 """
 
 import math
+import operator
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -18,10 +19,11 @@ from ...numbers import checks
 from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import rotate_back
 from . import near_dead_centre
-from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS
+from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS, parse_carrier
 
 MAX_ULPS = 8
 """Largest difference of lengths that count as equal, in units of the last place of the longest length."""
+SEVERAL_DESIGNS = "the designs of a batch pass change points at crank angles of their own: ask a single design"
 QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
 
@@ -29,6 +31,10 @@ QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 def equality(*lengths):
     """Largest difference at which lengths count as equal, m."""
     return MAX_ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
+
+
+class NotOnCrankError(ParameterError):
+    """A group is to pass change points, but hangs on no pin of the crank."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +52,8 @@ class Branch:
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
     offset = 0.0
+    OR_ON = ""
+    """In messages, what else than a pin of the crank it may hang on to pass change points."""
 
     @property
     def sizes(self):
@@ -90,25 +98,26 @@ class Branch:
             return self
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
-    def passage_on(self: Any, throw):
-        """Kind of the change points on a pin of a crank, and quadrant of `start` from it; "" without any.
+    def passage_on(self: Any, throw, centre=(0.0, 0.0)):
+        """Kind of the change points on a pin that turns about a place, and quadrant of `start` from it; "" without any.
 
         Lengths are compared in extended precision.
 
         Raises
         ------
+        NotOnCrankError
+            It hangs on no crank pin.
         ParameterError
-            It hangs on no crank pin, a length is not known, or designs are of several kinds.
+            A length is not known, or designs are of several kinds.
         """
-        problem, given = None, (*self.start, *self.sizes)
         if throw is None:
             where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
-            problem = (
-                f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
-            )
-        elif not all(map(checks.has_known_values, (*throw.at, *given))):
-            problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made"
-        checks.require(self.RULES.owner, f"{problem}; give +1 or -1" if problem else None)
+            text = f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius{self.OR_ON}"
+            raise NotOnCrankError(f"{self.RULES.owner}: {text}, but {where}; give +1 or -1")
+        given = (*map(operator.sub, self.start, centre), *self.sizes)
+        known = all(map(checks.has_known_values, (*throw.at, *given)))
+        problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made; give +1 or -1"
+        checks.require(self.RULES.owner, None if known else problem)
         parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *given))
         along, across, x, y, *sizes = np.broadcast_arrays(*parts)
         radius, direction = throw._replace(at=(along, across)).polar
@@ -165,13 +174,20 @@ class Branch:
 
     @property
     def turns(self):
-        return 2 if self.kind in TWO_TURN_KINDS else 1
+        carrier = parse_carrier(self.passage)
+        return 2 if self.kind in TWO_TURN_KINDS and (carrier is None or carrier.turns % 2) else 1
+
+    @property
+    def carrier(self):
+        found = parse_carrier(self.passage)
+        return found.link if found else ""
 
     def change_points(self: Any, throws):
-        if not self.passage:
+        if not self.passage or self.on not in throws:
             return ()
-        several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
-        checks.require("change points", several if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None)
+        checks.require(
+            "change points", SEVERAL_DESIGNS if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None
+        )
         first, turn = self._first(throws), 2 * math.pi
         at = {FAR: [math.pi]}.get(self.kind, [0.0] if self.turns == 2 else [0.0, math.pi])
         return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn
