@@ -22,7 +22,6 @@ from .crank import Crank
 from .friction import friction_kind
 from .group import BEARINGS, CRANK, FRAME, GROUND, MEMBERS, RATES, RESERVED, SHAFT_TORQUE, TRAVELS, Group, Resolved
 from .groups import carriers
-from .groups.branches import NotOnCrankError
 from .kinematic_state import margin, place
 from .links import Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
@@ -173,10 +172,7 @@ class Mechanism(Batched):
     def __post_init__(self):
         self.RULES.admit(self)
         throws = self.throws
-        try:
-            groups = [group.on_crank(throws) for group in self.groups]
-        except NotOnCrankError as error:
-            groups = carriers.on_carriers(self.crank, self.groups, throws, error)
+        groups = [group.on_crank(throws) for group in self.groups]
         vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
         if len(groups) > 1 and any(group.plane is not None for group in groups):
             checks.require(self.name, *plane_problems(self))

@@ -332,9 +332,9 @@ def _made(inner, **outer):
 WRONG = {
     "a joint that is not there": (
         lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="X"),
-        "of a rocker, but it hangs on 'X'",
+        "or of a rocker, but it hangs on 'X'",
     ),
-    "a fixed joint": (lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="O2"), "of a rocker, but it hangs on 'O2'"),
+    "a fixed joint": (lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="O2"), "or of a rocker, but it hangs on 'O2'"),
     "a rocker that stands": (
         lambda: _made((1.0, 1.0, 1.0, (1.0, 0.0), "crossed"), pivot=(2.5, 0.0)),
         "the rocker stands still",

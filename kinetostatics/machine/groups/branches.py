@@ -33,10 +33,6 @@ def equality(*lengths):
     return MAX_ULPS * np.spacing(np.max(lengths, axis=0).astype(float))
 
 
-class NotOnCrankError(ParameterError):
-    """A group is to pass change points, but hangs on no pin of the crank."""
-
-
 @dataclass(frozen=True, eq=False)
 class Branch:
     """Branch of a group with the fields `assembly` and `on`.
@@ -52,8 +48,8 @@ class Branch:
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
     offset = 0.0
-    OR_ON = ""
-    """In messages, what else than a pin of the crank it may hang on to pass change points."""
+    IS_ON_ROCKERS = False
+    """Whether it passes change points on the pin of a rocker too (`carriers`)."""
 
     @property
     def sizes(self):
@@ -98,6 +94,12 @@ class Branch:
             return self
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
+    def refuse_word(self: Any, pins):
+        """Raise `ParameterError`: a group on other joints than these pins passes no change points."""
+        where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
+        problem = f"assembly {self.assembly!r} is for a group on {pins}, but {where}; give +1 or -1"
+        checks.require(self.RULES.owner, problem)
+
     def passage_on(self: Any, throw, centre=(0.0, 0.0)):
         """Kind of the change points on a pin that turns about a place, and quadrant of `start` from it; "" without any.
 
@@ -105,15 +107,13 @@ class Branch:
 
         Raises
         ------
-        NotOnCrankError
-            It hangs on no crank pin.
         ParameterError
-            A length is not known, or designs are of several kinds.
+            It hangs on no crank pin, a length is not known, or designs are of several kinds.
         """
+        if throw is None and self.IS_ON_ROCKERS:
+            return self.passage  # `beside` finds it
         if throw is None:
-            where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
-            text = f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius{self.OR_ON}"
-            raise NotOnCrankError(f"{self.RULES.owner}: {text}, but {where}; give +1 or -1")
+            self.refuse_word("a pin of the crank at a constant radius")
         given = (*map(operator.sub, self.start, centre), *self.sizes)
         known = all(map(checks.has_known_values, (*throw.at, *given)))
         problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made; give +1 or -1"

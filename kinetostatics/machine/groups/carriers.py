@@ -5,14 +5,16 @@ turns for one of the crank, `Carrier.turns`, and stays within half a turn about 
 of the structure.
 """
 
+from contextlib import suppress
+
 import numpy as np
 
-from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.brackets import find_roots
 from ...numbers.parameter_tree import replace_unchecked
+from ..crank import Crank
 from ..kinematic_state import Throw, place
-from .branches import SEVERAL_DESIGNS, NotOnCrankError
+from .branches import SEVERAL_DESIGNS
 
 TURN = 2.0 * np.pi
 ANGLES = np.linspace(0.0, TURN, 721)
@@ -24,36 +26,30 @@ AWAY = 0.0123
 """Crank angle at which the search for change points begins, rad: none of them is likely to be there."""
 
 
-def on_carriers(crank, groups, throws, error):
-    """Groups of a chain as they are on pins of the crank and of rockers.
+def on_rocker(group, groups, throws):
+    """A group of a chain that is to pass change points on the pin of a rocker, as it is there.
 
     Raises
     ------
     ParameterError
-        A group that is to pass change points hangs on neither: `error`; or on a rocker whose motion does not repeat
-        after a turn of the crank.
+        It hangs on no such pin, or the rocker does not repeat its motion after a turn of the crank.
     """
-    placement, made = crank.place(ANGLES), []
+    placement = Crank(throws["A"].at[0] if "A" in throws else None).place(ANGLES)
     links: dict[str, str] = {}
-    try:
-        with np.errstate(all="ignore"):
-            for group in groups:
-                swing = placement.course(group.on).swing if group.through and group.on not in throws else None
-                own = _on_rocker(group, swing, links) if swing and group.OR_ON else group.on_crank(throws)
-                place(own, placement)
-                links |= {name: point.link for name, point in own.joints.items()}
-                made.append(own)
-    except KeyError:  # a joint that no part before it places
-        raise ParameterError(str(error)) from None
-    except NotOnCrankError as other:
-        raise ParameterError(str(other)) from None
-    except ParameterError as other:
-        raise other from None
-    return made
+    with np.errstate(all="ignore"), suppress(KeyError):  # of joints that no part places
+        for other in groups:
+            own = _on_rocker(other, placement, links) if other.through and other.on not in throws else other
+            if other is group:
+                return own
+            place(own, placement)
+            links |= {name: point.link for name, point in own.joints.items()}
+    return _on_rocker(group, placement, links)
 
 
-def _on_rocker(group, swing, links):
-    """A group on the pin of a rocker, with its passage."""
+def _on_rocker(group, placement, links):
+    swing = placement.course(group.on).swing
+    if swing is None:
+        group.refuse_word("a pin of the crank at a constant radius or of a rocker")
     centre, radius, direction = swing
     passage, link = group.passage_on(Throw((radius, 0.0), ahead=True), centre), links[group.on]
     if not passage:

@@ -34,7 +34,7 @@ from ...numbers.planar import (
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
-from . import change_points, near_dead_centre
+from . import carriers, change_points, near_dead_centre
 from .branches import Branch, equality
 from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS, divide
 
@@ -252,7 +252,7 @@ class RockerGroup(Branch, RRRGroup):
 
     LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
     LENGTHS = "coupler and rocker lengths"
-    OR_ON = ", or of a rocker"
+    IS_ON_ROCKERS = True
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot", "plane": "coupler_plane"}
     KINDS: ClassVar = {
@@ -303,12 +303,14 @@ class RockerGroup(Branch, RRRGroup):
         return {RHOMBUS: far & meeting, KITE: both & kite, PARALLEL: both, FAR: far, MEETING: meeting, NEAR: near}
 
     def beside(self, groups, throws):
-        """The group with the axis of the toggle that it is with a slider beside it."""
+        """The group with the axis of the toggle that it is with a slider beside it, or with its passage on a rocker."""
         throw, toggle = throws.get(self.on), ""
         if throw is not None:
             guides = [guide for other in groups if self.pin in other.hangs_on for guide in other.guides.values()]
             axes = (near_dead_centre.toggle_axis(self, guide, throw) for guide in guides)
             toggle = next(filter(None, axes), "")
+        elif self.through:
+            return carriers.on_rocker(self, groups, throws)
         return self if toggle == self.toggle else replace_unchecked(self, toggle=toggle)
 
     def place(self, placement):
