@@ -313,6 +313,21 @@ def friction():
     return figure
 
 
+def bars_on_rockers():
+    """Three wheels with two coupling rods, and the second rod crossed."""
+    figure, axes = plt.subplots(1, 2)
+    for ax, word in zip(axes, ("open", "crossed"), strict=True):
+        rods = (
+            ks.RockerGroup(0.28, 0.1, (0.28, 0.0), "open"),
+            ks.RockerGroup(0.22, 0.1, (0.5, 0.0), word, on="B", pin="C", pivot_name="O3", label="2"),
+        )
+        s = ks.solve(ks.Mechanism(word, ks.Crank(0.1), rods), TURN, crank_speed=1.0)
+        ks.plots.mechanism(s, angles=(60,), ax=ax)
+        ax.set_title(f'assembly "{word}"', fontsize="medium")
+        ax.axis("off")
+    return figure
+
+
 def rolling_arm():
     """A roller on its cam: the force of the cam ahead of the contact, that along the curve, and those of the pin."""
     figure, ax = plt.subplots()
@@ -609,6 +624,7 @@ DRAWINGS = {
     "yoke": (yoke, (6.4, 2.3)),
     "cam_roller": (cam_roller, (7.0, 1.6)),
     "friction": (friction, (6.4, 2.5)),
+    "bars_on_rockers": (bars_on_rockers, (7.2, 2.2)),
     "rolling_arm": (rolling_arm, (4.4, 2.6)),
     "../parts/sections": (sections, (6.4, 4.2)),
     "../parts/foundation": (foundation, (6.4, 3.2)),

@@ -53,7 +53,7 @@ asks several times. What the group needs of other links goes into ``demands``, w
 
 *Change points.* Groups that pass them derive from `groups.branches.Branch`: ``on_crank(throws)`` sets the text
 `passage`, part of the structure; `turns`, `change_points` and `kink` follow from it. ``beside(groups, throws)`` returns
-the group specialised for its neighbours (toggles only).
+the group specialised for its neighbours (toggles, and change points on a rocker).
 
 *Hand calculations.* `Solution.explain` shows what the kernels compute, under the names of their local variables. The
 module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for one kernel alone as
@@ -337,6 +337,8 @@ class Group(Part):
     """Curves fixed to links, points (2, K) in the axes of each."""
     turns: Any = 1
     """Turns of the crank after which its branch closes."""
+    carrier: Any = ""
+    """Rocker on whose pin it passes change points; "" for none."""
 
     def with_link(self: Any, name, link):
         """The group with other mass properties of one link, whose field is called as the link but for the label."""

@@ -7,6 +7,7 @@ before it, and no two parts give the same name.
 import math
 from dataclasses import dataclass, fields, replace
 from functools import reduce
+from operator import attrgetter
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,6 +21,7 @@ from . import plausibility
 from .crank import Crank
 from .friction import friction_kind
 from .group import BEARINGS, CRANK, FRAME, GROUND, MEMBERS, RATES, RESERVED, SHAFT_TORQUE, TRAVELS, Group, Resolved
+from .groups import carriers
 from .kinematic_state import margin, place
 from .links import Meshing, Sliding, Turning, Wrench, present
 from .loads.points import wrench_at
@@ -235,22 +237,29 @@ class Mechanism(Batched):
         return tuple(group for group in self.groups if any(led.body == FRAME for led in group.led))
 
     def grows(self, name):
-        """Whether a force grows without bound at change points: one of a group that passes them, or at O.
+        """Whether a force grows without bound at change points: of a group that passes them, or on its crank's pivot.
 
         So do the opposite forces on the frame, and then their sum loses its digits.
         """
         parts = [group for group in self.groups if group.passes]
         if not parts or name == "balancing_torque":
             return False
+        rockers = {group.carrier for group in parts}
+        parts += [self.crank] * ("" in rockers)
         name = "O" if name in BEARINGS else name.removeprefix(f"{GROUND} ")
         if name == GROUND or name.startswith(SHAFT_TORQUE):
             return True
-        return any(name in part.outputs for part in (self.crank, *parts))
+        pair = self.pairs.get(name)
+        at_pivot = isinstance(pair, Turning) and pair.link in rockers and pair.against == FRAME
+        return at_pivot or any(name in part.outputs for part in parts)
 
     @cached_property
     def change_points(self):
         """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
-        return tuple(sorted({angle for group in self.groups for angle in group.change_points(self.throws)}))
+        found = {angle for group in self.groups for angle in group.change_points(self.throws)}
+        for group in filter(attrgetter("carrier"), self.groups):
+            found |= set(carriers.change_points(self, group, found))
+        return tuple(sorted(found))
 
     links = _table("links", "Link by name, from the crank outwards.")
     references = _table("references", "Reference joint by link, from the crank outwards.")

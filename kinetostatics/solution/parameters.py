@@ -196,9 +196,13 @@ def require_derivatives(owner, mechanism, paths, without):
 
 
 def passage_paths(places, mechanism, groups):
-    """Paths that decide which change points some groups pass: pins of the crank, own lengths and guides."""
+    """Paths that decide which change points some groups pass: pins of the crank, own lengths and guides.
+
+    For a group on a rocker also all lengths before it, which decide how that turns.
+    """
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
     pins = {group.on for group in groups}
+    numbers += range(max((number for number in numbers if mechanism.groups[number].carrier), default=0))
     numbers += [number for number, group in enumerate(mechanism.groups) if pins.intersection(group.throws)]
     owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
     links = {"link"}.union(*(group.own_names.values() for group in groups))

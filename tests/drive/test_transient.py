@@ -41,19 +41,17 @@ def test_sundials_slider_crank_swings_as_published():
 
 
 def n_four_bar(windows):
-    """Bars of 1 kg and 1 m: uprights that turn about fixed pivots 1 m apart, and between their ends level ones.
-
-    A level bar stays level, so it is carried as one that reaches from the first upright, its mass where the bar is.
-    """
+    """Bars of 1 kg and 1 m: uprights that turn about fixed pivots 1 m apart, and between their ends level ones."""
     bar = ks.Link(1.0, 0.5, 1 / 12)
     groups = tuple(
         ks.RockerGroup(
-            float(k),
+            1.0,
             1.0,
             (float(k), 0.0),
             "open",
-            ks.Link(1.0, k - 0.5),
             bar,
+            bar,
+            on=f"B{k - 1}" if k > 1 else "A",
             pin=f"B{k}",
             pivot_name=f"P{k}",
             label=f"_{k}",

@@ -8,6 +8,7 @@ whether the group comes so close to a limit position that `near_dead_centre` sav
 """
 
 import math
+import operator
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -18,10 +19,11 @@ from ...numbers import checks
 from ...numbers.parameter_tree import replace_unchecked
 from ...numbers.planar import rotate_back
 from . import near_dead_centre
-from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS
+from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS, parse_carrier
 
 MAX_ULPS = 8
 """Largest difference of lengths that count as equal, in units of the last place of the longest length."""
+SEVERAL_DESIGNS = "the designs of a batch pass change points at crank angles of their own: ask a single design"
 QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
 
@@ -46,6 +48,8 @@ class Branch:
     kernels: ClassVar[tuple[Any, Any]]
     """Kernels through change points and close to limit positions."""
     offset = 0.0
+    IS_ON_ROCKERS = False
+    """Whether it passes change points on the pin of a rocker too (`carriers`)."""
 
     @property
     def sizes(self):
@@ -90,8 +94,14 @@ class Branch:
             return self
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
-    def passage_on(self: Any, throw):
-        """Kind of the change points on a pin of a crank, and quadrant of `start` from it; "" without any.
+    def refuse_word(self: Any, pins):
+        """Raise `ParameterError`: a group on other joints than these pins passes no change points."""
+        where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
+        problem = f"assembly {self.assembly!r} is for a group on {pins}, but {where}; give +1 or -1"
+        checks.require(self.RULES.owner, problem)
+
+    def passage_on(self: Any, throw, centre=(0.0, 0.0)):
+        """Kind of the change points on a pin that turns about a place, and quadrant of `start` from it; "" without any.
 
         Lengths are compared in extended precision.
 
@@ -100,15 +110,14 @@ class Branch:
         ParameterError
             It hangs on no crank pin, a length is not known, or designs are of several kinds.
         """
-        problem, given = None, (*self.start, *self.sizes)
+        if throw is None and self.IS_ON_ROCKERS:
+            return self.passage  # `beside` finds it
         if throw is None:
-            where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
-            problem = (
-                f"assembly {self.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
-            )
-        elif not all(map(checks.has_known_values, (*throw.at, *given))):
-            problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made"
-        checks.require(self.RULES.owner, f"{problem}; give +1 or -1" if problem else None)
+            self.refuse_word("a pin of the crank at a constant radius")
+        given = (*map(operator.sub, self.start, centre), *self.sizes)
+        known = all(map(checks.has_known_values, (*throw.at, *given)))
+        problem = f"assembly {self.assembly!r} needs lengths that are known when the mechanism is made; give +1 or -1"
+        checks.require(self.RULES.owner, None if known else problem)
         parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *given))
         along, across, x, y, *sizes = np.broadcast_arrays(*parts)
         radius, direction = throw._replace(at=(along, across)).polar
@@ -165,13 +174,20 @@ class Branch:
 
     @property
     def turns(self):
-        return 2 if self.kind in TWO_TURN_KINDS else 1
+        carrier = parse_carrier(self.passage)
+        return 2 if self.kind in TWO_TURN_KINDS and (carrier is None or carrier.turns % 2) else 1
+
+    @property
+    def carrier(self):
+        found = parse_carrier(self.passage)
+        return found.link if found else ""
 
     def change_points(self: Any, throws):
-        if not self.passage:
+        if not self.passage or self.on not in throws:
             return ()
-        several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
-        checks.require("change points", several if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None)
+        checks.require(
+            "change points", SEVERAL_DESIGNS if any(map(np.ndim, (*self.start, *throws[self.on].at))) else None
+        )
         first, turn = self._first(throws), 2 * math.pi
         at = {FAR: [math.pi]}.get(self.kind, [0.0] if self.turns == 2 else [0.0, math.pi])
         return tuple(sorted((first + angle) % turn % turn for angle in at))  # just below 0 rounds up to a turn

@@ -17,18 +17,27 @@ All vectors are taken in the frame that turns half as fast as the crank, in whic
 A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
 |d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
 normal of that frame.
+
+A four-bar whose crank is the rocker of another one is the same in the angle theta of that rocker; its rates follow by
+the chain rule. At the half turns the joint goes on by whole turns: theta is a multiple of phi and a remainder within
+half a turn, whose half has a positive cosine.
 """
 
+import math
 from typing import Any, NamedTuple
 
 from ...numbers.arithmetic import clamped_sqrt, compensated_sum, cos, guarded_divisor, offset_from_zero, sin, sqrt
 from ...numbers.planar import (
     cross,
     dot,
+    left,
     length_with_error,
     minus,
+    plus,
+    product,
     rotate,
     rotate_back,
+    scale_vector,
     subtract_vectors,
 )
 from ..links import present
@@ -46,8 +55,22 @@ TWO_TURN_KINDS = (FAR, NEAR, MEETING, OPPOSITE)
 
 def parse_passage(passage):
     """Kind, and quadrant of the direction from which the crank angle is halved."""
-    kind, facing = passage.split()
+    kind, facing, *_ = passage.split(" ")
     return kind, int(facing)
+
+
+class Carrier(NamedTuple):
+    """Rocker that carries a group: turns for one of the crank, and degrees about which its angle less those stays."""
+
+    turns: int
+    degrees: int
+    link: str
+
+
+def parse_carrier(passage):
+    """`Carrier` of a group on a rocker; None on a pin of the crank."""
+    found = passage.split(" ", 4)[2:]
+    return Carrier(int(found[0]), int(found[1]), found[2]) if found else None
 
 
 MIN_ROOT = 2.0**-27
@@ -73,9 +96,56 @@ class _Half(NamedTuple):
     frame: Any
 
 
-def _half(angle, pivot, ground, facing):
+class _Turning(NamedTuple):
+    """Joint that turns about a fixed place, from which the pivot stands at `pivot`.
+
+    Radius, and the rest that rounding took off it; unit vectors at angle 0 (None: +x) and at its angle, the latter from
+    the former. The angle is `angle` and the remainder of a rocker, of which half is given as a unit vector.
+    """
+
+    radius: Any
+    slack: Any
+    start: Any
+    ray: Any
+    pivot: Any
+    angle: Any
+    remainder: Any = None
+
+    @property
+    def half(self):
+        """Unit vector at half the angle."""
+        ahead = _half_ray(self.angle)
+        return ahead if self.remainder is None else rotate(self.remainder, ahead)
+
+
+def _half_ray(angle):
     half = 0.5 * angle
-    ray, start = (cos(half), sin(half)), _start(pivot, ground, facing)
+    return cos(half), sin(half)
+
+
+def _turning(placement, on, pivot, carrier):
+    """The joint `on`, a pin of the crank or of a rocker, as a `_Turning`."""
+    if carrier is None:
+        throw = placement.course(on).throw
+        (radius, start), slack = throw.polar, throw.radius_and_rest[1]
+        return _Turning(radius, slack, start, placement.ray, pivot, placement.angle)
+    centre, radius, ray = placement.course(on).swing
+    angle = carrier.turns * placement.angle + math.radians(carrier.degrees)
+    x, y = rotate_back(ray, (cos(angle), sin(angle)))
+    size = sqrt(2.0 + 2.0 * x)
+    pivot = subtract_vectors(pivot, centre)
+    return _Turning(radius, None, None, ray, pivot, angle, ((1.0 + x) / size, y / size))
+
+
+def _by_crank(link, carrier):
+    """Direction, ratio and slope by the crank angle, from those by the angle of the carrier."""
+    direction, ratio, slope = link
+    bend = product(product(carrier.ratio, carrier.ratio), slope)
+    return direction, product(ratio, carrier.ratio), plus(bend, product(ratio, carrier.ratio_slope))
+
+
+def _half(ray, pivot, ground, facing):
+    start = _start(pivot, ground, facing)
     cosine, sine = rotate_back(ray, start)
     return _Half(cosine, sine, rotate(ray, start))
 
@@ -93,17 +163,20 @@ def _start(pivot, ground, facing):
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel).
 
-    The branch is open (+1) or crossed (-1). `closure` leaves out the change points. The sine of the transmission angle
-    is a factor times a distance, which vanishes there alone; `divisor` holds both.
+    The pin is one of the crank, or of a rocker. The branch is open (+1) or crossed (-1). `closure` leaves out the
+    change points. The sine of the transmission angle is a factor times a distance, which vanishes there alone;
+    `divisor` holds both.
     """
-    throw, (d, rest) = placement.course(on).throw, length_with_error(pivot)
-    (a, direction), slack = throw.polar, throw.radius_and_rest[1]
-    b, h, pivot = coupler_length, rocker_length, rotate_back(pivot, direction)
+    carrier = parse_carrier(passage)
+    turning = _turning(placement, on, pivot, carrier)
+    a, slack, direction, ray, pivot, *_ = turning
+    (d, rest), pivot = length_with_error(pivot), rotate_back(pivot, direction)
+    b, h = coupler_length, rocker_length
     less, short = minus(None, rest), minus(None, slack)
     m = compensated_sum(d, -a, rest, short)
     kind, facing = parse_passage(passage)
     if kind in TWO_TURN_KINDS:
-        half = _half(placement.angle, pivot, d, facing)
+        half = _half(turning.half, pivot, d, facing)
         if kind == FAR:
             constant = compensated_sum(d, h, -a, -b, rest, short) * compensated_sum(d, b, -a, -h, rest, short)
         else:
@@ -113,17 +186,22 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     elif side > 0 and kind != KITE:
         # a parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank
         along = (pivot[0] / d, pivot[1] / d)
-        found = (along, None, None), (placement.ray, 1.0, None), 1.0, 1.0, cross(along, placement.ray)
+        found = (along, None, None), (ray, 1.0, None), 1.0, 1.0, cross(along, ray)
     elif side < 0 and kind != PARALLEL:
         # a folded kite: B stays on O, the coupler on the crank, the rocker on the ground
         back = (-pivot[0] / d, -pivot[1] / d)
-        crank = subtract_vectors(None, placement.ray), 1.0, None
-        found = crank, (back, None, None), 1.0, 1.0, cross(back, placement.ray)
+        crank = subtract_vectors(None, ray), 1.0, None
+        found = crank, (back, None, None), 1.0, 1.0, cross(back, ray)
     else:
-        found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
+        found = _mirrored(_half(turning.half, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
+    last = (rest[1], offset_from_zero(rest[2], MIN_DISTANCE)), rest[0]
+    if carrier is not None:
+        by_carrier = scale_vector(a, left(ray)), coupler[1], rocker[1]
+        coupler, rocker = (_by_crank(link, placement.links[carrier.link]) for link in (coupler, rocker))
+        return coupler, rocker, *last, by_carrier
     coupler, rocker = ((rotate(link[0], direction), *link[1:]) for link in (coupler, rocker))
-    return coupler, rocker, (rest[1], offset_from_zero(rest[2], MIN_DISTANCE)), rest[0]
+    return coupler, rocker, *last
 
 
 def slid(placement, on, coupler_length, guide, passage, side):
@@ -141,7 +219,7 @@ def slid(placement, on, coupler_length, guide, passage, side):
         along = dot((x, y), placement.ray)
         ratio = -1.0 if side > 0 else 1.0
         return side * a * along, ratio, None, (float(side), offset_from_zero(along, MIN_DISTANCE)), 1.0
-    half = _half(placement.angle, (y, -x), 1.0, facing)
+    half = _half(_half_ray(placement.angle), (y, -x), 1.0, facing)
     constant = compensated_sum(b, e if kind == NEAR else minus(None, e), -a, minus(None, slack))
     height, closure, rate, bend, factor, passed = _swung(kind, half, 0.5 * a, 2.0 * b, constant, side)
     reach = side * sqrt(2.0 * a) * passed * height
@@ -160,7 +238,7 @@ def slotted(placement, on, pivot, offset, passage, side):
     kind, facing = parse_passage(passage)
     a, ahead = placement.course(on).throw.polar
     d, pivot = length_with_error(pivot)[0], rotate_back(pivot, ahead)
-    half = _half(placement.angle, pivot, d, facing)
+    half = _half(_half_ray(placement.angle), pivot, d, facing)
     if kind == MEETING:
         direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
     else:

@@ -18,11 +18,23 @@ import numpy as np
 from ...numbers import checks
 from ...numbers.arithmetic import clamped_sqrt, guarded_divisor, offset_from_zero, sqrt
 from ...numbers.parameter_tree import replace_unchecked
-from ...numbers.planar import add_vectors, cross, dot, number_or_zero, scale_vector, subtract_vectors, vector_or_zero
+from ...numbers.planar import (
+    add_vectors,
+    cross,
+    dot,
+    minus,
+    number_or_zero,
+    plus,
+    product,
+    scale_vector,
+    subtract_vectors,
+    vector_or_zero,
+    work,
+)
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
-from . import change_points, near_dead_centre
+from . import carriers, change_points, near_dead_centre
 from .branches import Branch, equality
 from .change_points import FAR, KITE, MEETING, NEAR, PARALLEL, RHOMBUS, divide
 
@@ -50,7 +62,8 @@ TERMS = {
 class RockerMotion(NamedTuple):
     """A placed rocker group; `closure` is the squared sine of the transmission angle, without change points.
 
-    `divisor` is that sine to divide by, as `change_points.divide` takes it.
+    `divisor` is that sine to divide by, as `change_points.divide` takes it. `by_carrier`, of a group that passes change
+    points on a rocker: velocity of the inner joint and ratios of both links, by the angle of that rocker.
     """
 
     coupler: LinkMotion
@@ -58,6 +71,7 @@ class RockerMotion(NamedTuple):
     pin: Joint
     divisor: tuple[Any, Any]
     closure: Any
+    by_carrier: Any = None
 
 
 def place(joint, coupler_length, rocker_length, pivot, assembly):
@@ -89,10 +103,10 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return motion_of(joint, h, pivot, *links, (divided, None), heron / unit)
 
 
-def motion_of(joint, rocker_length, pivot, coupler, rocker, divisor, closure):
-    """Motion of the group from direction, ratio and slope of both links (kernel)."""
+def motion_of(joint, rocker_length, pivot, coupler, rocker, *last):
+    """Motion of the group from direction, ratio and slope of both links, and its last fields (kernel)."""
     rocker = LinkMotion(Joint(pivot, None, None), *rocker)
-    return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), divisor, closure)
+    return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), *last)
 
 
 def motion_between(start, end, pin, coupler_length, rocker_length):
@@ -193,7 +207,7 @@ class RockerGroup(Branch, RRRGroup):
         Fixed pivot O2, m.
     assembly : +1, -1, "open" or "crossed"
         +1: the pin to the left of the direction from the inner joint to the pivot. The words are for a group on A or
-        another pin of the crank, as for `four_bar`.
+        another pin of the crank, as for `four_bar`, or on the pin of another rocker, which counts as its crank.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
@@ -238,6 +252,7 @@ class RockerGroup(Branch, RRRGroup):
 
     LINKS: ClassVar = {"coupler": "on", "rocker": "pivot_name"}
     LENGTHS = "coupler and rocker lengths"
+    IS_ON_ROCKERS = True
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot", "plane": "coupler_plane"}
     KINDS: ClassVar = {
@@ -288,12 +303,14 @@ class RockerGroup(Branch, RRRGroup):
         return {RHOMBUS: far & meeting, KITE: both & kite, PARALLEL: both, FAR: far, MEETING: meeting, NEAR: near}
 
     def beside(self, groups, throws):
-        """The group with the axis of the toggle that it is with a slider beside it."""
+        """The group with the axis of the toggle that it is with a slider beside it, or with its passage on a rocker."""
         throw, toggle = throws.get(self.on), ""
         if throw is not None:
             guides = [guide for other in groups if self.pin in other.hangs_on for guide in other.guides.values()]
             axes = (near_dead_centre.toggle_axis(self, guide, throw) for guide in guides)
             toggle = next(filter(None, axes), "")
+        elif self.through:
+            return carriers.on_rocker(self, groups, throws)
         return self if toggle == self.toggle else replace_unchecked(self, toggle=toggle)
 
     def place(self, placement):
@@ -318,7 +335,16 @@ class RockerGroup(Branch, RRRGroup):
         placement.courses[self.pin] = Course(swing=swing)
 
     def resolve(self, placement, loads, along) -> Resolved:
-        return self.resolved(self._forces(placement, loads))
+        """Forces as of every group; of a rocker that carries it the moment by virtual work, finite at change points."""
+        forces, by_carrier = self._forces(placement, loads), self.placed(placement).by_carrier
+        if by_carrier is None:
+            return self.resolved(forces)
+        velocity, *ratios = by_carrier
+        coupler, rocker = self.of_links(loads)
+        power = plus(product(coupler.moment, ratios[0]), product(rocker.moment, ratios[1]))
+        moment = minus(None, plus(work(coupler.force, velocity), power))
+        link = change_points.parse_carrier(self.passage).link
+        return self.resolved(forces, demands={link: Wrench(forces[0], moment)})
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,9 +71,8 @@ def two_four_bars():
     bar = Link(1.0, 0.5, 1 / 12)
     groups = []
     for k in (1, 2):
-        lengths_and_pivot = float(k), 1.0, (float(k), 0.0)
-        names = {"pin": f"B{k}", "pivot_name": f"P{k}", "label": f"_{k}"}
-        groups.append(RockerGroup(*lengths_and_pivot, "open", Link(1.0, k - 0.5), bar, **names))  # type: ignore[arg-type]
+        names = {"on": f"B{k - 1}" if k > 1 else "A", "pin": f"B{k}", "pivot_name": f"P{k}", "label": f"_{k}"}
+        groups.append(RockerGroup(1.0, 1.0, (float(k), 0.0), "open", bar, bar, **names))  # type: ignore[arg-type]
     scene = Scene(Mechanism("N-four-bar", Crank(1.0, bar), tuple(groups)), 1.0, loads=Gravity())
     end = math.atan2(0.94451853817860096216, 0.32845811154081537865) - 10 * math.pi
     return CoastDown(scene, math.pi / 2, -1.0, 10.0, end)

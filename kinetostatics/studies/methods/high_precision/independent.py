@@ -17,7 +17,7 @@ from ....machine.crank import Pin
 from ....machine.followers.swinging import SwingingFollower
 from ....machine.followers.translating import GuidedFollower
 from ....machine.group import FRAME, TRAVELS
-from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parse_passage
+from ....machine.groups.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parse_carrier, parse_passage
 from ....machine.groups.lever import CylinderGroup, LeverGroup
 from ....machine.groups.rocker import Dyad, RockerGroup
 from ....machine.groups.slider import SliderGroup
@@ -70,15 +70,20 @@ class Posture:
             found["direction", name] = direction
         return found
 
-    def side(self, group):
+    def side(self, group, joints, links):
         """Assembly sign of a group, which changes at each change point that it passes."""
         side = SIDES.get(group.assembly, group.assembly)
         if not group.passes:
             return side
         (kind, _), slides = parse_passage(group.passage), isinstance(group, SliderGroup)
         start = -1j * self.along(group.guide) if slides else self.vector(group.pivot)
-        throw = self.mechanism.throws[group.on]
-        psi = self._angle - self.mp.arg(start if throw.ahead else start / self.vector(throw.at))
+        if (carrier := parse_carrier(group.passage)) is None:
+            throw = self.mechanism.throws[group.on]
+            psi = self._angle - self.mp.arg(start if throw.ahead else start / self.vector(throw.at))
+        else:
+            joint, direction = links[carrier.link]
+            turned = carrier.turns * self._angle + carrier.degrees * self.mp.pi / 180
+            psi = turned + self.mp.arg(direction / self.mp.expj(turned)) - self.mp.arg(start - joints[joint])
         half = self.mp.sin(psi / 2)
         passed = {FAR: self.mp.cos(psi / 2), NEAR: half, MEETING: half, OPPOSITE: half}
         return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
@@ -94,7 +99,7 @@ class Posture:
 
     @place.register
     def _(self, group: SliderGroup, joints, links):
-        mp, side = self.mp, self.side(group)
+        mp, side = self.mp, self.side(group, joints, links)
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
         along = self.along(group.guide)
@@ -114,7 +119,7 @@ class Posture:
         (a, b), (first, second) = map(self.number, lengths), (joints[name] for name in ends)
         d = abs(second - first)
         opening = mp.acos((d * d + a * a - b * b) / (2 * d * a))
-        direction = mp.expj(mp.arg(second - first) + self.side(group) * opening)
+        direction = mp.expj(mp.arg(second - first) + self.side(group, joints, links) * opening)
         joints[group.pin] = first + a * direction
         directions = direction, (joints[group.pin] - second) / b
         links |= {link: part for link, *part in zip(group.links, ends, directions, strict=True)}
@@ -126,7 +131,7 @@ class Posture:
 
     @place.register
     def _(self, group: LeverGroup, joints, links):
-        mp, side = self.mp, self.side(group)
+        mp, side = self.mp, self.side(group, joints, links)
         lever, block = group.links
         joints[group.pivot_name] = pivot = self.vector(group.pivot)
         to_pin = joints[group.on] - pivot
