@@ -270,10 +270,11 @@ def groups():
         "LeverGroup": (crank, (ks.LeverGroup((0.0, -0.18)),)),
         "CylinderGroup": (crank, (ks.CylinderGroup((0.3, 0.0)),)),
         "YokeGroup": (crank, (ks.YokeGroup(ks.Guide.at(0.0)),)),
+        "PlanetaryCrank": (crank, (ks.PlanetaryCrank(0.1),)),
         "CamRoller and SliderGroup": (ks.Crank(None), (cam, ks.SliderGroup(0.25))),
         "RollerFollower": (ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.03, 0.12)),)),
     }
-    figure, axes = plt.subplots(2, 4)
+    figure, axes = plt.subplots(3, 3)
     for ax, (name, (driver, chain)) in zip(axes.flat, chains.items(), strict=True):
         s = ks.solve(ks.Mechanism(name, driver, chain), TURN, crank_speed=1.0)
         ks.plots.mechanism(s, angles=(60,), ax=ax)
@@ -616,7 +617,7 @@ def springs():
 
 DRAWINGS = {
     "signs": (signs, (6.4, 3.1)),
-    "groups": (groups, (7.6, 4.0)),
+    "groups": (groups, (7.6, 5.4)),
     "crank_slider": (crank_slider, (6.4, 1.7)),
     "four_bar": (four_bar, (6.4, 1.9)),
     "lever": (lever, (6.4, 2.9)),

@@ -34,6 +34,7 @@ COUPLE = np.array([*np.transpose([np.cos(_HALF), np.sin(_HALF)]), (0.42, 0.72), 
 SPIRAL = np.transpose([_BENT * np.cos(_BENT), _BENT * np.sin(_BENT)]) / _BENT[-1]
 RING = np.transpose([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
 SECTOR = np.array([(0.0, 0.0), *np.transpose([np.cos(_SPREAD), np.sin(_SPREAD)])])
+LARGE_RING = np.transpose([np.cos(np.linspace(0, 2 * np.pi, 145)), np.sin(np.linspace(0, 2 * np.pi, 145))])
 RECTANGLE = np.array([(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)])
 
 
@@ -165,8 +166,8 @@ class Shape:
             if isinstance(pair, Meshing) and pair.link in links:  # pitch circles of planet and ring
                 axis = pose.position(pair.joint)
                 size = float(np.max(np.hypot(*axis)))
-                yield Stroke("outline", self._ring(axis, size))
-                yield Stroke("outline", self._ring(0.0 * axis, 2.0 * size))
+                yield Stroke("outline", self._ring(axis, size, LARGE_RING))
+                yield Stroke("outline", self._ring(0.0 * axis, 2.0 * size, LARGE_RING))
         for link, corners in self.corners.items():
             order = _line_order(corners)
             if corners.shape[1] > 1 and link in links:
@@ -205,9 +206,9 @@ class Shape:
         yield Stroke("plate", place_sign(barrel, origin, axis, self.unit))
         yield Stroke("bar", place_sign([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
 
-    def _ring(self, place, radius):
+    def _ring(self, place, radius, points=RING):
         level = np.broadcast_to([[1.0], [0.0]], place.shape)
-        return place_sign(RING, place, level, radius)
+        return place_sign(points, place, level, radius)
 
     def counterweights(self, pose):
         """Counterweights of turning links whose mass centres lie beyond their joints.
