@@ -15,8 +15,8 @@ the bar where w(y) + f(y) is what is left of the pitch, so
 
     start = p - w(0) - f(0)        end = p - w(h) - f(h)        h the height of the edges
 
-Straight edges shift the cut at even speed along them, and stalks that stand evenly make the force constant from start
-to end. Sections cut where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from the middle of that part.
+Straight edges and stalks that stand evenly make the force constant from start to end. Sections cut where
+cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from the middle of that part.
 """
 
 import math
@@ -30,11 +30,10 @@ import numpy as np
 from ...errors import NotGivenError, ParameterError
 from ...numbers import checks
 from ...numbers.arithmetic import cos, is_foreign_array, sign
-from ...numbers.planar import minus, number_or_zero, product, rotate
+from ...numbers.planar import add_vectors, number_or_zero, product, rotate
 from ..links import Wrench, present
-from ..supports import Support
-from .load import Jumps, Symbol, unknown_sense
-from .slider import REACTIONS, SliderLoad
+from .load import Jumps, unknown_sense
+from .slider import REACTIONS, WorkForce
 from .table import Table
 from .table_pieces import SAMPLE_OFFSET, STOP_SAMPLES, TURN, roots, stops_and_crossings
 
@@ -42,13 +41,11 @@ CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
-MILLIMETRES = "is it in mm?"
+MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
 TERMS = {
-    "stroke.far": ("s_f", "coordinate of the far dead centre"),
-    "stroke.near": ("s_n", "coordinate of the near dead centre"),
-    "_push.far": ("s_f", "coordinate of the far dead centre"),
-    "_push.near": ("s_n", "coordinate of the near dead centre"),
-    "_push.work": ("W", "work of the cutting stroke"),
+    "push.far": ("s_f", "coordinate of the far dead centre"),
+    "push.near": ("s_n", "coordinate of the near dead centre"),
+    "push.work": ("W", "work of the cutting stroke"),
     "push.way": ("d", "sense of the motion along the guide"),
     "push.beyond": ("u", "distance of a section from the middle of the cut"),
     "push.meeting": ("q", "cosine of its phase less that where the cut begins: positive while sections cut"),
@@ -56,14 +53,13 @@ TERMS = {
 """Symbols and meanings of kernel lines in hand calculations."""
 
 
-class StrokeLoad(SliderLoad):
+class StrokeForce(WorkForce):
     """A load on the stroke of a slider, which goes to and fro once in the period of the motion.
 
     `ends` are the coordinates of its far and its near dead centre from the crank, m, where they are known.
     """
 
     ends: Any
-    reaction: str
     REFUSES = STROKE = True
 
     def stroke(self, motion):
@@ -87,15 +83,6 @@ class StrokeLoad(SliderLoad):
     def jump_angles(self, motion):
         """Crank angles of the dead centres, (1 or designs, J), rad."""
         return stops_and_crossings(motion, self.on, np.empty(0))[0]
-
-    def rests_on_frame(self, mechanism):
-        return self.reaction == "frame"
-
-    def signs(self, motion):
-        """Symbol of a force along the guide."""
-        along = motion.as_vector(motion.mechanism.guides[self.on].direction)
-        here = motion.position(motion.mechanism.references[self.on])
-        yield Symbol("force", here, direction=along, sense=self.sense(motion))
 
 
 _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
@@ -145,13 +132,8 @@ def _dead_centres(mechanism, slider):
     return tuple(tuple(float(part[0]) if part.ndim == 1 else part for part in pair) for pair in pairs)
 
 
-def _resistance_rule():
-    number = checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, "is it in N/m2?", least=1e4))
-    return checks.OrFunction(number)
-
-
 @dataclass(frozen=True, eq=False)
-class Sawing(StrokeLoad):
+class Sawing(StrokeForce):
     """Cut of the saws on a slider: a constant force against the motion on the cutting stroke, none on the other.
 
     Parameters
@@ -237,11 +219,13 @@ class Sawing(StrokeLoad):
         height=checks.Number("m", low=0.0, usual=checks.PlausibleRange(5.0, MILLIMETRES, 1e-3)),
         saws=checks.Number("1", low=0.0),
         feed_per_stroke=checks.Number("m", low=0.0, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
-        resistance=_resistance_rule(),
+        resistance=checks.OrFunction(
+            checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, MEGAPASCALS, 1e6, least=1e4))
+        ),
         cuts=checks.Word(tuple(CUTS)),
-        thrust=checks.Number("1", usual=checks.PlausibleRange(5.0, "is it in percent, or in N?", 0.01)),
+        thrust=checks.Number("1"),
         overhang=checks.Number("m"),
-        pitch=checks.Optional(checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.5, MILLIMETRES, 1e-3))),
+        pitch=checks.Optional(checks.Number("m", low=0.0)),
         on=checks.Name(),
         reaction=checks.Word(REACTIONS),
     )
@@ -260,15 +244,10 @@ class Sawing(StrokeLoad):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        return number_or_zero(self._push(motion))
-
-    def _push(self, motion):
-        """The same; None without a cut."""
         far, near = self.stroke(motion)
-        way = CUTS[self.cuts]
         factors = self.resistance, self.saws, self.kerf, self.height, self.feed_per_stroke
         work = reduce(product, map(present, factors))
-        return product(work, 0.5 * (-way - self.outward(motion)) / (far - near))
+        return number_or_zero(product(work, 0.5 * (-CUTS[self.cuts] - self.outward(motion)) / (far - near)))
 
     def wrenches(self, motion):
         """Thrust of the log across the guide, with its moment about the slider's pin."""
@@ -279,8 +258,7 @@ class Sawing(StrokeLoad):
 
     def _across(self, motion):
         """Thrust of the log, N; None without."""
-        push = None if present(self.thrust) is None else self._push(motion)
-        return None if push is None else self.thrust * abs(push)
+        return None if present(self.thrust) is None else self.thrust * abs(self.push(motion))
 
     def foot(self, motion):
         """Coordinate of the log along the guide, m."""
@@ -289,12 +267,11 @@ class Sawing(StrokeLoad):
 
     def support(self, motion):
         """Force of the log on the frame, at the log."""
-        found = super().support(motion)
-        across = self._across(motion)
+        found, across = super().support(motion), self._across(motion)
         if across is None:
             return found
-        line = motion.mechanism.guides[self.on].line
-        return Support(rotate((minus(None, self.push(motion)), -across), line.direction), found.point)
+        thrust = rotate((0.0, -across), motion.mechanism.guides[self.on].direction)
+        return found._replace(force=add_vectors(found.force, thrust))
 
     def sense(self, motion):
         """Sign of the cutting force along the guide."""
@@ -303,7 +280,7 @@ class Sawing(StrokeLoad):
 
 
 @dataclass(frozen=True, eq=False)
-class Mowing(StrokeLoad):
+class Mowing(StrokeForce):
     """Cut of a mower's knife on a slider: a constant force against the motion while sections meet fingers.
 
     At mid-stroke the sections stand midway between two fingers; both strokes cut.
