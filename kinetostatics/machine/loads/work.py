@@ -1,22 +1,12 @@
 """Work of a slider on its stroke: a saw that cuts on one of its strokes, a mower's knife that cuts on both.
 
-With the far dead centre x_f of the slider from the crank and the near one x_n, coordinates along its guide, the stroke
-is S = |x_f - x_n|. A log that advances by D for each cutting stroke gives the saws wood of the volume b H D each, b the
-kerf and H the height of the cut. With the specific cutting resistance K, the work for a volume, the force on n saws is
+A log that advances by D for each cutting stroke S leaves n saws, b wide, the volume n b H D at the height H. With the
+work K for a volume the force is F = K n b H D / S all over the stroke, as saw and log move in proportion.
 
-    F = K n b H D / S        work of a stroke F S        power F S n_s at n_s strokes a second
-
-It is the same all over the cutting stroke, since log and saw move in proportion to one another there.
-
-The sections of a knife stand midway between two fingers at mid-stroke, x_m = (x_f + x_n) / 2, and pass a pitch p from
-one finger to the next. The edge of a section meets that of the finger ahead from `start` to `end`, distances from where
-the section stood in the finger behind: with half widths of section and finger, w and f, it does so at height y over
-the bar where w(y) + f(y) is what is left of the pitch, so
-
-    start = p - w(0) - f(0)        end = p - w(h) - f(h)        h the height of the edges
-
-Straight edges and stalks that stand evenly make the force constant from start to end. Sections cut where
-cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from the middle of that part.
+The sections of a knife stand midway between two fingers at mid-stroke. The edge of a section, half widths w(y), meets
+that of the finger ahead, f(y), once it has gone p - w - f from the finger behind, p the pitch: from `start` at the foot
+of the edges to `end` at their tips. It is there where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from
+the middle of that part. Stalks that stand evenly between straight edges make the force constant.
 """
 
 import math
@@ -66,10 +56,9 @@ class StrokeForce(WorkForce):
         """Coordinates of the far and of the near dead centre, m."""
         return dead_centres(motion, self.on)[1] if self.ends is None else self.ends
 
-    def outward(self, motion):
-        """Whether the slider moves from its near dead centre to the far one, or is about to: 1, else -1."""
-        far, near = self.stroke(motion)
-        return sign((far - near) * motion.placement.travels[self.on].first) * motion.crank_sense
+    def way(self, motion):
+        """Sense, +1 or -1 along the guide, in which the slider moves or is about to move."""
+        return sign(motion.placement.travels[self.on].first) * motion.crank_sense
 
     def refusals(self, motion):
         """Sentence on rest in an unknown sense."""
@@ -138,25 +127,22 @@ class Sawing(StrokeForce):
 
     Parameters
     ----------
-    kerf : float or array
-        Width b of the cut of one saw, m.
-    height : float or array
-        Height H of the cut, m; of a round log its mean over the saws.
+    kerf, height : float or array
+        Width b and height H of the cut of one saw, m; of a round log the mean height over the saws.
     saws : float or array
         Number n of the saws in the log.
     feed_per_stroke : float or array
         Advance D of the log for each cutting stroke, m.
     resistance : float, array or function
-        Specific cutting resistance K, Pa (N/m2; 1 MPa is 1 N/mm2, or 1 J/cm3); a function takes the mean thickness of
-        a chip, ``feed_per_stroke * pitch / S``, m, and returns K.
+        Specific cutting resistance K, Pa (1 MPa is 1 N/mm2, or 1 J/cm3); a function takes the mean thickness of a chip,
+        ``feed_per_stroke * pitch / S``, m, and returns K.
     cuts : "toward crank" or "away"
         Stroke on which it cuts.
     thrust : float or array
-        Force of the log on the saws across the guide while they cut, as a fraction of the cutting force; positive to
-        the left of the guide's direction.
+        Force of the log across the guide while it is cut, to the left of its direction, as a fraction of F.
     overhang : float or array
-        Distance of the log from the slider's pin at mid-stroke along the guide, m. The log stands still, so the arm of
-        the thrust about the pin is less by what the pin has travelled from there.
+        Place of the log along the guide from the slider's pin at mid-stroke, m. The log stands still, so the arm of the
+        thrust about the pin is less by what the pin has travelled from there.
     pitch : float or array, optional
         Pitch of the teeth, m; for a resistance by the thickness of the chip alone.
     on : str
@@ -167,9 +153,9 @@ class Sawing(StrokeForce):
     Raises
     ------
     ParameterError
-        A value is negative (but thrust and overhang), or no finite number; a function without a pitch, or a pitch
-        without a function; when a scene is made: there is no such slider; when it is solved: the slider does not go
-        to and fro once in a turn, or stands still in an unknown sense.
+        A value is no finite number, or negative (but thrust and overhang may be); a function without a pitch; when a
+        scene is made: there is no such slider; when it is solved: the slider does not go to and fro once in a turn, or
+        stands still in an unknown sense.
 
     Notes
     -----
@@ -202,15 +188,12 @@ class Sawing(StrokeForce):
 
     def _joint_problems(self):
         """Sentences on a resistance and a pitch that do not go together."""
-        by_chip = callable(self.resistance)
         if isinstance(self.resistance, Table):
             yield "resistance must be a number or a function of the chip thickness, got a Table"
-        elif by_chip != (self.pitch is not None):
-            yield (
-                "a resistance that is a function of the chip thickness needs the pitch of the teeth"
-                if by_chip
-                else "pitch is for a resistance that is a function of the chip thickness; leave it out"
-            )
+        elif callable(self.resistance) and self.pitch is None:
+            yield "a resistance that is a function of the chip thickness needs the pitch of the teeth"
+        elif not callable(self.resistance) and self.pitch is not None:
+            yield "pitch is for a resistance that is a function of the chip thickness; leave it out"
 
     RULES = checks.Rules(
         "sawing",
@@ -247,7 +230,7 @@ class Sawing(StrokeForce):
         far, near = self.stroke(motion)
         factors = self.resistance, self.saws, self.kerf, self.height, self.feed_per_stroke
         work = reduce(product, map(present, factors))
-        return number_or_zero(product(work, 0.5 * (-CUTS[self.cuts] - self.outward(motion)) / (far - near)))
+        return number_or_zero(product(work, 0.5 * (self.sense(motion) - self.way(motion)) / abs(far - near)))
 
     def wrenches(self, motion):
         """Thrust of the log across the guide, with its moment about the slider's pin."""
@@ -345,7 +328,7 @@ class Mowing(StrokeForce):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        way = sign(motion.placement.travels[self.on].first) * motion.crank_sense
+        way = self.way(motion)
         passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
         beyond = passed - 0.5 * way * (self.start + self.end)
         meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
@@ -369,4 +352,4 @@ class Mowing(StrokeForce):
 
     def sense(self, motion):
         """Sign of the force along the guide: against the motion."""
-        return -sign(motion.placement.travels[self.on].first) * motion.crank_sense
+        return -self.way(motion)

@@ -222,6 +222,22 @@ def test_batch_and_sweep_have_their_own_strokes():
         assert table["largest guide_force [N]"][place] == pytest.approx(one, rel=1e-12)
 
 
+def test_batch_over_two_axes():
+    radius, length = np.array([0.25, 0.3])[:, None, None], np.array([1.0, 1.5, 2.0])[None, :, None]
+    s = ks.solve(ks.crank_slider(radius, length, **LINKS), TURN, crank_speed=33.5, loads=sawing())
+    assert s.balancing_torque.shape == (2, 3, TURN.size)
+    alone = ks.solve(ks.crank_slider(0.3, 1.5, **LINKS), TURN, crank_speed=33.5, loads=sawing())
+    np.testing.assert_allclose(s.balancing_torque[1, 1], alone.balancing_torque, rtol=1e-12, atol=1e-9)
+
+
+def test_thrust_adds_to_the_friction_of_the_guide():
+    """Of a yoke the guide takes the thrust alone: mu of it is lost on the cutting stroke."""
+    frame, guide = ks.scotch_yoke(0.3, slider=ks.Link(600.0)), {"guide": ks.GuideFriction(0.1)}
+    s = ks.Scene(frame, 33.5, loads=sawing(thrust=0.5), friction=guide).solve(7)
+    assert s.losses.friction["guide"] == pytest.approx(0.1 * 0.5 * WORK * 33.5 / (2 * np.pi), rel=1e-10)
+    assert s.losses.drive == pytest.approx((1.0 + 0.05) * WORK * 33.5 / (2 * np.pi), rel=1e-10)
+
+
 def test_resistance_may_follow_the_chip():
     """Of the thickness D t / S; recorded where it is arithmetic, else read beforehand."""
     plain = scene("centric", resistance=50e6 * (1.0 + 0.02 * 0.025 / 0.6 / 1e-3)).solve(TURN)
