@@ -562,6 +562,45 @@ def planes():
     return figure
 
 
+def work():
+    """A saw frame in its log, with force, thrust and overhang; a section of a knife between two fingers."""
+    figure, (saw, knife) = plt.subplots(2, 1, height_ratios=(1.0, 0.8))
+    for height in (-0.22, 0.22):  # blades from the pin's end of the frame to the other
+        saw.plot([0.4, 3.2], [height, height], color=STEEL, lw=2.4)
+    for end in (0.3, 3.2):
+        saw.fill(*_box(np.array([1.0, 0.0]), 0.1) * [[1.0], [4.5]] + [[end], [0.0]], **PLATES["block"])
+    saw.fill([1.6, 2.5, 2.5, 1.6], [-0.4, -0.4, 0.4, 0.4], fc="0.9", ec=INK, lw=1.0, zorder=0, alpha=0.8)
+    saw.plot([-0.9, 0.3], [-0.25, 0.0], **LINES["bar"])
+    saw.plot(0.3, 0.0, "o", ms=5, mfc="white", mec=INK, zorder=8)
+    saw.text(0.3, 0.72, "B at mid-stroke", ha="center", va="center")
+    middle = np.array([2.05, 0.0])
+    arrow(saw, middle, middle + (0.75, 0.0), "F", LOAD)
+    arrow(saw, middle, middle + (0.0, 0.62), "thrust F", LOAD)
+    saw.text(1.7, -0.53, "log", ha="center", va="center")
+    saw.annotate("", (-0.75, 0.28), (-0.05, 0.28), arrowprops={**SHAFT, "color": INK})
+    saw.text(-0.4, 0.42, "cuts", ha="center", va="center")
+    for x in (0.3, 2.05):
+        saw.plot([x, x], [-0.1, -0.95], color=INK, lw=0.5)
+    dimension(saw, (0.3, -0.88), (2.05, -0.88), "overhang", (0.0, 0.14))
+    pitch, place = 2.0, 1.0
+    for x in (0.0, pitch):  # fingers, and the section on its way between them
+        knife.fill(x + np.array([-0.32, 0.32, 0.2, -0.2]), [0.0, 0.0, 1.0, 1.0], fc="0.9", ec=INK, lw=1.0)
+        knife.text(x, -0.14, "finger", ha="center", va="center")
+        knife.plot([x, x], [0.0, 1.75], color=INK, lw=0.5)
+    knife.fill(place + np.array([-1.0, 1.0, 0.2, -0.2]), [0.0, 0.0, 1.0, 1.0], **(PLATES["block"] | {"alpha": 0.7}))
+    knife.plot([place, place], [0.0, 1.42], color=INK, lw=0.5)
+    knife.text(place, 0.35, "section", ha="center", va="center")
+    knife.plot(1.722, 0.348, "o", ms=5, color=LOAD, zorder=9)
+    knife.annotate("cut", (1.722, 0.348), (2.8, 0.65), va="center", arrowprops={**SHAFT, "color": LOAD, "lw": 0.9})
+    dimension(knife, (0.0, 1.66), (pitch, 1.66), "pitch", (0.0, 0.13))
+    dimension(knife, (0.0, 1.3), (place, 1.3), "start ... end", (0.0, 0.13))
+    for ax in (saw, knife):
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.margins(0.06)
+        ax.axis("off")
+    return figure
+
+
 def balance_shafts():
     """A harmonic of the force as an ellipse of two circles; a crank-slider with counterweight and three shafts."""
     figure, (one, two) = plt.subplots(1, 2, width_ratios=(1.0, 1.5))
@@ -632,6 +671,7 @@ DRAWINGS = {
     "../parts/play": (play, (4.4, 3.6)),
     "../parts/springs": (springs, (6.4, 3.0)),
     "../machines/balance_shafts": (balance_shafts, (7.0, 3.0)),
+    "../machines/work": (work, (6.0, 4.6)),
     "../parts/planes": (planes, (6.4, 3.2)),
     "../parts/bearings": (bearings, (6.4, 2.6)),
 }

@@ -10,7 +10,16 @@ import kinetostatics as ks
 from support.every import every
 from support.machines import second_harmonic
 
-MACHINES = ("compressor", "pumpjack", "shaper", "v_twin", "in_line_twin", "toggle_press", "yoke_pump")
+MACHINES = (
+    "compressor",
+    "pumpjack",
+    "shaper",
+    "v_twin",
+    "in_line_twin",
+    "sawframe_2r63_cutting",
+    "toggle_press",
+    "yoke_pump",
+)
 case = cache(ks.load_case)
 
 
@@ -54,6 +63,20 @@ def test_compressor_gas_acts_by_travel_slope():
     pressure = 1e5 * ((0.105 / (0.255 - travel)) ** 1.4 - 1)
     found = loaded.balancing_torque[10] - idle.balancing_torque[10]
     assert found == pytest.approx(pressure * AREA * slope, rel=2e-3)
+
+
+# Frame saw in a log: 60 MPa, 8 saws, 3.6 mm, 250 mm, 20 mm, 320 rpm, stroke 600 mm
+
+
+@every("way", ("", "cam-"))
+def test_saw_cuts_by_the_volume_of_wood(way):
+    idle, cutting = (case("sawframe_2r63_cutting").solve(f"{way}{name}") for name in ("idle", "cutting"))
+    assert cutting.losses.drive == pytest.approx(60e6 * 8 * 3.6e-3 * 0.25 * 0.02 * 320 / 60, rel=1e-12)
+    assert idle.losses.drive == pytest.approx(0.0, abs=1e-8)
+    on = cutting.slider_velocity < 0
+    couple = 0.2 * 14.4e3 * (cutting.loads[-1].foot(cutting) - cutting.slider_position)  # of the thrust about B
+    np.testing.assert_allclose((cutting.guide_moment - idle.guide_moment + couple * on)[1:], 0.0, atol=1e-8)
+    assert np.ptp(couple) == pytest.approx(0.2 * 14.4e3 * 0.6, rel=1e-3)
 
 
 # Pumpjack: R .95, P 3.1, C 2.45, A 2.8, pivot (-2.45, 3.1) m; 40 kN and 30 kN

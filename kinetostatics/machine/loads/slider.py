@@ -262,8 +262,23 @@ def spring_masses(loads: Iterable[Any]) -> dict[str, SpringMass]:
     return {slider: SpringMass(mass, mass / 3.0, 0.5 * mass) for slider, mass in found.items()}
 
 
+class WorkForce(SliderLoad):
+    """Force of the work that a slider does; the frame, or something outside, takes the opposite force."""
+
+    reaction: str
+
+    def rests_on_frame(self, mechanism):
+        return self.reaction == "frame"
+
+    def signs(self, motion):
+        """Symbol of a force along the guide."""
+        mechanism = motion.mechanism
+        along = motion.as_vector(mechanism.guides[self.on].direction)
+        yield Symbol("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))
+
+
 @dataclass(frozen=True, eq=False)
-class ProcessForce(SliderLoad):
+class ProcessForce(WorkForce):
     """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
 
     Parameters
@@ -333,12 +348,3 @@ class ProcessForce(SliderLoad):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
-
-    def rests_on_frame(self, mechanism):
-        return self.reaction == "frame"
-
-    def signs(self, motion):
-        """Symbol of a force along the guide."""
-        mechanism = motion.mechanism
-        along = motion.as_vector(mechanism.guides[self.on].direction)
-        yield Symbol("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))

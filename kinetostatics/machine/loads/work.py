@@ -1,22 +1,12 @@
 """Work of a slider on its stroke: a saw that cuts on one of its strokes, a mower's knife that cuts on both.
 
-With the far dead centre x_f of the slider from the crank and the near one x_n, coordinates along its guide, the stroke
-is S = |x_f - x_n|. A log that advances by D for each cutting stroke gives the saws wood of the volume b H D each, b the
-kerf and H the height of the cut. With the specific cutting resistance K, the work for a volume, the force on n saws is
+A log that advances by D for each cutting stroke S leaves n saws, b wide, the volume n b H D at the height H. With the
+work K for a volume the force is F = K n b H D / S all over the stroke, as saw and log move in proportion.
 
-    F = K n b H D / S        work of a stroke F S        power F S n_s at n_s strokes a second
-
-It is the same all over the cutting stroke, since log and saw move in proportion to one another there.
-
-The sections of a knife stand midway between two fingers at mid-stroke, x_m = (x_f + x_n) / 2, and pass a pitch p from
-one finger to the next. The edge of a section meets that of the finger ahead from `start` to `end`, distances from where
-the section stood in the finger behind: with half widths of section and finger, w and f, it does so at height y over
-the bar where w(y) + f(y) is what is left of the pitch, so
-
-    start = p - w(0) - f(0)        end = p - w(h) - f(h)        h the height of the edges
-
-Straight edges shift the cut at even speed along them, and stalks that stand evenly make the force constant from start
-to end. Sections cut where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from the middle of that part.
+The sections of a knife stand midway between two fingers at mid-stroke. The edge of a section, half widths w(y), meets
+that of the finger ahead, f(y), once it has gone p - w - f from the finger behind, p the pitch: from `start` at the foot
+of the edges to `end` at their tips. It is there where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from
+the middle of that part. Stalks that stand evenly between straight edges make the force constant.
 """
 
 import math
@@ -30,11 +20,10 @@ import numpy as np
 from ...errors import NotGivenError, ParameterError
 from ...numbers import checks
 from ...numbers.arithmetic import cos, is_foreign_array, sign
-from ...numbers.planar import minus, number_or_zero, product, rotate
+from ...numbers.planar import add_vectors, number_or_zero, product, rotate
 from ..links import Wrench, present
-from ..supports import Support
-from .load import Jumps, Symbol, unknown_sense
-from .slider import REACTIONS, SliderLoad
+from .load import Jumps, unknown_sense
+from .slider import REACTIONS, WorkForce
 from .table import Table
 from .table_pieces import SAMPLE_OFFSET, STOP_SAMPLES, TURN, roots, stops_and_crossings
 
@@ -42,13 +31,11 @@ CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
-MILLIMETRES = "is it in mm?"
+MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
 TERMS = {
-    "stroke.far": ("s_f", "coordinate of the far dead centre"),
-    "stroke.near": ("s_n", "coordinate of the near dead centre"),
-    "_push.far": ("s_f", "coordinate of the far dead centre"),
-    "_push.near": ("s_n", "coordinate of the near dead centre"),
-    "_push.work": ("W", "work of the cutting stroke"),
+    "push.far": ("s_f", "coordinate of the far dead centre"),
+    "push.near": ("s_n", "coordinate of the near dead centre"),
+    "push.work": ("W", "work of the cutting stroke"),
     "push.way": ("d", "sense of the motion along the guide"),
     "push.beyond": ("u", "distance of a section from the middle of the cut"),
     "push.meeting": ("q", "cosine of its phase less that where the cut begins: positive while sections cut"),
@@ -56,24 +43,22 @@ TERMS = {
 """Symbols and meanings of kernel lines in hand calculations."""
 
 
-class StrokeLoad(SliderLoad):
+class StrokeForce(WorkForce):
     """A load on the stroke of a slider, which goes to and fro once in the period of the motion.
 
     `ends` are the coordinates of its far and its near dead centre from the crank, m, where they are known.
     """
 
     ends: Any
-    reaction: str
     REFUSES = STROKE = True
 
     def stroke(self, motion):
         """Coordinates of the far and of the near dead centre, m."""
         return dead_centres(motion, self.on)[1] if self.ends is None else self.ends
 
-    def outward(self, motion):
-        """Whether the slider moves from its near dead centre to the far one, or is about to: 1, else -1."""
-        far, near = self.stroke(motion)
-        return sign((far - near) * motion.placement.travels[self.on].first) * motion.crank_sense
+    def way(self, motion):
+        """Sense, +1 or -1 along the guide, in which the slider moves or is about to move."""
+        return sign(motion.placement.travels[self.on].first) * motion.crank_sense
 
     def refusals(self, motion):
         """Sentence on rest in an unknown sense."""
@@ -87,15 +72,6 @@ class StrokeLoad(SliderLoad):
     def jump_angles(self, motion):
         """Crank angles of the dead centres, (1 or designs, J), rad."""
         return stops_and_crossings(motion, self.on, np.empty(0))[0]
-
-    def rests_on_frame(self, mechanism):
-        return self.reaction == "frame"
-
-    def signs(self, motion):
-        """Symbol of a force along the guide."""
-        along = motion.as_vector(motion.mechanism.guides[self.on].direction)
-        here = motion.position(motion.mechanism.references[self.on])
-        yield Symbol("force", here, direction=along, sense=self.sense(motion))
 
 
 _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
@@ -145,36 +121,28 @@ def _dead_centres(mechanism, slider):
     return tuple(tuple(float(part[0]) if part.ndim == 1 else part for part in pair) for pair in pairs)
 
 
-def _resistance_rule():
-    number = checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, "is it in N/m2?", least=1e4))
-    return checks.OrFunction(number)
-
-
 @dataclass(frozen=True, eq=False)
-class Sawing(StrokeLoad):
+class Sawing(StrokeForce):
     """Cut of the saws on a slider: a constant force against the motion on the cutting stroke, none on the other.
 
     Parameters
     ----------
-    kerf : float or array
-        Width b of the cut of one saw, m.
-    height : float or array
-        Height H of the cut, m; of a round log its mean over the saws.
+    kerf, height : float or array
+        Width b and height H of the cut of one saw, m; of a round log the mean height over the saws.
     saws : float or array
         Number n of the saws in the log.
     feed_per_stroke : float or array
         Advance D of the log for each cutting stroke, m.
     resistance : float, array or function
-        Specific cutting resistance K, Pa (N/m2; 1 MPa is 1 N/mm2, or 1 J/cm3); a function takes the mean thickness of
-        a chip, ``feed_per_stroke * pitch / S``, m, and returns K.
+        Specific cutting resistance K, Pa (1 MPa is 1 N/mm2, or 1 J/cm3); a function takes the mean thickness of a chip,
+        ``feed_per_stroke * pitch / S``, m, and returns K.
     cuts : "toward crank" or "away"
         Stroke on which it cuts.
     thrust : float or array
-        Force of the log on the saws across the guide while they cut, as a fraction of the cutting force; positive to
-        the left of the guide's direction.
+        Force of the log across the guide while it is cut, to the left of its direction, as a fraction of F.
     overhang : float or array
-        Distance of the log from the slider's pin at mid-stroke along the guide, m. The log stands still, so the arm of
-        the thrust about the pin is less by what the pin has travelled from there.
+        Place of the log along the guide from the slider's pin at mid-stroke, m. The log stands still, so the arm of the
+        thrust about the pin is less by what the pin has travelled from there.
     pitch : float or array, optional
         Pitch of the teeth, m; for a resistance by the thickness of the chip alone.
     on : str
@@ -185,9 +153,9 @@ class Sawing(StrokeLoad):
     Raises
     ------
     ParameterError
-        A value is negative (but thrust and overhang), or no finite number; a function without a pitch, or a pitch
-        without a function; when a scene is made: there is no such slider; when it is solved: the slider does not go
-        to and fro once in a turn, or stands still in an unknown sense.
+        A value is no finite number, or negative (but thrust and overhang may be); a function without a pitch; when a
+        scene is made: there is no such slider; when it is solved: the slider does not go to and fro once in a turn, or
+        stands still in an unknown sense.
 
     Notes
     -----
@@ -220,15 +188,12 @@ class Sawing(StrokeLoad):
 
     def _joint_problems(self):
         """Sentences on a resistance and a pitch that do not go together."""
-        by_chip = callable(self.resistance)
         if isinstance(self.resistance, Table):
             yield "resistance must be a number or a function of the chip thickness, got a Table"
-        elif by_chip != (self.pitch is not None):
-            yield (
-                "a resistance that is a function of the chip thickness needs the pitch of the teeth"
-                if by_chip
-                else "pitch is for a resistance that is a function of the chip thickness; leave it out"
-            )
+        elif callable(self.resistance) and self.pitch is None:
+            yield "a resistance that is a function of the chip thickness needs the pitch of the teeth"
+        elif not callable(self.resistance) and self.pitch is not None:
+            yield "pitch is for a resistance that is a function of the chip thickness; leave it out"
 
     RULES = checks.Rules(
         "sawing",
@@ -237,11 +202,13 @@ class Sawing(StrokeLoad):
         height=checks.Number("m", low=0.0, usual=checks.PlausibleRange(5.0, MILLIMETRES, 1e-3)),
         saws=checks.Number("1", low=0.0),
         feed_per_stroke=checks.Number("m", low=0.0, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
-        resistance=_resistance_rule(),
+        resistance=checks.OrFunction(
+            checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, MEGAPASCALS, 1e6, least=1e4))
+        ),
         cuts=checks.Word(tuple(CUTS)),
-        thrust=checks.Number("1", usual=checks.PlausibleRange(5.0, "is it in percent, or in N?", 0.01)),
+        thrust=checks.Number("1"),
         overhang=checks.Number("m"),
-        pitch=checks.Optional(checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.5, MILLIMETRES, 1e-3))),
+        pitch=checks.Optional(checks.Number("m", low=0.0)),
         on=checks.Name(),
         reaction=checks.Word(REACTIONS),
     )
@@ -260,15 +227,10 @@ class Sawing(StrokeLoad):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        return number_or_zero(self._push(motion))
-
-    def _push(self, motion):
-        """The same; None without a cut."""
         far, near = self.stroke(motion)
-        way = CUTS[self.cuts]
         factors = self.resistance, self.saws, self.kerf, self.height, self.feed_per_stroke
         work = reduce(product, map(present, factors))
-        return product(work, 0.5 * (-way - self.outward(motion)) / (far - near))
+        return number_or_zero(product(work, 0.5 * (self.sense(motion) - self.way(motion)) / abs(far - near)))
 
     def wrenches(self, motion):
         """Thrust of the log across the guide, with its moment about the slider's pin."""
@@ -279,8 +241,7 @@ class Sawing(StrokeLoad):
 
     def _across(self, motion):
         """Thrust of the log, N; None without."""
-        push = None if present(self.thrust) is None else self._push(motion)
-        return None if push is None else self.thrust * abs(push)
+        return None if present(self.thrust) is None else self.thrust * abs(self.push(motion))
 
     def foot(self, motion):
         """Coordinate of the log along the guide, m."""
@@ -289,12 +250,11 @@ class Sawing(StrokeLoad):
 
     def support(self, motion):
         """Force of the log on the frame, at the log."""
-        found = super().support(motion)
-        across = self._across(motion)
+        found, across = super().support(motion), self._across(motion)
         if across is None:
             return found
-        line = motion.mechanism.guides[self.on].line
-        return Support(rotate((minus(None, self.push(motion)), -across), line.direction), found.point)
+        thrust = rotate((0.0, -across), motion.mechanism.guides[self.on].direction)
+        return found._replace(force=add_vectors(found.force, thrust))
 
     def sense(self, motion):
         """Sign of the cutting force along the guide."""
@@ -303,7 +263,7 @@ class Sawing(StrokeLoad):
 
 
 @dataclass(frozen=True, eq=False)
-class Mowing(StrokeLoad):
+class Mowing(StrokeForce):
     """Cut of a mower's knife on a slider: a constant force against the motion while sections meet fingers.
 
     At mid-stroke the sections stand midway between two fingers; both strokes cut.
@@ -368,7 +328,7 @@ class Mowing(StrokeLoad):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        way = sign(motion.placement.travels[self.on].first) * motion.crank_sense
+        way = self.way(motion)
         passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
         beyond = passed - 0.5 * way * (self.start + self.end)
         meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
@@ -392,4 +352,4 @@ class Mowing(StrokeLoad):
 
     def sense(self, motion):
         """Sign of the force along the guide: against the motion."""
-        return -sign(motion.placement.travels[self.on].first) * motion.crank_sense
+        return -self.way(motion)

@@ -7,7 +7,10 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.design import case_text
+from kinetostatics.mechanics import free_body
 from support import mirror
+from support.case_files import case_file, problems
 from support.every import every
 from support.machines import largest
 
@@ -219,6 +222,22 @@ def test_batch_and_sweep_have_their_own_strokes():
         assert table["largest guide_force [N]"][place] == pytest.approx(one, rel=1e-12)
 
 
+def test_batch_over_two_axes():
+    radius, length = np.array([0.25, 0.3])[:, None, None], np.array([1.0, 1.5, 2.0])[None, :, None]
+    s = ks.solve(ks.crank_slider(radius, length, **LINKS), TURN, crank_speed=33.5, loads=sawing())
+    assert s.balancing_torque.shape == (2, 3, TURN.size)
+    alone = ks.solve(ks.crank_slider(0.3, 1.5, **LINKS), TURN, crank_speed=33.5, loads=sawing())
+    np.testing.assert_allclose(s.balancing_torque[1, 1], alone.balancing_torque, rtol=1e-12, atol=1e-9)
+
+
+def test_thrust_adds_to_the_friction_of_the_guide():
+    """Of a yoke the guide takes the thrust alone: mu of it is lost on the cutting stroke."""
+    frame, guide = ks.scotch_yoke(0.3, slider=ks.Link(600.0)), {"guide": ks.GuideFriction(0.1)}
+    s = ks.Scene(frame, 33.5, loads=sawing(thrust=0.5), friction=guide).solve(7)
+    assert s.losses.friction["guide"] == pytest.approx(0.1 * 0.5 * WORK * 33.5 / (2 * np.pi), rel=1e-10)
+    assert s.losses.drive == pytest.approx((1.0 + 0.05) * WORK * 33.5 / (2 * np.pi), rel=1e-10)
+
+
 def test_resistance_may_follow_the_chip():
     """Of the thickness D t / S; recorded where it is arithmetic, else read beforehand."""
     plain = scene("centric", resistance=50e6 * (1.0 + 0.02 * 0.025 / 0.6 / 1e-3)).solve(TURN)
@@ -291,6 +310,82 @@ def test_jumps_of_many_knives_are_those_of_each():
 def test_mirrored_mower():
     knife = ks.crank_slider(0.038, 0.4, guide_offset=0.02, slider=ks.Link(4.0))
     assert max(mirror.solved(ks.Scene(knife, 60.0, loads=CROP)).values()) < 1e-12
+
+
+# In case files, hand calculations and free bodies
+
+
+def test_case_file(tmp_path):
+    text = """
+title = "Knife"
+reference = "knife"
+[variants.knife]
+mechanism = "crank-slider"
+crank_speed = "60 rad/s"
+crank_length = "38 mm"
+coupler_length = "400 mm"
+slider = { mass = "4 kg" }
+[[variants.knife.loads]]
+kind = "mowing"
+force = "600 N"
+pitch = "76.2 mm"
+start = "26 mm"
+end = "60 mm"
+[[variants.knife.loads]]
+kind = "sawing"
+kerf = "3.2 mm"
+height = "250 mm"
+saws = 8
+feed_per_stroke = "20 mm"
+resistance = "50 MPa"
+cuts = "away"
+thrust = -0.1
+reaction = "outside"
+"""
+    variant = ks.load_case(case_file(tmp_path, text)).variant("knife")
+    knife = ks.crank_slider(0.038, 0.4, slider=ks.Link(4.0))
+    written = ks.Scene(knife, 60.0, loads=[CROP, sawing(cuts="away", thrust=-0.1, reaction="outside")])
+    s, same = variant.scene.solve(TURN), written.solve(TURN)
+    np.testing.assert_allclose(s.balancing_torque, same.balancing_torque, rtol=1e-13)
+    np.testing.assert_allclose(s.guide_force, same.guide_force, atol=1e-9)
+    path = case_text.write_case(tmp_path / "again.toml", "Knife", {"one": written})
+    again = ks.load_case(path).variant("one").scene.solve(TURN)
+    np.testing.assert_array_equal(again.balancing_torque, same.balancing_torque)
+
+
+@every("key, value, words", (("pitch", '"0 mm"', "greater than 0"), ("cuts", '"up"', "allowed: 'toward crank'")))
+def test_wrong_texts_are_refused_in_place(tmp_path, key, value, words):
+    kind = {"pitch": "mowing", "cuts": "sawing"}[key]
+    text = f"""
+title = "Saw"
+reference = "one"
+[variants.one]
+mechanism = "crank-slider"
+crank_speed = "60 rad/s"
+crank_length = "38 mm"
+coupler_length = "400 mm"
+[[variants.one.loads]]
+kind = "{kind}"
+{key} = {value}
+"""
+    assert any(f"{key}" in problem and words in problem for problem in problems(tmp_path, text))
+
+
+def test_hand_calculation_names_stroke_and_work():
+    told = str(scene(thrust=0.2).solve(TURN).explain("guide_moment", 1.0))
+    for words in ("coordinate of the far dead centre", "work of the cutting stroke", "moment of sawing on the slider"):
+        assert words in told
+    knife = ks.Scene(ks.crank_slider(0.038, 0.4, slider=ks.Link(4.0)), 60.0, loads=CROP).solve(TURN)
+    assert "distance of a section from the middle of the cut" in str(knife.explain("guide_force", 1.0))
+
+
+def test_free_body_of_the_slider_is_in_balance():
+    s = scene(thrust=0.3, overhang=0.2).solve(np.array([2.0]))
+    own = [item for item in free_body.free_body(s.dynamics, "slider") if item.name == "Sawing on 'slider'"]
+    along = s.mechanism.guides["slider"].direction
+    total = np.sum([np.array(item.force).ravel() for item in own], axis=0)
+    force = s.loads[1].push(s)[0]
+    np.testing.assert_allclose(total, force * np.array(along) + 0.3 * abs(force) * np.array([-along[1], along[0]]))
 
 
 # Rest, gaps and hostile values
