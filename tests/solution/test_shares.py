@@ -67,7 +67,7 @@ def test_inertia_and_weight_of_springs_are_their_own():
 def test_shares_add_up_to_the_peak_in_every_shipped_machine(case):
     for variant in variant_names(case):
         solution = shipped(case).solve(variant)
-        if solution.friction.acting:
+        if solution.friction.acting or solution.mechanism.sign_forces:
             continue
         assert misfit(solution.at(ANGLES)) < 10.0 * ROUNDING
         for quantity in ("O", "balancing_torque", "shaking_force"):
