@@ -126,7 +126,9 @@ def test_law_by_points_of_a_file(tmp_path, kind, heading, unit):
     angle = np.arange(0, 360, 5)
     rows = "\n".join(f"{a}, {p * unit:.5f}" for a, p in zip(angle, law(np.radians(angle)).position, strict=True))
     (tmp_path / "law.csv").write_text(f"angle [deg], position [{heading}]\n{rows}\n")
-    text = MADE[kind][0].split("cam")[0] + f'cam = {{ kind = "table", table = "law.csv", noise = "2.9e-6 {heading}" }}\n'
+    text = (
+        MADE[kind][0].split("cam")[0] + f'cam = {{ kind = "table", table = "law.csv", noise = "2.9e-6 {heading}" }}\n'
+    )
     made = loaded(tmp_path, HEAD + text).variants["drive"].scene.mechanism.groups[0]
     turn = np.linspace(0.0, 6.0, 50)
     assert np.allclose(made.cam.law(turn).position, law(turn).position, rtol=1e-4)
@@ -141,7 +143,7 @@ def test_run_prints_the_forces(tmp_path, capsys):
 
 
 WRONG = [
-    ('cam = { kind = "cosine", amplitude = "5 mm", mean = "45 mm" }', "5 deg", "cam: amplitude"),
+    ('cam = { kind = "cosine", amplitude = "5 mm", mean = "45 mm" }', "5 deg", "cam: cosine: a position"),
     ('cam = { kind = "cosine", amplitude = "5 mm" }', None, "cam.mean is missing"),
     ('cam = { kind = "cosin", amplitude = "5 mm", mean = "45 mm" }', None, "did you mean 'cosine'"),
     ('cam = { kind = "circle", radius = "5 mm" }', None, "kind"),
@@ -173,7 +175,7 @@ def test_wrong_laws_are_refused(tmp_path, cam, other, words):
 
 def test_swinging_follower_takes_angles(tmp_path):
     text = MADE["swinging"][0].replace("6 deg", "6 mm")
-    with pytest.raises(ks.CaseError, match="cam: amplitude"):
+    with pytest.raises(ks.CaseError, match="cam: cosine: a position"):
         loaded(tmp_path, HEAD + text)
 
 

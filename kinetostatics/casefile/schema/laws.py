@@ -1,5 +1,6 @@
 """Laws of followers in a case file: those of `ks.laws`, with positions in m, of a swinging follower in rad."""
 
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator
@@ -21,18 +22,27 @@ def _position(text):
 
 
 Position = Annotated[str, BeforeValidator(_position)]
+POSITIONS = ("amplitude", "mean", "start", "end", "position", "noise")
+"""Keys that hold positions."""
 
 
 class LawTable(Table):
-    def law(self, unit) -> Any:
-        """Law with positions in this unit; of one in a file, its function of angles and positions."""
+    kind: str
 
-    def si(self, name, unit):
-        """Position of a key in the SI unit."""
+    def law(self, unit) -> Any:
+        """Law or segment with positions in this unit; of a file, the function of its columns that makes the law."""
+        return getattr(laws, self.kind.replace(" ", "_"))(**self.values(unit))
+
+    def values(self, unit):
+        """Values by key, but for the kind, with positions in the SI unit."""
         try:
-            return to_si(getattr(self, name), unit)
+            return {
+                name: to_si(value, unit) if name in POSITIONS and value is not None else value
+                for name, value in self
+                if name != "kind"
+            }
         except ValueError as error:
-            raise KinetostaticsError(f"cam: {name} {error}") from None
+            raise KinetostaticsError(f"cam: {self.kind}: a position {error}") from None
 
 
 class SegmentCurveTable(LawTable):
@@ -45,25 +55,12 @@ class SegmentCurveTable(LawTable):
     angle: Angle
     """Crank angle that it takes."""
 
-    def law(self, unit):
-        make = getattr(laws, self.kind.replace(" ", "_"))
-        return make(self.si("start", unit), self.si("end", unit), self.angle)
 
-
-class SegmentPolynomialTable(LawTable):
-    kind: Literal["polynomial"]
-    """Polynomial."""
-    start: Position
-    """Position at its start."""
-    end: Position
-    """Position at its end."""
-    angle: Angle
-    """Crank angle that it takes."""
+class SegmentPolynomialTable(SegmentCurveTable):
+    kind: Literal["polynomial"]  # type: ignore[assignment]
+    """Polynomial between the same positions."""
     powers: Literal["3-4-5", "4-5-6-7"] | tuple[int, ...] = "3-4-5"
     """Of the polynomial."""
-
-    def law(self, unit):
-        return laws.polynomial(self.si("start", unit), self.si("end", unit), self.angle, self.powers)
 
 
 class SegmentDwellTable(LawTable):
@@ -73,9 +70,6 @@ class SegmentDwellTable(LawTable):
     """Where it rests."""
     angle: Angle
     """Crank angle that it takes."""
-
-    def law(self, unit):
-        return laws.dwell(self.si("position", unit), self.angle)
 
 
 CURVES = dict.fromkeys(("harmonic", "cycloidal", "modified sine", "modified trapezoid"), SegmentCurveTable)
@@ -91,9 +85,6 @@ class LawCosineTable(LawTable):
     """Position at mid-stroke."""
     phase: Angle = 0.0
     """Crank angle of the farthest position."""
-
-    def law(self, unit):
-        return laws.cosine(self.si("amplitude", unit), self.si("mean", unit), self.phase)
 
 
 class LawJoinedTable(LawTable):
@@ -117,8 +108,7 @@ class LawFileTable(LawTable):
     """Standard deviation of the positions, which smooths them; without, the curve runs through all of them."""
 
     def law(self, unit):
-        noise = None if self.noise is None else self.si("noise", unit)
-        return lambda angle, position: laws.table(angle, position, noise)
+        return partial(laws.table, noise=self.values(unit)["noise"])
 
 
 Law = one_of("law", {"cosine": LawCosineTable, "joined": LawJoinedTable, "table": LawFileTable})
