@@ -219,25 +219,3 @@ def test_pump_torque_is_force_times_sine_arm():
     pressure = np.where(sine < 0, 60e5, -0.3e5)
     gas = -pressure * 12.57e-4 * 0.04 * sine
     np.testing.assert_allclose(pumping.balancing_torque - idle.balancing_torque, gas, atol=1e-11)
-
-
-# Drives of a knife of 5 kg: stroke 76 mm, 600 rpm, 500 N against it both ways
-
-
-@every("variant", case("mower_drives").variants)
-def test_drives_of_the_knife_do_its_work_over_its_stroke(variant):
-    s = fine("mower_drives", variant)
-    low, high = ks.extremes(s, "slider_position").range
-    assert high - low == pytest.approx(0.076, abs=1e-6)
-    assert 20 * pi * np.mean(s.balancing_torque) == pytest.approx(10 * 2 * 500 * 0.076, rel=1e-4)
-
-
-def test_frame_force_of_the_planetary_drive_and_none_with_counterweights():
-    """Knife and block go to and fro, arm and planet turn; with counterweights the torque is that of the crop alone."""
-    plain, balanced = (case("mower_drives").solve(name) for name in ("planetary", "planetary-balanced"))
-    angle, square = plain.crank_angle, (20 * pi) ** 2
-    turning, moving = 0.5 * 0.0095 + 0.4 * 0.019, 5.2 * 0.038
-    by_hand = square * np.array([(turning + moving) * np.cos(angle), turning * np.sin(angle)])
-    np.testing.assert_allclose(plain.shaking_force, by_hand, atol=1e-11)
-    assert np.abs(balanced.shaking_force).max() < 1e-11
-    np.testing.assert_allclose(balanced.balancing_torque, 19.0 * np.abs(np.sin(angle)), atol=1e-12)
