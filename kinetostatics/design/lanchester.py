@@ -16,7 +16,7 @@ import numpy as np
 from ..cycle.means import closed_turn, means
 from ..errors import ParameterError
 from ..machine.group import CRANK
-from ..machine.loads import TURN, BalanceShaft, balance_shafts, spring_masses
+from ..machine.loads import TURN, BalanceShaft, loads_with_mass
 from ..machine.loads.balance_shaft import RATIO_TOLERANCE, RatioRule
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
@@ -79,8 +79,8 @@ class WithShafts:
 
 def force_series(scene, orders):
     """Terms of the series of the shaking force over crank speed squared by their orders, complex, kg m."""
-    loads = [item for item in scene.loads if spring_masses((item,)) or balance_shafts((item,))]
-    turn = closed_turn(Scene(scene.mechanism, 1.0, loads=loads).unsolved(np.zeros(1)), OWNER)
+    masses = Scene(scene.mechanism, 1.0, loads=loads_with_mass(scene.loads))
+    turn = closed_turn(masses.unsolved(np.zeros(1)), OWNER)
     turns = round(turn.period / TURN)
     absent = sorted({abs(n) for n in orders if abs(n * turns - round(n * turns)) > RATIO_TOLERANCE})
     words = f"has no harmonics {absent}: it repeats after {turns} turn{'s' * (turns > 1)} of the crank"

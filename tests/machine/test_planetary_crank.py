@@ -147,6 +147,7 @@ def test_extremes_see_the_change_of_flank():
     assert any(np.abs(np.asarray(found.angle) - fine.crank_angle[at]).min() < 1e-4 for at in signs)
 
 
+@pytest.mark.slow
 def test_compiled_values_and_derivatives_agree():
     scene = ks.Scene(drive(line=0.4), 60.0, loads=[ks.Gravity(), ks.ProcessForce(-100.0)])
     names = ("O", "A", "mesh", "tooth_force", "balancing_torque")
@@ -227,6 +228,7 @@ def test_proven_bounds_hold_at_change_of_flank_too():
         assert np.all(s.error_bound(name) < 1e-11)
 
 
+@pytest.mark.slow
 def test_shares_leave_out_sources_as_teeth_are_not_linear():
     s = scene().solve(90)
     shares = s.shares("mesh")
