@@ -18,7 +18,7 @@ from ..machine.crank import Crank, Rotor
 from ..machine.friction import friction_kind
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, balance_shafts, spring_masses, value_of
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, loads_with_mass, value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import paths as tree
 from ..numbers.checks import choice
@@ -307,7 +307,7 @@ def build_scene(table, tabulated):
         (("friction", joint), partial(_friction_pair, part, joint, mechanism)) for joint, part in table.friction.items()
     )
     loads = own + tuple(listed.values())
-    if balanced is not None and (spring_masses(loads) or balance_shafts(loads)):
+    if balanced is not None and loads_with_mass(loads):
         raise KinetostaticsError(
             "balancing finds counterweights of the links alone, but a spring or shaft has mass; leave it out, or find "
             "the counterweights as a design that minimises the shaking force"

@@ -16,8 +16,8 @@ import numpy as np
 from ..cycle.means import closed_turn, means
 from ..errors import ParameterError
 from ..machine.group import CRANK
-from ..machine.loads import BalanceShaft, balance_shafts, spring_masses
-from ..machine.loads.balance_shaft import RatioRule
+from ..machine.loads import TURN, BalanceShaft, loads_with_mass
+from ..machine.loads.balance_shaft import RATIO_TOLERANCE, RatioRule
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from ..solution.scene import Scene, scene_problem
@@ -79,8 +79,12 @@ class WithShafts:
 
 def force_series(scene, orders):
     """Terms of the series of the shaking force over crank speed squared by their orders, complex, kg m."""
-    loads = [item for item in scene.loads if spring_masses((item,)) or balance_shafts((item,))]
-    turn = closed_turn(Scene(scene.mechanism, 1.0, loads=loads).unsolved(np.zeros(1)), OWNER)
+    masses = Scene(scene.mechanism, 1.0, loads=loads_with_mass(scene.loads))
+    turn = closed_turn(masses.unsolved(np.zeros(1)), OWNER)
+    turns = round(turn.period / TURN)
+    absent = sorted({abs(n) for n in orders if abs(n * turns - round(n * turns)) > RATIO_TOLERANCE})
+    words = f"has no harmonics {absent}: it repeats after {turns} turn{'s' * (turns > 1)} of the crank"
+    checks.require(OWNER, f"the shaking force {words}" if absent else None)
 
     def parts(angle):
         x, y = turn.at.moved_to(turn.clear(angle)).shaking_force
@@ -114,7 +118,7 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     ------
     ParameterError
         Neither a scene nor a solution, a batch of designs, or one that does not close all round; a harmonic that is
-        not positive, or given twice; a counterweight that breaks its limits.
+        not positive, given twice, or a fraction that the motion does not have; a counterweight that breaks its limits.
 
     Examples
     --------

@@ -108,10 +108,10 @@ def pair_rate(part, name, pair, placement):
 
 
 def rolling_resistance(friction):
-    """Force along the curve that turns a roller, and the couple of its pin, by the force across; None: no couple, m.
+    """Force t along the curve that turns a roller, and couple of its pin, m (None without), for a force of 1 across.
 
-    With the radius r, the pin's lever p = mu times its radius and the arm e of rolling friction the force t along the
-    curve follows from t r = e + p sqrt(1 + t^2).
+    With the roller's radius r, p = mu times the pin's radius and the arm e of rolling friction
+    t r = e + p sqrt(1 + t^2), where the last term is the couple.
     """
     mu, arm, radius = present(friction.mu), present(friction.rolling_arm), friction.roller_radius
     if mu is None:

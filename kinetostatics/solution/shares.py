@@ -30,7 +30,7 @@ from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..machine.friction import NO_FRICTION, frictions_by_joint
 from ..machine.group import GROUND
-from ..machine.loads import Force, Gravity, balance_shafts, spring_masses
+from ..machine.loads import Force, Gravity, loads_with_mass
 from ..mechanics import jamming
 from ..mechanics.load_values import numbered_titles
 from ..mechanics.quantities import Quantity, components, magnitude, of_scene, without_bars
@@ -236,8 +236,7 @@ def sources_alone(solution):
     found |= {f"weight of {name}": (weightless, (weight,)) for name, weight in _weights(solution).items()}
     gravity = tuple(item for item in solution.loads if isinstance(item, Gravity))
     for title, item in _titled_loads(solution):  # the weight of a spring or shaft is its own
-        heavy_load = spring_masses((item,)) or balance_shafts((item,))
-        found[title] = weightless, (item, *gravity) if heavy_load else (item,)
+        found[title] = weightless, (item, *gravity) if loads_with_mass((item,)) else (item,)
     return {
         source: replace(solution, mechanism=mechanism, loads=loads, friction=NO_FRICTION, silent=True)
         for source, (mechanism, loads) in found.items()

@@ -136,6 +136,7 @@ REFUSED = {
     "negative": (lambda s: ks.balancing.shafts(s, (-1,)), "must be positive"),
     "twice": (lambda s: ks.balancing.shafts(s, (1, 2, 1.0)), "each once"),
     "irrational": (lambda s: ks.balancing.shafts(s, (np.pi,)), "denominator of at most 24"),
+    "of no turn": (lambda s: ks.balancing.shafts(s, (1, 0.5)), r"no harmonics \[0.5\]: it repeats after 1 turn of"),
     "text": (lambda s: ks.balancing.shafts(s, ("first",)), "must be a number"),
     "place": (lambda s: ks.balancing.shafts(s, at=(0.1,)), "at must be a pair"),
     "ratio of a place": (lambda s: ks.balancing.shafts(s, at={3: (0.0, 0.0)}), "at has ratios that no shaft has"),

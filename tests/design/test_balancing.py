@@ -276,6 +276,7 @@ def test_least_largest_moment_beats_a_scan(mechanism, about):
     assert np.ptp(moments) > 0.1 * least
 
 
+@pytest.mark.slow
 def test_a_crank_counterweight_changes_the_moment_about_another_point_alone():
     """By the lever of its force there: F x p is in proportion to its unbalance, which decides."""
     weight = {"crank": Counterweight(mass=2.0)}

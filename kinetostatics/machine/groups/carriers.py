@@ -18,6 +18,7 @@ from .branches import SEVERAL_DESIGNS
 
 TURN = 2.0 * np.pi
 ANGLES = np.linspace(0.0, TURN, 721)
+"""Crank angles at which the rocker is followed, rad."""
 MAX_REMAINDER = 165.0
 """Largest angle of a rocker from `Carrier.degrees` and its whole turns, degrees; half of 180 has two signs."""
 START_TOLERANCE = 1e-9

@@ -60,7 +60,7 @@ def parse_passage(passage):
 
 
 class Carrier(NamedTuple):
-    """Rocker that carries a group: turns for one of the crank, and degrees about which its angle less those stays."""
+    """Rocker `link` that carries a group. Its angle is `turns` of the crank's and within half a turn of `degrees`."""
 
     turns: int
     degrees: int
@@ -99,8 +99,9 @@ class _Half(NamedTuple):
 class _Turning(NamedTuple):
     """Joint that turns about a fixed place, from which the pivot stands at `pivot`.
 
-    Radius, and the rest that rounding took off it; unit vectors at angle 0 (None: +x) and at its angle, the latter from
-    the former. The angle is `angle` and the remainder of a rocker, of which half is given as a unit vector.
+    Its distance from that place is `radius` plus the rounding error `slack`. `start` is the unit vector to it at angle
+    0 (None: +x), `ray` the one at its angle, in axes with +x along `start`. Of a rocker the angle is `angle` and a
+    remainder; `remainder` is the unit vector at half of that.
     """
 
     radius: Any

@@ -58,8 +58,8 @@ def place(joint, length, radius, line):
 def resolve(motion, load, pressure_angle):
     """Reactions of arm and ring on the planet, and the tangential tooth force (kernel).
 
-    `load` is the wrench of all other loads about the planet's axis. Its moment gives the tangential force. Both flanks
-    press the planet off the ring alike.
+    `load` is the wrench of all other loads about the planet's axis; its moment gives the tangential force. Either flank
+    presses the planet off the ring.
     """
     arm, length = motion.arm, motion.length
     radial = (arm[0] / length, arm[1] / length)
@@ -74,8 +74,8 @@ def resolve(motion, load, pressure_angle):
 class PlanetaryCrank(checks.Checked, Group):
     """Planet on the crank pin `on` that rolls in a fixed ring of twice its size.
 
-    With a `radius` of the arm's length its pin runs on a line through O, with four arms as stroke. Hang a slider on the
-    pin by a `YokeGroup` whose slot stands across the line: then the guide carries only loads across.
+    If `radius` is the length of the arm, its pin runs on a line through O, with a stroke of four arms. Hang a slider on
+    the pin by a `YokeGroup` whose slot stands across the line: then the guide carries only loads across.
 
     Parameters
     ----------

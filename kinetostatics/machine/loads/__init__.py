@@ -5,7 +5,7 @@ May import errors, numbers and the modules of `machine` that describe links and 
 
 # ruff: noqa: F401 - other rooms import from here
 
-from .balance_shaft import BalanceShaft, balance_shafts
+from .balance_shaft import BalanceShaft, balance_shafts, loads_with_mass
 from .gas_spring import GasSpring
 from .gravity import Gravity
 from .load import (

@@ -23,6 +23,7 @@ from ..group import CRANK, POSITION
 from ..links import Wrench, acceleration_of, present
 from ..supports import Support
 from .load import Load, Symbol
+from .slider import spring_masses
 from .table_pieces import TURN
 
 MAX_DENOMINATOR = 24
@@ -180,3 +181,8 @@ class BalanceShaft(Load):
 def balance_shafts(loads):
     """Loads with masses of their own that turn with the crank: see `Load`."""
     return [item for item in loads if hasattr(item, "shaking")]
+
+
+def loads_with_mass(loads):
+    """Springs with mass and balance shafts among loads, a list."""
+    return [item for item in loads if spring_masses((item,)) or balance_shafts((item,))]

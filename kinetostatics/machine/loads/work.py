@@ -39,6 +39,7 @@ TERMS = {
     "push.way": ("d", "sense of the motion along the guide"),
     "push.beyond": ("u", "distance of a section from the middle of the cut"),
     "push.meeting": ("q", "cosine of its phase less that where the cut begins: positive while sections cut"),
+    "push.cutting": ("z", "share of the force that acts: 1 while sections cut"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""
 
@@ -71,7 +72,7 @@ class StrokeForce(WorkForce):
 
     def jump_angles(self, motion):
         """Crank angles of the dead centres, (1 or designs, J), rad."""
-        return stops_and_crossings(motion, self.on, np.empty(0))[0]
+        return np.mod(np.column_stack(dead_centres(motion, self.on)[0]), TURN * motion.mechanism.turns)
 
 
 _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
@@ -332,7 +333,8 @@ class Mowing(StrokeForce):
         passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
         beyond = passed - 0.5 * way * (self.start + self.end)
         meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
-        return number_or_zero(product(present(self.force), 0.5 * (-way - way * sign(meeting))))
+        cutting = 0.5 * (1.0 + sign(meeting)) + 0.0 * meeting  # NaN without a stroke
+        return number_or_zero(product(present(self.force), -way * cutting))
 
     def _passed(self, position, ends):
         """Distance along the guide from where the sections stand in fingers half a pitch before mid-stroke, m."""
@@ -340,15 +342,14 @@ class Mowing(StrokeForce):
 
     def jump_angles(self, motion):
         """Crank angles of the dead centres, and of start and end of the cut, (1 or designs, J), rad."""
-        ends = self.stroke(motion)
-        most = int(np.ceil(np.max(np.abs(ends[0] - ends[1]) / self.pitch))) + 2
-        found = []
+        far, near = ends = self.stroke(motion)
+        most = np.ceil(np.max(np.nan_to_num(abs(far - near) / self.pitch))) + 2.0
+        found = [super().jump_angles(motion)]
         for place in (self.start, self.end, -self.start, -self.end):  # each of both senses of motion
             origin = place - self._passed(0.0, ends)
-            stops, passed = stops_and_crossings(motion, self.on, np.arange(-most, most + 1.0), origin, self.pitch)
-            found.append(passed)
-        rows = max(len(stops), *map(len, found))
-        return np.column_stack([np.broadcast_to(part, (rows, part.shape[1])) for part in (stops, *found)])
+            found.append(stops_and_crossings(motion, self.on, np.arange(-most, most + 1.0), origin, self.pitch)[1])
+        rows = max(map(len, found))
+        return np.column_stack([np.broadcast_to(part, (rows, part.shape[1])) for part in found])
 
     def sense(self, motion):
         """Sign of the force along the guide: against the motion."""

@@ -55,6 +55,7 @@ def travelled(s):
 # The saw
 
 
+@pytest.mark.slow
 @every("frame", FRAMES)
 @every("speed", (33.5, -33.5))
 @every("cuts", ("toward crank", "away"))
@@ -416,6 +417,24 @@ def test_at_rest_it_opposes_the_motion_about_to_begin(item):
         )
         np.testing.assert_array_equal(moving, starting)
         np.testing.assert_array_equal(moving, told)
+
+
+@every("item", (sawing(thrust=0.2), CROP))
+def test_a_machine_that_does_not_close_all_round_has_no_stroke_and_no_force(item):
+    open_one = ks.crank_slider(0.3, np.array([[0.25], [1.0]]), **LINKS)
+    s = ks.solve(open_one, TURN, crank_speed=1.0, loads=item, on_gap="nan")
+    assert np.isnan(item.push(s)[0]).all()
+    alone = ks.solve(ks.crank_slider(0.3, 1.0, **LINKS), TURN, crank_speed=1.0, loads=item)
+    np.testing.assert_allclose(item.push(s)[1], item.push(alone), rtol=1e-12)
+
+
+@pytest.mark.slow
+@every("item", (sawing(thrust=0.2), CROP))
+def test_extremes_and_programs_without_a_stroke(item):
+    short = ks.Scene(ks.crank_slider(0.3, 0.25, **LINKS), 1.0, loads=item)
+    assert np.isnan(ks.compile(short, ["balancing_torque"])(TURN)["balancing_torque"]).all()
+    with pytest.warns(ks.ConditionWarning, match="has no value: it does not close"):
+        ks.extremes(short.solve(7, on_gap="nan"), "balancing_torque")
 
 
 def test_no_stroke_no_force():
