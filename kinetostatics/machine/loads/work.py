@@ -31,6 +31,8 @@ CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
+MAX_PITCHES = 1000
+"""Fingers that a section passes in a stroke, at most."""
 MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
 TERMS = {
     "push.far": ("s_f", "coordinate of the far dead centre"),
@@ -328,11 +330,12 @@ class Mowing(StrokeForce):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        way = self.way(motion)
-        passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
+        way, ends = self.way(motion), self.stroke(motion)
+        stroke, passed = ends[0] - ends[1], self._passed(motion.placement.travels[self.on].position, ends)
         beyond = passed - 0.5 * way * (self.start + self.end)
         meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
-        return number_or_zero(product(present(self.force), 0.5 * (-way - way * sign(meeting))))
+        force = product(present(self.force), stroke / stroke)  # NaN without a stroke, for the sign of NaN is a number
+        return number_or_zero(product(force, 0.5 * (-way - way * sign(meeting))))
 
     def _passed(self, position, ends):
         """Distance along the guide from where the sections stand in fingers half a pitch before mid-stroke, m."""
@@ -341,7 +344,12 @@ class Mowing(StrokeForce):
     def jump_angles(self, motion):
         """Crank angles of the dead centres, and of start and end of the cut, (1 or designs, J), rad."""
         ends = self.stroke(motion)
-        most = int(np.ceil(np.max(np.abs(ends[0] - ends[1]) / self.pitch))) + 2
+        pitches = np.max(np.nan_to_num(np.abs(ends[0] - ends[1]) / self.pitch))
+        if pitches > MAX_PITCHES:
+            raise ParameterError(
+                f"{self.title}: its stroke has {pitches:.4g} times the pitch; at most {MAX_PITCHES} are resolved"
+            )
+        most = int(np.ceil(pitches)) + 2
         found = []
         for place in (self.start, self.end, -self.start, -self.end):  # each of both senses of motion
             origin = place - self._passed(0.0, ends)

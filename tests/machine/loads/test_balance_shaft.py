@@ -290,6 +290,8 @@ BAD_RATIOS = {
     "0": (0, "must not be 0"),
     "irrational": (np.sqrt(2.0), "denominator of at most 24"),
     "large": (1e9, "at most 100"),
+    "beyond all floats": (10**400, "at most 100"),
+    "imprecise": (np.float32(1 / 3), "denominator of at most 24"),
     "not a number": (np.nan, "must be a number"),
     "infinite": (-np.inf, "must be a number"),
     "text": ("twice", "must be a number"),
@@ -305,6 +307,11 @@ def test_ratios_that_no_gear_has(name):
     value, words = BAD_RATIOS[name]
     with pytest.raises(ks.ParameterError, match=f"ratio .*{words}"):
         ks.BalanceShaft(0.1, value)
+
+
+@every("value", (np.float32(-0.5), np.int64(-2)))
+def test_ratios_by_numpy(value):
+    assert ks.BalanceShaft(0.1, value).ratio == float(value)
 
 
 def test_pulled_by_nothing_it_does_nothing():
