@@ -57,7 +57,9 @@ def _instead(name):
     """End of the error for a name that is near no public name."""
     machines = "cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever"
     groups = ", ".join(
-        each for each in __getattr__("__all__") if each.endswith("Group") or each in ("CamRoller", "Dyad", "Pin")
+        each
+        for each in __getattr__("__all__")
+        if each.endswith("Group") or each in ("CamRoller", "Dyad", "Pin", "PlanetaryCrank")
     )
     return f"; machines are {machines}, and a Mechanism of {groups}; dir({__name__}) lists all names"
 

@@ -1,7 +1,5 @@
 """Planetary crank: straight path of its pin, tooth and bearing forces, balance of its machine."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -35,13 +33,13 @@ def test_pin_at_another_radius_runs_on_an_ellipse():
     assert (x / 1.4) ** 2 + (y / 0.6) ** 2 == pytest.approx(1.0, rel=1e-14)
 
 
-def add_column(columns, centres, *actions):
-    """Column of an unknown: forces on bodies at places, and couples."""
-    column = np.zeros(12)
-    for body, force, place, couple in actions:
+def column_of(unknown, centres):
+    """Column of one unknown: (body, unit force, its place, unit couple) of each body that it acts on."""
+    column = np.zeros(3 * len(centres))
+    for body, force, place, couple in unknown:
         arm = place - centres[body]
         column[3 * body : 3 * body + 3] += force.real, force.imag, (arm.conjugate() * force).imag + couple
-    columns.append(column)
+    return column
 
 
 def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle):
@@ -78,21 +76,19 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
                 link.inertia * ratio * acceleration - moment,
             ]
         for side in (1.0, -1.0):
-            columns = []
-            put = partial(add_column, columns, centres)
-            for unit in (1.0 + 0j, 1j):
-                put((0, unit, 0.0, 0.0))
-            for unit in (1.0 + 0j, 1j):
-                put((1, unit, axis[at], 0.0), (0, -unit, axis[at], 0.0))
             teeth = (1j - side * np.tan(pressure_angle)) * ray[at]
-            put((1, teeth, 2.0 * axis[at], 0.0))
-            for unit in (1.0 + 0j, 1j):
-                put((2, unit, pin[at], 0.0), (1, -unit, pin[at], 0.0))
-            put((2, 1j * 1j * way, pin[at], 0.0), (3, -1j * 1j * way, pin[at], 0.0))
-            put((2, 0j, pin[at], 1.0), (3, 0j, pin[at], -1.0))
-            put((3, 1j * way, foot[at], 0.0))
-            put((3, 0j, foot[at], 1.0))
-            put((0, 0j, 0.0, 1.0))
+            actions = [
+                *([(0, unit, 0.0, 0.0)] for unit in (1.0 + 0j, 1j)),
+                *([(1, unit, axis[at], 0.0), (0, -unit, axis[at], 0.0)] for unit in (1.0 + 0j, 1j)),
+                [(1, teeth, 2.0 * axis[at], 0.0)],
+                *([(2, unit, pin[at], 0.0), (1, -unit, pin[at], 0.0)] for unit in (1.0 + 0j, 1j)),
+                [(2, -way, pin[at], 0.0), (3, way, pin[at], 0.0)],
+                [(2, 0j, pin[at], 1.0), (3, 0j, pin[at], -1.0)],
+                [(3, 1j * way, foot[at], 0.0)],
+                [(3, 0j, foot[at], 1.0)],
+                [(0, 0j, 0.0, 1.0)],
+            ]
+            columns = [column_of(unknown, centres) for unknown in actions]
             forces = np.linalg.solve(np.array(columns).T, right)
             if forces[4] * side >= 0.0:
                 break
@@ -151,6 +147,7 @@ def test_extremes_see_the_change_of_flank():
     assert any(np.abs(np.asarray(found.angle) - fine.crank_angle[at]).min() < 1e-4 for at in signs)
 
 
+@pytest.mark.slow
 def test_compiled_values_and_derivatives_agree():
     scene = ks.Scene(drive(line=0.4), 60.0, loads=[ks.Gravity(), ks.ProcessForce(-100.0)])
     names = ("O", "A", "mesh", "tooth_force", "balancing_torque")
@@ -197,3 +194,68 @@ def test_a_planet_hangs_on_the_crank():
 def test_teeth_take_no_friction():
     with pytest.raises(ks.ParameterError, match="friction: joint is 'mesh', allowed: 'O', 'A', 'P'"):
         ks.solve(drive(), 0.0, crank_speed=1.0, friction={"mesh": ks.PinFriction(0.1, 0.01)})
+
+
+def scene(speed=60.0, loads=(ks.ProcessForce(-100.0), ks.Gravity()), **options):
+    return ks.Scene(drive(**options), speed, loads=loads)
+
+
+def test_a_mirrored_machine_has_mirrored_forces():
+    """Mirrored in the x axis: angles, turning and places across change their sign."""
+    crank, planet, knife = (
+        ks.Link(each.mass, each.centre * np.array([1, -1]), each.inertia) for each in (CRANK, PLANET, KNIFE)
+    )
+    s = scene(line=0.4, loads=[ks.ProcessForce(-100.0)]).solve(TURN)
+    mirrored = scene(-60.0, [ks.ProcessForce(-100.0)], line=-0.4, crank=crank, planet=planet, knife=knife).solve(-TURN)
+    for name in ("O", "A", "mesh"):
+        x, y = mirrored.reaction(name)
+        assert np.array([x, -y]) == pytest.approx(s.reaction(name), rel=1e-12, abs=1e-9)
+    for name in ("tooth_force", "balancing_torque", "guide_force"):
+        assert -mirrored.scalar(name) == pytest.approx(s.scalar(name), rel=1e-12, abs=1e-9)
+
+
+def test_ground_forces_with_teeth_balance_inertia_weight_and_push():
+    s = scene().solve(TURN)
+    total = s.shaking_force + np.array([[-100.0], [-9.81 * sum(link.mass for link in s.mechanism.links.values())]])
+    assert s.ground.resultant == pytest.approx(total, rel=1e-12, abs=1e-9)
+    assert s.ground["mesh"].point == pytest.approx(2.0 * s.position("A"))
+    assert s.ground["mesh"].force == pytest.approx(-s.reaction("mesh"))
+
+
+def test_proven_bounds_hold_at_change_of_flank_too():
+    s = ks.Scene(drive(crank=ks.Link(), planet=ks.Link(), block=ks.Link(), knife=ks.Link(4.6)), 60.0).solve(4)
+    for name in ("tooth_force", "|mesh|", "|O|", "balancing_torque"):
+        assert np.all(s.error_bound(name) < 1e-11)
+
+
+@pytest.mark.slow
+def test_shares_leave_out_sources_as_teeth_are_not_linear():
+    s = scene().solve(90)
+    shares = s.shares("mesh")
+    assert "thrust of teeth is not linear" in shares.note
+    peak = shares.total.value
+    assert peak == pytest.approx(ks.extremes(s, "mesh").largest, rel=1e-9)
+
+
+def test_coasting_machine_keeps_its_energy():
+    run = ks.drive.coast(scene(loads=()), flywheel=0.02, from_speed=60.0, until=0.2)
+    assert run.kinetic_energy == pytest.approx(run.kinetic_energy[0], rel=1e-8)
+    assert np.ptp(run.speed) > 1.0
+
+
+def test_a_sweep_over_designs_agrees_with_each_alone():
+    radii = np.array([[0.9], [1.0], [1.1]]) * ARM
+    s = ks.solve(drive(radius=radii), TURN, crank_speed=60.0)
+    for place, radius in enumerate(radii.ravel()):
+        alone = ks.solve(drive(radius=float(radius)), TURN, crank_speed=60.0)
+        assert s.reaction("mesh")[:, place] == pytest.approx(alone.reaction("mesh"), rel=1e-13, abs=1e-10)
+
+
+def test_friction_of_its_pins_takes_power():
+    friction = {"O": ks.PinFriction(0.1, 0.01), "A": ks.PinFriction(0.1, 0.01), "P": ks.PinFriction(0.1, 0.01)}
+    s = ks.solve(drive(), TURN, crank_speed=60.0, friction=friction)
+    plain = ks.solve(drive(), TURN, crank_speed=60.0)
+    assert np.all(s.friction_loss > 0.0)
+    assert np.mean(s.balancing_torque - plain.balancing_torque) * 60.0 == pytest.approx(
+        np.mean(s.friction_loss), rel=1e-9
+    )

@@ -19,6 +19,7 @@ MACHINES = (
     "sawframe_2r63_cutting",
     "toggle_press",
     "yoke_pump",
+    "mower_drives",
 )
 case = cache(ks.load_case)
 

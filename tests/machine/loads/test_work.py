@@ -1,5 +1,6 @@
 """Sawing and mowing: forces over the stroke of a slider that are constant while it cuts."""
 
+import importlib.util
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,10 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design import case_text
+from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics import free_body
+from kinetostatics.studies.methods.global_system import newton
+from kinetostatics.studies.methods.high_precision.certified import certified
 from support import mirror
 from support.case_files import case_file, problems
 from support.every import every
@@ -369,6 +373,15 @@ kind = "{kind}"
 {key} = {value}
 """
     assert any(f"{key}" in problem and words in problem for problem in problems(tmp_path, text))
+
+
+def test_studies_refuse_what_they_cannot_compute():
+    s = scene().solve(np.array([1.0, 5.0]))
+    with pytest.raises(NotGivenError, match="no independent formula for a Sawing"):
+        newton.NEWTON_METHODS[0].prepare(s, "O", 3)()
+    if importlib.util.find_spec("flint"):
+        with pytest.raises(NotGivenError, match="takes plain lengths"):
+            certified(s, "balancing_torque")
 
 
 def test_hand_calculation_names_stroke_and_work():
