@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.design import case_text
 from kinetostatics.mechanics.free_body import free_body
 from kinetostatics.mechanics.quantities import components
 from support.case_files import case_file, problems
@@ -280,6 +281,10 @@ def test_case_files(tmp_path):
     first, second = case.variants["shafts"].scene.loads
     assert (first.unbalance, first.ratio, first.phase, first.at) == (0.025, -1.0, np.pi, (0.0, 0.08))
     assert (second.ratio, second.inertia, second.mass) == (0.5, 0.001, 0.5)
+    scene = case.variants["shafts"].scene.varied({"crank.mass": 3.0})
+    third = ks.Scene(scene.mechanism, scene.crank_speed, loads=(*scene.loads, ks.BalanceShaft(0.1, "-7/3", 0.4)))
+    again = ks.load_case(case_text.write_case(tmp_path / "again.toml", "Again", {"one": third})).variant("one").scene
+    np.testing.assert_array_equal(again.solve(9).balancing_torque, third.solve(9).balancing_torque)
     (text,) = problems(tmp_path, CASE.replace('"1/2"', "0.123456"))
     assert "denominator of at most 24" in text
 
