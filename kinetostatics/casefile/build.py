@@ -13,7 +13,7 @@ from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
 from ..machine.cams import cams
-from ..machine.cams.roller import Roller
+from ..machine.cams.roller import Face, Roller
 from ..machine.crank import Crank, Rotor
 from ..machine.friction import friction_kind
 from ..machine.guide import Guide
@@ -25,7 +25,7 @@ from ..numbers.checks import choice
 from ..numbers.files import read_columns
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
-from .schema import drives, parts, tables, variants
+from .schema import drives, laws, parts, tables, variants
 
 COMPONENTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Index by name of a component of a pair."""
@@ -48,7 +48,8 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
     """Place by path of all numbers that can vary in a validated table; a label is appended to the first name."""
     names = getattr(parts.MADE_OF.get(type(table)), "PATHS", {})
     found: dict[str, NumberPlace] = {}
-    for name, field in type(table).model_fields.items() if _file_of(table) is None else ():
+    fixed = _file_of(table) is not None or isinstance(table, laws.LawTable)
+    for name, field in () if fixed else type(table).model_fields.items():
         if name in GUIDE_KEYS and getattr(table, "guide_through", None):
             continue
         value = getattr(table, name)
@@ -223,9 +224,11 @@ def _group(table, cam, guide_angle):
     if "guide" in kind.RULES.rules:
         values["guide"] = build_guide(table)
     if "cam" in values:
-        values["cam"] = build_cam(table.cam, cam, guide_angle)
-    if "roller" in values:
-        values["roller"] = table.roller and Roller(**dict(table.roller))
+        is_law = isinstance(table.cam, laws.LawTable)
+        values["cam"] = cam or (table.cam.law(kind.LAW[1]) if is_law else build_cam(table.cam, cam, guide_angle))
+    for name, body in (("roller", Roller), ("face", Face)):
+        if values.get(name):
+            values[name] = body(**dict(values[name]))
     middles = {
         name: part.model_copy(update={"centre": (0.0, 0.0)})
         for name, part in links.items()
@@ -270,10 +273,14 @@ def _read(path, part, table, keys):
             return part.of(*columns)
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
-    if isinstance(part, tables.SampledTable):
-        angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
+    if isinstance(part, tables.SampledTable | laws.LawTable):
+        if isinstance(part, laws.LawTable):
+            unit = parts.MADE_OF[type(value_at(table, keys[:-1]))].LAW[1]
+            columns, make = {"angle": "rad", "position": unit}, part.law(unit)
+        else:
+            columns, make = {"angle": "rad", "radius": "m"}, partial(cams.Sampled, noise=part.noise)
         try:
-            return cams.Sampled(angle, radius, part.noise)
+            return make(*read_columns(path, columns))
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN

@@ -107,6 +107,16 @@ def optimise(
     ... )
     >>> round(found.report().loc["ratio mean_absolute balancing_torque [1]", "after"])
     67
+
+    A saw that idles for a fifth of the time and cuts for the rest:
+
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> idle = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> cut = ks.Scene(idle.mechanism, 33.5, loads=[spring, ks.ProcessForce(10e3)])
+    >>> duties, vary = {"idle": (idle, 0.2), "cut": (cut, 0.8)}, {"spring.free_position": (1.9, 2.1)}
+    >>> found = ks.design.optimise(duties, vary, "rms balancing_torque", ["idle: largest O <= 60 kN"], angles=90)
+    >>> round(found.values["spring.free_position"], 3), list(found.scene)
+    (1.992, ['idle', 'cut'])
     """
     duties = read_duties(source, variant, reference)
     checks.require(

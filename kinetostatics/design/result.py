@@ -126,7 +126,7 @@ class Found:
     def report(self):
         """Outputs before and after, with their limits and what these cost; a pandas DataFrame.
 
-        Of duties a row for each, and for the mean of the goal.
+        Of duties the goal has a row for their mean and each, other outputs where they are limited; `duty` has all.
 
         Warns
         -----

@@ -38,6 +38,8 @@ KERNELS = (
 """Modules whose local variables give names."""
 GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "kinematic_state"))
 AXES = ("x", "y")
+DEAD_CENTRES = {"phi_f": "crank angle of the far dead centre", "phi_n": "crank angle of the near dead centre"}
+"""Words for the angles at which the stroke of a load's slider is read."""
 
 
 class Named(NamedTuple):
@@ -230,7 +232,7 @@ def record_with_names(state, paths, units):
     for node in [node for node in recorder.graph if node.operation == "table"]:
         table, name, primes, unit = rows[node.arguments[0]]
         owner = heads[table.of][1] if isinstance(table.of, int) else table.of
-        words = "read at this crank angle"
+        words = DEAD_CENTRES.get(name, "read at this crank angle")
         names.of[node] = Named(Symbol(name, "", owner, primes), GIVEN, words, unit, "given")
     made = object.__new__(NamedDynamics)
     vars(made).update(vars(scene))

@@ -9,8 +9,8 @@ analysis). The share of a source is its value where the total is largest; of a v
 Peaks do not add: sources have theirs at different crank angles, and may cancel. Each source is solved alone, every
 other number zero, so that a small share keeps its digits beside large ones that cancel.
 
-Friction follows the size of the reactions and is not linear. With friction a row is the effect of leaving out its
-source: the force of the whole machine less that of the machine without the source.
+Friction follows the size of the reactions and is not linear, nor is the separating force of teeth. With them a row is
+the effect of leaving out its source: the force of the whole machine less that of the machine without the source.
 """
 
 import warnings

@@ -23,6 +23,8 @@ from .canvas import (
 def crank_speed(runs, ax=None):
     """Crank speed of machines in periodic running over the crank angle, its mean dotted.
 
+    A start or a coast is a `Trajectory` in place of a `Running`: draw its `speed` over its `time`.
+
     Parameters
     ----------
     runs : mapping of label to Running
@@ -155,12 +157,12 @@ def _finish(ax, runs):
 
 
 def lost_power(solution, ax=None):
-    """Power lost by friction over the crank angle, stacked by joint, its mean over the turn dashed.
+    """Power lost over the crank angle, stacked by joint, damper and drag, its mean over the turn dashed.
 
     Parameters
     ----------
     solution : Solution
-        With friction, of one design.
+        With friction, a damper or drag; of one design.
     ax : Axes, optional
 
     Examples
@@ -172,7 +174,7 @@ def lost_power(solution, ax=None):
     'crank angle from +x, counter-clockwise [deg]'
     """
     solution = single_solution(solution)
-    _require_friction({"solution": solution})
+    _require_losses({"solution": solution})
     ax = axes(ax)
     lost = solution.losses
     drawn = with_peaks({"": solution}, lost.power, *lost.powers.values())[""]
@@ -187,12 +189,12 @@ def lost_power(solution, ax=None):
 
 
 def losses(solutions, ax=None):
-    """Mean power lost over the turn, a bar for each solution, stacked by joint, the sum on top.
+    """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, the sum on top.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        With friction.
+        With friction, dampers or drag.
     ax : Axes, optional
 
     Examples
@@ -204,7 +206,7 @@ def losses(solutions, ax=None):
     ['greased']
     """
     named = solutions_by_label(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
-    _require_friction(named)
+    _require_losses(named)
     ax = axes(ax)
     lost = {name: solution.losses for name, solution in named.items()}
     factor, unit = display_unit("W", [np.array([item.total for item in lost.values()])])
@@ -233,8 +235,7 @@ def _with_stack_legend(ax):
     return ax
 
 
-def _require_friction(named):
-    without = [name for name, solution in named.items() if not solution.friction]
-    require(
-        "plots", f"{', '.join(without)}: no friction is given; give friction to solve or scene" if without else None
-    )
+def _require_losses(named):
+    without = [name for name, solution in named.items() if not solution.losses.lost]
+    remedy = "no friction is given; give friction to solve or scene, or a damper or drag among the loads"
+    require("plots", f"{', '.join(without)}: {remedy}" if without else None)

@@ -161,7 +161,8 @@ def free_body(solution, link, angle, ax=None):
 
 def _draw_link(ax, shape, solution, link):
     """Draw a link in its pose with its joints and mass centre; its extent, m."""
-    for stroke in shape.strokes(solution, (link,)):
+    strokes = list(shape.strokes(solution, (link,)))
+    for stroke in strokes:
         set_points(stroke_artist(ax, stroke, 0.55), stroke.points[..., 0])
     places = [solution.position((link, *corner))[:, 0] for corner in shape.corners[link].T]
     for place in places:
@@ -169,7 +170,8 @@ def _draw_link(ax, shape, solution, link):
     if link in shape.heavy:
         for style in MASS_CENTRE:
             ax.plot(*solution.position(link)[:, 0], **style)
-    return max(float(np.ptp(places, axis=0).max()), MIN_EXTENT * shape.unit)
+    outlines = [stroke.points[..., 0].T for stroke in strokes]
+    return max(float(np.nanmax(np.ptp(np.concatenate([places, *outlines]), axis=0))), MIN_EXTENT * shape.unit)
 
 
 def _draw_forces(ax, actions, link, extent, middle):

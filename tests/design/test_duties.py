@@ -77,6 +77,7 @@ def test_derivatives_of_a_weighted_output_equal_small_changes():
             assert slopes[place] == pytest.approx((high - low) / (2 * step), rel=1e-5, abs=1e-9)
 
 
+@pytest.mark.slow
 @every(
     ("limit", "held", "free"),
     [
@@ -94,10 +95,12 @@ def test_limits_hold_in_their_duties(limit, held, free):
         assert table.loc[f"{name}: {row}", "after"] <= value * (1 + 1e-9)
         assert table.loc[f"{name}: {row}", "limit"].startswith("<= ")
     for name in free:
-        assert table.loc[f"{name}: {row}", "limit"] == ""
+        assert f"{name}: {row}" not in table.index
+        assert design.duty(name).report().loc[row, "limit"] == ""
     assert table["binds"].sum() >= 1
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_mean_and_its_price():
     """Eased by a little, the goal gains as the price says."""
     at, step = 6500.0, 1.0
@@ -109,6 +112,7 @@ def test_a_limit_of_the_mean_and_its_price():
     assert gain == pytest.approx(step * tight.report().loc[row, "price"], rel=0.02)
 
 
+@pytest.mark.slow
 def test_ratios_have_a_reference_in_each_duty():
     """One for both, or each its own; the mean of ratios is that of the duties."""
     plain = {"idle": replace(IDLE, loads=()), "cut": replace(CUT, loads=(WORK,))}
@@ -139,6 +143,7 @@ def test_a_function_of_the_solution_is_a_goal_as_its_text_is():
     assert np.abs(limited.scene["cut"].solve(360).balancing_torque).max() <= 16e3 * (1 + 1e-7)
 
 
+@pytest.mark.slow
 def test_a_front_over_duties_weighs_means():
     front = ks.design.pareto(DUTIES, VARY, ("largest O", RMS), points=3, angles=90)
     for design, row in zip(front.designs, front.table.to_numpy(), strict=True):
@@ -148,6 +153,7 @@ def test_a_front_over_duties_weighs_means():
     assert_allclose(front.before, [mean_of("largest O", {}), mean_of(RMS, {})], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_robust_design_has_the_least_quantile_of_the_weighted_output():
     """Each machine has the same mass in both duties."""
     vary = {"spring.stiffness": (300e3, 900e3)}
@@ -222,6 +228,7 @@ def test_wrong_duties_are_refused_with_all_problems(duties, given, message):
         ks.design.optimise(duties, **arguments)
 
 
+@pytest.mark.slow
 def test_a_limit_that_cannot_hold_names_its_duty():
     with pytest.raises(ks.DesignError, match="nearest misses cut: largest O <= 20000 N, where it comes to 1"):
         ks.design.optimise(DUTIES, VARY, RMS, ["cut: largest O <= 20 kN"], angles=24)

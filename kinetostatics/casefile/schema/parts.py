@@ -9,6 +9,8 @@ from pydantic import BeforeValidator
 
 from ...machine.cams.cam_roller import CamRoller
 from ...machine.crank import Pin
+from ...machine.followers.swinging import SwingingFollower
+from ...machine.followers.translating import FlatFollower, RollerFollower
 from ...machine.groups.lever import CylinderGroup, LeverGroup
 from ...machine.groups.planetary_crank import PlanetaryCrank
 from ...machine.groups.rocker import Dyad, RockerGroup
@@ -20,7 +22,8 @@ from ...machine.loads import KINDS, Gravity, ProcessForce, Sawing, Spring
 from ...machine.loads.points import PLACE_FORMS, PlacePairRule, PlaceRule
 from ...numbers import checks
 from ...numbers.units import quoted, to_si
-from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in
+from .laws import Law
+from .tables import Cam, FaceTable, LinkTable, RollerTable, Table, list_of, one_of, value_in
 from .texts import Angle, Coordinate, GuidePoints, Stiffness, list_reader, pair_of, reader
 
 GUIDE_FIELDS = {
@@ -131,9 +134,15 @@ GROUPS = {
     "dyad": Dyad,
     "pin": Pin,
     "cam roller": CamRoller,
+    "roller follower": RollerFollower,
+    "flat follower": FlatFollower,
+    "swinging follower": SwingingFollower,
 }
 SPECIAL_FIELDS: dict[Any, dict[str, Any]] = {
     CamRoller: {"cam": Cam, "roller": RollerTable | None},
+    RollerFollower: {"cam": Law, "roller": RollerTable | None},
+    FlatFollower: {"cam": Law, "face": FaceTable | None},
+    SwingingFollower: {"cam": Law, "roller": RollerTable | None},
     Spring: {"stiffness": Stiffness},
     ProcessForce: {"period": None},  # a table has one, a constant none
     Sawing: {"resistance": field_of(Sawing.RULES.rules["resistance"].rule), "pitch": None},  # no functions in files

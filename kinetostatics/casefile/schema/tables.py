@@ -176,26 +176,31 @@ CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": Harmoni
 Cam = one_of("cam", CAMS)
 
 
-# Rollers
+# Rollers and faces
 
 PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=MAX_POISSONS_RATIO, allow_inf_nan=False), "1"]
 
 
-class RollerTable(Table):
-    """A cam's roller with its materials: with it "contact_pressure" is an output."""
+class FaceTable(Table):
+    """Width and materials of a flat face on a cam: with it "contact_pressure" is an output."""
 
-    radius: Length
-    """Of the roller."""
     width: Length
     """Of the contact."""
     youngs_modulus: Modulus
-    """Of the roller, and of the cam unless that is told."""
+    """Of the roller or face, and of the cam unless that is told."""
     poissons_ratio: PoissonsRatio
-    """Of the roller, from 0 to 0.5, and of the cam unless that is told."""
+    """Of the roller or face, from 0 to 0.5, and of the cam unless that is told."""
     cam_youngs_modulus: Modulus | None = None
     """Of the cam."""
     cam_poissons_ratio: PoissonsRatio | None = None
     """Of the cam."""
+
+
+class RollerTable(FaceTable):
+    """A cam's roller with its materials: with it "contact_pressure" is an output."""
+
+    radius: Length
+    """Of the roller."""
 
 
 # Counterweights

@@ -136,7 +136,7 @@ class ChainVariant(MechanismVariant):
     name: Name = "chain"
     """What messages call the mechanism."""
     crank_length: Length | None = None
-    """O to A; left out where a cam roller sits on a slotted crank."""
+    """O to A; left out where a cam roller sits on a slotted crank, or a follower on a cam alone."""
     crank: RotorTable = RotorTable()
     """Mass properties, from O along the crank."""
     bearings: Bearings | None = None  # type: ignore[valid-type]

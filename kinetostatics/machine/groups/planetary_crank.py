@@ -126,10 +126,10 @@ class PlanetaryCrank(checks.Checked, Group):
 
     def _steep_teeth_problem(self):
         """Yield the problem of designs whose teeth would push along the arm."""
-        if checks.has_known_values(self.pressure_angle) and np.any(
-            steep := np.asarray(self.pressure_angle) >= np.pi / 2
-        ):
-            angle = np.max(self.pressure_angle)
+        if not checks.has_known_values(self.pressure_angle):
+            return
+        steep, angle = np.asarray(self.pressure_angle) >= np.pi / 2, np.max(self.pressure_angle)
+        if np.any(steep):
             yield checks.Problem(f"pressure_angle must be less than pi/2, as 20 degrees, got {angle:.6g} rad", steep)
 
     LINKS: ClassVar = {"planet": "on"}

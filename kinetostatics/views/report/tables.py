@@ -145,9 +145,10 @@ def readings(machines):
             if quantity.kind in KINDS and not _is_still(machine.solution, quantity):
                 quantities.setdefault(name, quantity)
     found = {}
-    texts = {
-        name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
-    }
+    texts: dict[str, Any] = {}  # machines of several kinds name several bodies
+    for machine in machines.values():
+        for name, output in machine.scene.mechanism.outputs.items():
+            texts.setdefault(name, {})[output.text] = None
     for name, quantity in sorted(quantities.items(), key=lambda item: KINDS.index(item[1].kind)):
         values = [_values(machine, machine.solution, name) for machine in machines.values()]
         between = [_values(machine, machine.between, name) for machine in machines.values()]
@@ -157,7 +158,7 @@ def readings(machines):
         found[name] = {
             "label": quantity.label,
             "kind": quantity.kind,
-            "text": texts.get(name, ""),
+            "text": "; ".join(texts.get(name, ())),
             "unit": pretty_unit(unit),
             "factor": factor,
             "vector": quantity.vector,
