@@ -52,7 +52,7 @@ def test_weighted_optimum_beats_its_neighbours(goal):
 @pytest.mark.parametrize("goal", [RMS, "largest O"])
 def test_equal_duties_are_one_scene(goal):
     """Values, prices and active limits are those of the scene alone."""
-    limits = ["largest slider_position <= 2.31 m", "smallest spring_length >= 0 m"][:1]
+    limits = ["largest slider_position <= 2.31 m"]
     one = ks.design.optimise(IDLE, {"crank_length": (0.2, 0.4)} | VARY, maximise=goal, limits=limits, angles=90)
     duties = {"a": (IDLE, 0.25), "b": (IDLE, 0.75)}
     two = ks.design.optimise(duties, {"crank_length": (0.2, 0.4)} | VARY, maximise=goal, limits=limits, angles=90)
@@ -210,6 +210,7 @@ OTHER = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 10.0)
         (DUTIES, {"reference": {"idel": IDLE}}, "duty of reference is 'idel', allowed: .* did you mean 'idle'"),
         (DUTIES, {"reference": 3}, "reference of idle must be a Scene, got 3; reference of cut must be a Scene"),
         (DUTIES, {"minimise": f"ratio {RMS}"}, "idle, cut: 'ratio rms balancing_torque' needs a reference"),
+        (DUTIES, {"limits": [3]}, "limit 3 must be an output, a relation and a value"),
         (DUTIES, {"limits": ["ct: largest O <= 1 kN"]}, "duty is 'ct', allowed: .* did you mean 'cut'"),
         (DUTIES, {"limits": ["cut: larges O <= 1 kN", "largest Q <= 1 N"]}, "(?s)idle: .*'Q'.*cut: .*'larges O'.*'Q'"),
         (HEAVY, {"vary": {"gravity.acceleration": (1, 2)}}, "design: idle: parameter is 'gravity.acceleration'"),
