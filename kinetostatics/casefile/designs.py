@@ -65,7 +65,7 @@ class Design:
         return self.sources[self.source]
 
     def variants_of(self, name):
-        """Variants of a result by name, each with its source: of duties with the duty's name behind."""
+        """Sources of a result by the names of its variants: a duty is appended to the name."""
         return {f"{name}-{source}": source for source in self.sources} if self.duties else {name: self.source}
 
     @property

@@ -37,7 +37,7 @@ class Constraint:
     span : float, optional
         Length, m, of the table over travel that sets the limit; the unit of its excess.
     duty : str
-        Duty that it is of, or "mean"; empty for each.
+        Duty in which it holds, or "mean"; empty: in each.
     """
 
     output: Output | SolutionNumber

@@ -30,7 +30,7 @@ class Duty(NamedTuple):
 
 
 def read_duties(source, variant, reference) -> dict[str, Duty]:
-    """Duties by name of a dict of name to (scene, share); of a case or scene one without a name."""
+    """Duties by name of a dict of name to (scene, share); a case or scene is one duty of the name ""."""
     if not isinstance(source, Mapping):
         item, compared = choose_design(source, variant, reference)
         return {"": Duty(item, compared, 1.0)}
@@ -87,7 +87,7 @@ def _parts_of(source):
 
 
 def in_each(duties, function) -> dict:
-    """Result of a function of name and duty by name; one error lists the faults of all duties."""
+    """Results by name of a function, called with name and duty of each; one error lists the faults of all."""
     if "" in duties:
         return {"": function("", duties[""])}
     found: dict = {}
@@ -102,7 +102,7 @@ def in_each(duties, function) -> dict:
 
 
 def limits_of(limits, names) -> dict[str, list]:
-    """Limits by the name of their duty, and of the mean; those that name none are of each duty."""
+    """Limits by duty, and of the mean; a limit that names no duty holds in each."""
     found: dict[str, list] = {name: [] for name in (*names, MEAN)}
     problems = []
     for limit in limit_list(limits):

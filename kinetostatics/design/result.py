@@ -102,7 +102,7 @@ class Found:
         return next(iter(self.duties().values())).source
 
     def duties(self, before=False):
-        """Duties by name, after the search or before; one without a name of a search without duties."""
+        """Duties by name after the search, or before; a search without duties has one, of the name ""."""
         scenes = self.before if before else self.scene
         if not self.shares:
             return {"": Duty(scenes, self.reference, 1.0)}
@@ -221,7 +221,7 @@ class Found:
 
 
 def named_scenes(name, scenes):
-    """Scenes by the names of their variants: of duties with the duty's name behind."""
+    """Scenes by the names of their variants: a duty is appended to the name."""
     return {f"{name}-{duty}": scene for duty, scene in scenes.items()} if isinstance(scenes, dict) else {name: scenes}
 
 

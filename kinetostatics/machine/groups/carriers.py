@@ -1,4 +1,4 @@
-"""Groups that pass change points on the pin of a rocker, which is their crank: the turning of this rocker.
+"""Rockers whose pin is the crank pin of a group that passes change points.
 
 The angle of the rocker is followed over a turn of the crank, once as the mechanism is made. It is a whole number of
 turns for one of the crank, `Carrier.turns`, and stays within half a turn about `Carrier.degrees` besides; both are part
@@ -20,15 +20,15 @@ TURN = 2.0 * np.pi
 ANGLES = np.linspace(0.0, TURN, 721)
 """Crank angles at which the rocker is followed, rad."""
 MAX_REMAINDER = 165.0
-"""Largest angle of a rocker from `Carrier.degrees` and its whole turns, degrees; half of 180 has two signs."""
-START_TOLERANCE = 1e-9
-"""Angle from half a turn, rad, within which a rocker starts there."""
+"""Largest remainder of a rocker's angle, degrees: at 180 the cosine of its half changes its sign."""
+ANGLE_TOLERANCE = 1e-9
+"""Difference of angles, rad, or turns that is rounding."""
 AWAY = 0.0123
 """Crank angle at which the search for change points begins, rad: none of them is likely to be there."""
 
 
 def on_rocker(group, groups, throws):
-    """A group of a chain that is to pass change points on the pin of a rocker, as it is there.
+    """A group of a chain with its passage through change points on the pin of a rocker.
 
     Raises
     ------
@@ -57,11 +57,11 @@ def _on_rocker(group, placement, links):
         return replace_unchecked(group, passage="")
     x, y, _ = np.broadcast_arrays(*direction, ANGLES)
     angle = np.unwrap(np.arctan2(y, x))
-    angle = angle + TURN * (angle[..., :1] < START_TOLERANCE - np.pi)
+    angle = angle + TURN * (angle[..., :1] < ANGLE_TOLERANCE - np.pi)
     turned, problem = np.ravel(angle[..., -1] - angle[..., 0]) / TURN, None
     if not np.ptp(angle):
         problem = "stands still"
-    elif not np.all(abs(turned - np.round(turned[0])) < START_TOLERANCE):
+    elif not np.all(abs(turned - np.round(turned[0])) < ANGLE_TOLERANCE):
         problem = "does not repeat its motion after a turn of the crank, or not so in all designs"
     else:
         turns = round(float(turned[0]))
@@ -83,7 +83,7 @@ def change_points(mechanism, group, known):
     values = distance(grid)
     checks.require("change points", SEVERAL_DESIGNS if values.ndim > 1 else None)
     change = np.flatnonzero(values[1:] * values[:-1] < 0.0)
-    found = np.mod(find_roots(distance, grid[change], grid[change + 1]) + START_TOLERANCE, TURN) - START_TOLERANCE
+    found = np.mod(find_roots(distance, grid[change], grid[change + 1]) + ANGLE_TOLERANCE, TURN) - ANGLE_TOLERANCE
     for angle in found.clip(0.0).tolist():
-        if all(abs(angle - other) > START_TOLERANCE for other in known):
+        if all(abs(angle - other) > ANGLE_TOLERANCE for other in known):
             yield angle

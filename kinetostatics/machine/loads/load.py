@@ -162,7 +162,7 @@ class Load(checks.Checked, Batched):
 
 @dataclass(frozen=True)
 class Jumps:
-    """Jumps of a load where the motion that it opposes changes its sense, or a work begins and ends.
+    """Jumps of a load where the motion that it opposes changes its sense, or its work begins or ends.
 
     Attributes
     ----------

@@ -271,21 +271,22 @@ def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
         level = levels[first + np.arange(number.sum())]
         design, place = np.repeat(design, number), np.repeat(place, number)
         low, high, level = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
-        passed = roots(lambda angle: height(angle) - level, low, high)
+        passed = _roots(lambda angle: height(angle) - level, low, high)
     return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
 
 
 def sign_changes(function, turns):
-    """Crank angles of a grid (1, N), values (designs, N) there, and angles (designs, E) at which they change sign.
+    """Crank angles of a grid (1, N), values (..., N) there, and angles (..., E) at which they change sign.
 
     The grid spans the period of `turns` turns; rows end with NaN where a design has fewer changes than another.
     """
     grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
     values = np.broadcast_arrays(*np.atleast_2d(function(grid), grid))[0]
-    turning = (np.signbit(values[:, :-1]) != np.signbit(values[:, 1:])) & ~np.isnan(np.diff(values))
-    design, place = np.nonzero(turning)
-    low, high = pad_rows(design, len(values), grid[0, place], grid[0, place + 1])
-    return grid, values, roots(function, low, high)
+    turning = (np.signbit(values[..., :-1]) != np.signbit(values[..., 1:])) & ~np.isnan(np.diff(values))
+    *designs, count = turning.shape
+    design, place = np.nonzero(turning.reshape(-1, count))
+    low, high = pad_rows(design, np.prod(designs), grid[0, place], grid[0, place + 1])
+    return grid, values, _roots(function, *(part.reshape(*designs, part.shape[-1]) for part in (low, high)))
 
 
 def pad_rows(design, count, *values):
@@ -296,7 +297,7 @@ def pad_rows(design, count, *values):
     return rows
 
 
-def roots(function, low, high):
+def _roots(function, low, high):
     """Angles between `low` and `high`, (designs, K), at which a function of such angles is 0; NaN where they are."""
 
     def values(angle, places):

@@ -25,7 +25,7 @@ from ..links import Wrench, present
 from .load import Jumps, unknown_sense
 from .slider import REACTIONS, WorkForce
 from .table import Table
-from .table_pieces import SAMPLE_OFFSET, STOP_SAMPLES, TURN, roots, stops_and_crossings
+from .table_pieces import TURN, sign_changes, stops_and_crossings
 
 CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
@@ -95,33 +95,30 @@ def dead_centres(motion, slider):
 
 
 def _dead_centres(mechanism, slider):
-    period, count = TURN * mechanism.turns, STOP_SAMPLES * mechanism.turns
-    grid, step = SAMPLE_OFFSET + np.linspace(0.0, period, count, endpoint=False), period / count
-
     def travel(angle):
         return mechanism.place(angle).travels[slider]
 
     with np.errstate(invalid="ignore", divide="ignore"):
-        position, rate, _ = travel(grid)
-        if is_foreign_array(position) or position.dtype == object:
+        first = travel(np.zeros(1)).position
+        if is_foreign_array(first) or first.dtype == object:
             raise NotGivenError(f"the stroke of {slider!r} takes plain lengths, on which its dead centres are computed")
-        position, rate, _ = np.broadcast_arrays(position, rate, grid)
-        open_somewhere = np.isnan(position).any(axis=-1)
-        changes = np.sum(np.signbit(rate) != np.signbit(np.roll(rate, 1, axis=-1)), axis=-1)
-        wrong = ~open_somewhere & (changes != 2)
+        _, rate, stops = sign_changes(lambda angle: travel(angle).first, mechanism.turns)
+        closes, changes = ~np.isnan(rate).any(axis=-1), np.sum(~np.isnan(stops), axis=-1)
+        wrong = closes & (changes != 2)
         if wrong.any():
             raise ParameterError(
                 f"a stroke needs a slider that goes to and fro once in a turn, but {slider!r} of {mechanism.name} "
                 f"changes its direction {np.max(np.where(wrong, changes, 0))} times",
-                wrong if wrong.ndim else None,
+                wrong if first.ndim > 1 else None,
             )
-        middle = np.stack([grid[position.argmax(axis=-1)], grid[position.argmin(axis=-1)]])[..., None]
-        ends = [roots(lambda angle: travel(angle).first, part - step, part + step) for part in middle]
-        angle = [np.where(open_somewhere[..., None], np.nan, part) for part in ends]
-        high, low = (np.broadcast_to(travel(part).position, part.shape) for part in angle)
-    is_far = high + low >= -CENTRED * (high - low)
-    pairs = [(np.where(is_far, up, down), np.where(is_far, down, up)) for up, down in (angle, (high, low))]
-    return tuple(tuple(float(part[0]) if part.ndim == 1 else part for part in pair) for pair in pairs)
+        angle = np.full((*closes.shape, 2), np.nan)
+        if closes.any():
+            angle[closes] = stops[closes, :2]
+        place = np.broadcast_to(travel(angle).position, angle.shape)
+    is_far = place.sum(axis=-1, keepdims=True) >= -CENTRED * np.ptp(place, axis=-1, keepdims=True)  # the one ahead
+    order = np.argsort(np.where(is_far, -place, place), axis=-1)
+    pairs = (np.split(np.take_along_axis(part, order, axis=-1), 2, axis=-1) for part in (angle, place))
+    return tuple(tuple(part if first.ndim > 1 else part.item() for part in pair) for pair in pairs)
 
 
 @dataclass(frozen=True, eq=False)
