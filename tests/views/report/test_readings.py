@@ -38,6 +38,13 @@ def test_readings_are_the_solutions_values():
                 assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
 
 
+def test_a_joint_of_machines_of_several_kinds_names_the_bodies_of_all():
+    scenes = {"slider": ks.Scene(ks.crank_slider(0.1, 0.4), 1.0), "yoke": ks.Scene(ks.scotch_yoke(0.1), 1.0)}
+    found = readings(subject_of(scenes).machines)
+    assert found["A"]["text"] == "on the coupler, from what carries A; on the block, from what carries A"
+    assert found["O"]["text"] == "ground on crank"
+
+
 @pytest.mark.slow
 def test_extremes_stand_between_the_angles():
     for case in ("sawframe_2r63", "compressor"):
