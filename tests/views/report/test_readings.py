@@ -116,7 +116,7 @@ FRAME = pd.DataFrame(
 
 def test_frame_becomes_text_with_wanted_digits():
     found = table_of_frame(FRAME, "caption", "note")
-    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
+    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [°]"]
     assert found.rows == [["torque", "N·m", "286772", "6.081", "0"], ["power residual", "", "3.2e-16", "", "39.287"]]
     assert (found.words, found.caption, found.note) == (2, "caption", "note")
 
