@@ -201,7 +201,7 @@ def _value(value, rule, name):
         return f"[{', '.join(_value(part, PlaceRule(), name) for part in value)}]"
     if isinstance(value, tuple):
         return _numbers(value, _unit_text(getattr(getattr(rule, "rule", None), "unit", "m")), name)
-    if isinstance(rule, checks.Number) and rule.unit in ("", "1"):
+    if getattr(rule, "unit", "") in ("", "1"):
         return repr(_single_number(value, name))
     return _number(value, _unit_text(getattr(rule, "unit", "")), name)
 

@@ -106,8 +106,8 @@ def limits_of(limits, names) -> dict[str, list]:
     found: dict[str, list] = {name: [] for name in (*names, MEAN)}
     problems = []
     for limit in limit_list(limits):
-        is_read = isinstance(limit, Constraint)
-        duty, colon, rest = (limit.duty, limit.duty, limit) if is_read else str(limit).partition(":")
+        own = getattr(limit, "duty", "")
+        duty, colon, rest = limit.partition(":") if isinstance(limit, str) else (own, own, limit)
         if colon:
             problems.append(checks.choice(f"limit {str(limit)!r}: duty", duty.strip(), tuple(found)))
             found.get(duty.strip(), []).append(rest)

@@ -120,7 +120,7 @@ def grouped(items, alike):
 
 
 LONG_LABEL = 20
-"""Letters of a label from which on the legend has one column."""
+"""Letters of a label from which on the legend has two columns at most."""
 LEGEND_COLUMNS = (3, 2, 1)
 """Numbers of legend columns to try, until the legend fits into the axes."""
 SAME_CURVE_TOLERANCE = 2e-3
@@ -247,7 +247,7 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
     ax.grid(alpha=0.3)
     if legend:
         handles, texts = ax.get_legend_handles_labels()
-        most = LEGEND_COLUMNS if max(map(len, texts), default=0) < LONG_LABEL else LEGEND_COLUMNS[-1:]
+        most = LEGEND_COLUMNS if max(map(len, texts), default=0) < LONG_LABEL else LEGEND_COLUMNS[1:]
         texts = [textwrap.fill(text, 2 * LONG_LABEL, break_on_hyphens=False) for text in texts]
         style = {"frameon": False, "loc": "upper center", "fontsize": "small", "columnspacing": 1.0}
         for columns in most:
@@ -256,6 +256,8 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
                 break
         share = min(box.height / ax.bbox.height, 0.4)
         ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
+    if ax.dataLim.ymin >= -ZERO_TOLERANCE * ax.dataLim.ymax:
+        ax.set_ylim(bottom=-0.05 * ax.dataLim.ymax or None)
     return ax
 
 

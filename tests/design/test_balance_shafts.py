@@ -132,6 +132,8 @@ REFUSED = {
     "no scene": (lambda s: ks.balancing.shafts(s.mechanism), "scene must be a Scene"),
     "one number": (lambda s: ks.balancing.shafts(s, 2), "must be a sequence such as"),
     "none": (lambda s: ks.balancing.shafts(s, ()), "must be a sequence such as"),
+    "array without axis": (lambda s: ks.balancing.shafts(s, np.array(1)), "must be a sequence such as"),
+    "ragged": (lambda s: ks.balancing.shafts(s, [(1, 2), 3]), "must be a number"),
     "a zero": (lambda s: ks.balancing.shafts(s, (0, 1)), "must not be 0"),
     "negative": (lambda s: ks.balancing.shafts(s, (-1,)), "must be positive"),
     "twice": (lambda s: ks.balancing.shafts(s, (1, 2, 1.0)), "each once"),

@@ -210,7 +210,7 @@ OTHER = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 10.0)
         (DUTIES, {"reference": {"idel": IDLE}}, "duty of reference is 'idel', allowed: .* did you mean 'idle'"),
         (DUTIES, {"reference": 3}, "reference of idle must be a Scene, got 3; reference of cut must be a Scene"),
         (DUTIES, {"minimise": f"ratio {RMS}"}, "idle, cut: 'ratio rms balancing_torque' needs a reference"),
-        (DUTIES, {"limits": [3]}, "limit 3 must be an output, a relation and a value"),
+        (DUTIES, {"limits": [None, 3]}, "idle, cut: limit None must be an output, .* limit 3 must be"),
         (DUTIES, {"limits": ["ct: largest O <= 1 kN"]}, "duty is 'ct', allowed: .* did you mean 'cut'"),
         (DUTIES, {"limits": ["cut: larges O <= 1 kN", "largest Q <= 1 N"]}, "(?s)idle: .*'Q'.*cut: .*'larges O'.*'Q'"),
         (HEAVY, {"vary": {"gravity.acceleration": (1, 2)}}, "design: idle: parameter is 'gravity.acceleration'"),

@@ -95,6 +95,12 @@ def test_an_angle_is_told_in_degrees_beside_rad():
     assert told.conclusion.endswith(f"rad = {degrees(told.value):.6g} deg")
 
 
+def test_the_stroke_of_a_cut_is_told_at_its_dead_centres():
+    cut = ks.Sawing(kerf=3.2e-3, height=0.25, saws=8, feed_per_stroke=0.02, resistance=50e6)
+    told = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0, loads=cut).explain("balancing_torque", 2.0)
+    assert "crank angle of the far dead centre" in " ".join(str(told).split())
+
+
 def test_absent_terms_are_zero_without_a_step():
     told = PUMP.explain("crank_angular_acceleration", ANGLE)
     assert told.value == 0.0

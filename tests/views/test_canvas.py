@@ -117,6 +117,15 @@ def test_a_unit_is_chosen_by_ordinary_values():
     assert canvas.display_unit("N", [1e4 * reaction]) == (1e-3, "kN")
 
 
+@pytest.mark.parametrize(("lowest", "bottom"), [(0.0, -0.05), (-1e-12, -0.05), (-1.0, -1.1)])
+def test_curves_above_zero_stand_on_the_axis(lowest, bottom):
+    figure, ax = plt.subplots()
+    ax.plot([0.0, 180.0, 360.0], [lowest, 1.0, lowest])
+    canvas.finish_axes(ax, "force [N]", False)
+    assert ax.get_ylim()[0] == pytest.approx(bottom)
+    plt.close(figure)
+
+
 @pytest.mark.parametrize(("width", "columns"), [(6.4, 3), (3.4, 2), (1.6, 1)])
 def test_legend_stands_above_the_curves(width, columns):
     figure, ax = plt.subplots(figsize=(width, 4.0))

@@ -50,6 +50,13 @@ def test_values_stand_at_forces_and_couples():
     assert rubbed.get_title() == "crank at crank angle 50°"
 
 
+def test_arrows_on_a_planet_are_as_long_as_its_ring_needs():
+    knife = ks.YokeGroup(on="P", slider=ks.Link(5.0))
+    drive = ks.Mechanism("mower", ks.Crank(0.019), (ks.PlanetaryCrank(0.019), knife))
+    ax = ks.plots.free_body(ks.Scene(drive, 60.0).solve(8), "planet", 60)
+    assert arrows(ax).max() > 0.3 * 4 * 0.019  # of the ring's diameter
+
+
 def test_massless_unloaded_link_has_no_arrow():
     idle = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
     assert arrows(ks.plots.free_body(idle, "coupler", 40)).size == 0

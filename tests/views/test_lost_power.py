@@ -47,6 +47,14 @@ def test_single_solution_is_one_bar_in_watts(axes):
     assert axes.get_ylabel() == "mean power lost [W]"
 
 
+def test_drag_without_friction_is_drawn(axes):
+    bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    s = ks.Scene(bar, 10.0, loads=ks.Torque(5.0, on="rocker", opposing=True)).solve(36)
+    ks.plots.losses(s, ax=axes)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["Torque on 'rocker'"]
+    assert axes.containers[0][0].get_height() == pytest.approx(s.losses.total, rel=1e-12)
+
+
 @pytest.mark.parametrize("draw", [ks.plots.losses, ks.plots.lost_power])
 @pytest.mark.parametrize(
     ("given", "words"),

@@ -16,6 +16,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from ...numbers import checks
 from ...numbers.planar import add_vectors, cross, dot, left, minus, plus, product, rotate, scale_vector
 from ..crank import ray
@@ -46,7 +48,8 @@ class RatioRule:
 
     def check(self, value, field=""):
         try:
-            found = Fraction(checks.to_plain(value, "1"))
+            plain = checks.to_plain(value, "1")
+            found = Fraction(plain.item() if isinstance(plain, np.generic) else plain)
         except checks.DimensionError as fault:
             return value, f"{field} {fault}"
         except (TypeError, ValueError, OverflowError, ZeroDivisionError):
@@ -58,7 +61,7 @@ class RatioRule:
             problem = f"must not be 0, and at most {MAX_RATIO:g} in size"
         elif abs(near - found) > RATIO_TOLERANCE * abs(found):
             problem = f"must be a fraction near {near} with a denominator of at most {MAX_DENOMINATOR}, to repeat soon"
-        return float(near), problem and f"{field} {problem}, got {checks.shown(value)}"
+        return (value, f"{field} {problem}, got {checks.shown(value)}") if problem else (float(near), None)
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,6 +31,8 @@ CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
+MAX_PITCHES = 1000
+"""Fingers that a section passes in a stroke, at most."""
 MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
 TERMS = {
     "push.far": ("s_f", "coordinate of the far dead centre"),
@@ -340,7 +342,11 @@ class Mowing(StrokeForce):
     def jump_angles(self, motion):
         """Crank angles of the dead centres, and of start and end of the cut, (1 or designs, J), rad."""
         far, near = ends = self.stroke(motion)
-        most = np.ceil(np.max(np.nan_to_num(abs(far - near) / self.pitch))) + 2.0
+        pitches = np.max(np.nan_to_num(abs(far - near) / self.pitch))
+        if pitches > MAX_PITCHES:
+            words = f"its stroke has {pitches:.4g} times the pitch; at most {MAX_PITCHES} are resolved"
+            raise ParameterError(f"{self.title}: {words}")
+        most = np.ceil(pitches) + 2.0
         found = [super().jump_angles(motion)]
         for place in (self.start, self.end, -self.start, -self.end):  # each of both senses of motion
             origin = place - self._passed(0.0, ends)

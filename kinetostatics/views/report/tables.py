@@ -21,7 +21,7 @@ from ...cycle.rounding import FLOOR, zeroed
 from ...errors import KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
-from ...numbers.formatting import DIGITS, angle, digits_of, pretty_unit, round_bound_up
+from ...numbers.formatting import DIGITS, angle, digits_of, heading, parse_heading, pretty_unit, round_bound_up
 from ..canvas import display_unit, drawn_limit, ordinary_size
 from .movement import to_base64
 
@@ -60,9 +60,14 @@ def texts_of(frame):
 
 def table_of_frame(frame, caption, note=""):
     """Table of a frame with an index of row names; cells of text stay unchanged."""
-    columns = [str(name) for name in frame.columns]
+    columns = [_pretty_heading(str(name)) for name in frame.columns]
     rows = [[str(name), *cells] for name, *cells in texts_of(frame).itertuples()]
     return Table(caption, [frame.index.name or "", *columns], rows, 2 if columns[:1] == ["unit"] else 1, note)
+
+
+def _pretty_heading(text):
+    name, unit = parse_heading(text)
+    return heading(name, pretty_unit(unit)) if pretty_unit(unit) else text
 
 
 def with_published(texts, published, path):

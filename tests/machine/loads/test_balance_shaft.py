@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.design import case_text
 from kinetostatics.mechanics.free_body import free_body
 from kinetostatics.mechanics.quantities import components
 from support.case_files import case_file, problems
@@ -280,6 +281,10 @@ def test_case_files(tmp_path):
     first, second = case.variants["shafts"].scene.loads
     assert (first.unbalance, first.ratio, first.phase, first.at) == (0.025, -1.0, np.pi, (0.0, 0.08))
     assert (second.ratio, second.inertia, second.mass) == (0.5, 0.001, 0.5)
+    scene = case.variants["shafts"].scene.varied({"crank.mass": 3.0})
+    third = ks.Scene(scene.mechanism, scene.crank_speed, loads=(*scene.loads, ks.BalanceShaft(0.1, "-7/3", 0.4)))
+    again = ks.load_case(case_text.write_case(tmp_path / "again.toml", "Again", {"one": third})).variant("one").scene
+    np.testing.assert_array_equal(again.solve(9).balancing_torque, third.solve(9).balancing_torque)
     (text,) = problems(tmp_path, CASE.replace('"1/2"', "0.123456"))
     assert "denominator of at most 24" in text
 
@@ -290,6 +295,8 @@ BAD_RATIOS = {
     "0": (0, "must not be 0"),
     "irrational": (np.sqrt(2.0), "denominator of at most 24"),
     "large": (1e9, "at most 100"),
+    "beyond all floats": (10**400, "at most 100"),
+    "imprecise": (np.float32(1 / 3), "denominator of at most 24"),
     "not a number": (np.nan, "must be a number"),
     "infinite": (-np.inf, "must be a number"),
     "text": ("twice", "must be a number"),
@@ -305,6 +312,11 @@ def test_ratios_that_no_gear_has(name):
     value, words = BAD_RATIOS[name]
     with pytest.raises(ks.ParameterError, match=f"ratio .*{words}"):
         ks.BalanceShaft(0.1, value)
+
+
+@every("value", (np.float32(-0.5), np.int64(-2)))
+def test_ratios_by_numpy(value):
+    assert ks.BalanceShaft(0.1, value).ratio == float(value)
 
 
 def test_pulled_by_nothing_it_does_nothing():

@@ -442,6 +442,14 @@ def test_no_stroke_no_force():
     with pytest.raises(ks.AssemblyError):
         ks.solve(short, TURN, crank_speed=1.0, loads=sawing())
     assert np.isnan(ks.solve(short, [0.1], crank_speed=1.0, loads=sawing(), on_gap="nan").balancing_torque).all()
+    for item in (sawing(), CROP):
+        s = ks.solve(short, [0.1], crank_speed=1.0, loads=item, on_gap="nan")
+        values = ks.compile(ks.Scene(short, 1.0, loads=item), "balancing_torque", engine="numpy")(0.1)
+        assert np.isnan([*s.balancing_torque, values["balancing_torque"]]).all()
+        with pytest.warns(ks.ConditionWarning, match="no value"):
+            assert np.isnan(ks.extremes(s, "balancing_torque").range).all()
+        with pytest.raises(ks.ParameterError, match="does not close"):
+            s.losses  # noqa: B018
     twice = ks.Mechanism(
         "two strokes a turn",
         ks.Crank(0.1),
@@ -452,6 +460,13 @@ def test_no_stroke_no_force():
     )
     with pytest.raises(ks.ParameterError, match="changes its direction 4 times"):
         ks.solve(twice, TURN, crank_speed=1.0, loads=sawing(on="slider2")).balancing_torque  # noqa: B018
+
+
+def test_a_knife_passes_so_many_fingers():
+    fine = replace(CROP, pitch=1e-6, start=3e-7, end=8e-7)
+    s = ks.solve(ks.crank_slider(0.038, 0.4, slider=ks.Link(4.0)), 7, crank_speed=60.0, loads=fine)
+    with pytest.raises(ks.ParameterError, match=r"its stroke has 7\.6e\+04 times the pitch; at most 1000 are"):
+        s.losses  # noqa: B018
 
 
 SAWS = {

@@ -38,6 +38,13 @@ def test_readings_are_the_solutions_values():
                 assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
 
 
+def test_a_joint_of_machines_of_several_kinds_names_the_bodies_of_all():
+    scenes = {"slider": ks.Scene(ks.crank_slider(0.1, 0.4), 1.0), "yoke": ks.Scene(ks.scotch_yoke(0.1), 1.0)}
+    found = readings(subject_of(scenes).machines)
+    assert found["A"]["text"] == "on the coupler, from what carries A; on the block, from what carries A"
+    assert found["O"]["text"] == "ground on crank"
+
+
 @pytest.mark.slow
 def test_extremes_stand_between_the_angles():
     for case in ("sawframe_2r63", "compressor"):
@@ -109,7 +116,7 @@ FRAME = pd.DataFrame(
 
 def test_frame_becomes_text_with_wanted_digits():
     found = table_of_frame(FRAME, "caption", "note")
-    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
+    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [°]"]
     assert found.rows == [["torque", "N·m", "286772", "6.081", "0"], ["power residual", "", "3.2e-16", "", "39.287"]]
     assert (found.words, found.caption, found.note) == (2, "caption", "note")
 
