@@ -156,7 +156,7 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
 
 def _orders(harmonics) -> tuple[float, ...]:
     """Harmonics as numbers, checked."""
-    several = isinstance(harmonics, tuple | list | np.ndarray | range) and getattr(harmonics, "ndim", 1)
+    several = isinstance(harmonics, tuple | list | np.ndarray | range) and getattr(harmonics, "ndim", 1) == 1
     if not several or not len(harmonics):
         raise ParameterError(f"{OWNER}: harmonics must be a sequence such as (1, 2), got {checks.shown(harmonics)}")
     found = [RATIO.check(n, "harmonics") for n in harmonics]
