@@ -292,7 +292,9 @@ def _minimise_peak(search, start):
 def _search(mechanism, norm, phase, weights, about, angles, counterweights):
     """Checked search for counterweights under a norm."""
     _require_masses(mechanism)
-    problems = [] if counterweights else ["give at least one counterweight, such as crank=Counterweight(arm=0.03)"]
+    problems = [checks.count("angles", angles)]
+    if not counterweights:
+        problems.append("give at least one counterweight, such as crank=Counterweight(arm=0.03)")
     for name, weight in counterweights.items():
         problems += [checks.choice("link", name, tuple(mechanism.links)), _weight_problem(name, weight)]
         if getattr(weight, "whole_link", False):
@@ -317,6 +319,7 @@ def _search(mechanism, norm, phase, weights, about, angles, counterweights):
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
     scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
     *pair, point = found.values()
+    checks.require("optimal balancing", None if any(map(np.any, pair)) else "weights must not both be 0")
     search = _ShakingSearch(mechanism, norm, tuple(pair), point, counterweights, 2 if phase else 1, turn, scale)
     search = replace(search, reference=search.objective(search.none) or 1.0)
     trials = 0.5 * np.vstack([np.eye(search.none.size), -np.eye(search.none.size)])
