@@ -30,7 +30,7 @@ TERMS = {
 
 DRAG = checks.Number("N*m", "an opposing value", low=0.0)
 """Rule of the magnitude of an opposing torque."""
-PROBE_ANGLES = np.linspace(0.1, 6.1, 12)
+PROBE_ANGLES = np.linspace(0.1, 6.3, 720)
 """Crank angles of a turn, rad, at which the link of an opposing torque must turn somewhere."""
 MIN_RATIO = 1e-9
 """Angular velocity of a link that turns, over the crank speed."""

@@ -86,7 +86,7 @@ def dead_centres(motion, slider):
 
     Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. On a slider whose stroke is
     centred on O, as that of a yoke, the far dead centre is ahead in the direction of the guide. `ParameterError` if the
-    slider does not go to and fro once, `NotGivenError` if lengths are traced numbers or enclosures.
+    slider dwells or does not go to and fro once, `NotGivenError` if lengths are traced numbers or enclosures.
     """
     known = _DEAD_CENTRES.setdefault(motion.mechanism, {})
     if slider not in known:
@@ -110,6 +110,13 @@ def _dead_centres(mechanism, slider):
                 f"a stroke needs a slider that goes to and fro once in a turn, but {slider!r} of {mechanism.name} "
                 f"changes its direction {np.max(np.where(wrong, changes, 0))} times",
                 wrong if first.ndim > 1 else None,
+            )
+        still = ((rate[:, :-1] == 0.0) & (rate[:, 1:] == 0.0)).any(axis=-1)
+        if still.any():
+            raise ParameterError(
+                f"a stroke needs a slider that goes to and fro, but {slider!r} of {mechanism.name} stands still on a "
+                "part of the turn, where a force against its motion has no sense",
+                still if first.ndim > 1 else None,
             )
         angle = np.full((*closes.shape, 2), np.nan)
         if closes.any():
@@ -146,7 +153,7 @@ class Sawing(StrokeForce):
     pitch : float or array, optional
         Pitch of the teeth, m; for a resistance by the thickness of the chip alone.
     on : str
-        Slider with the saws. Its stroke S is that of the mechanism.
+        Slider with the saws, without dwells. Its stroke S is that of the mechanism.
     reaction : "frame" or "outside"
         What takes the opposite force: the frame, on whose rollers the log rests, or something outside.
 
@@ -154,8 +161,8 @@ class Sawing(StrokeForce):
     ------
     ParameterError
         A value is no finite number, or negative (but thrust and overhang may be); a function without a pitch; when a
-        scene is made: there is no such slider; when it is solved: the slider does not go to and fro once in a turn, or
-        stands still in an unknown sense.
+        scene is made: there is no such slider; when it is solved: the slider does not go to and fro once in a turn,
+        dwells, or stands still in an unknown sense.
 
     Notes
     -----

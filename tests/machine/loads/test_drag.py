@@ -66,6 +66,15 @@ def test_reactions_by_the_constraint_equations_of_all_bodies(speed, name):
     assert largest(exact - quantities.components(free, name)) > 1.0
 
 
+def test_an_arm_that_swings_for_a_moment_is_dragged():
+    """Twice 0.05 rad in 0.4 rad of the crank, a dwell on all the rest."""
+    cycloidal, dwell = ks.laws.cycloidal, ks.laws.dwell(0.4, 2 * np.pi - 0.4)
+    law = ks.laws.joined(cycloidal(0.4, 0.45, 0.2), cycloidal(0.45, 0.4, 0.2), dwell).shifted(0.15)
+    cam = ks.Mechanism("cam", ks.Crank(0.1), (ks.SwingingFollower(law, 0.1, (0.15, 0.0)),))
+    s = scene(drag(on="arm"), mechanism=cam).solve(5)
+    assert s.losses.drive == pytest.approx(50.0 * 0.1 * 10.0 / (2 * np.pi), rel=1e-10)
+
+
 def test_extremes_take_both_limits_where_the_rocker_turns_back():
     s = scene(mechanism=ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))).solve(7)
     (angles,) = s.loads[0].jumps.angles(s)

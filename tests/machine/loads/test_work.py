@@ -453,6 +453,15 @@ def test_no_stroke_no_force():
         ks.solve(twice, TURN, crank_speed=1.0, loads=sawing(on="slider2")).balancing_torque  # noqa: B018
 
 
+@every("item", (sawing(on="follower"), replace(CROP, on="follower")))
+def test_no_cut_of_a_follower_that_dwells(item):
+    rise, fall = ks.laws.cycloidal(0.1, 0.18, 1.5), ks.laws.cycloidal(0.18, 0.1, 2 * np.pi - 2.5)
+    law = ks.laws.joined(rise, ks.laws.dwell(0.18, 1.0), fall)
+    cam = ks.Mechanism("cam", ks.Crank(0.1), (ks.RollerFollower(law, ks.Guide.at(0.0), ks.Link(2.0)),))
+    with pytest.raises(ks.ParameterError, match="'follower' of cam stands still on a part of the turn"):
+        ks.solve(cam, TURN, crank_speed=10.0, loads=item).balancing_torque  # noqa: B018
+
+
 def test_a_knife_passes_so_many_fingers():
     fine = replace(CROP, pitch=1e-6, start=3e-7, end=8e-7)
     s = ks.solve(ks.crank_slider(0.038, 0.4, slider=ks.Link(4.0)), 7, crank_speed=60.0, loads=fine)
