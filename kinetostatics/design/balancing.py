@@ -309,6 +309,8 @@ def _search(mechanism, norm, phase, weights, about, angles, counterweights):
         dict(zip(WEIGHT_RULES, (*(weights if paired else (1.0, 0.0)), about), strict=True)),
         checks.choice("norm", norm, NORMS),
         None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
+        checks.count("angles", angles, size=checks.BYTES_PER_ANGLE),
+        checks.truth("phase", phase),
         *problems,
     )
     if norm in ("along", "across"):

@@ -156,10 +156,10 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
 
 def _orders(harmonics) -> tuple[float, ...]:
     """Harmonics as numbers, checked."""
-    given = harmonics.tolist() if isinstance(harmonics, np.ndarray) else harmonics
-    if not isinstance(given, tuple | list | range) or not given:
+    several = isinstance(harmonics, tuple | list | np.ndarray | range) and getattr(harmonics, "ndim", 1) == 1
+    if not several or not len(harmonics):
         raise ParameterError(f"{OWNER}: harmonics must be a sequence such as (1, 2), got {checks.shown(harmonics)}")
-    found = [RATIO.check(n, "harmonics") for n in given]
+    found = [RATIO.check(n, "harmonics") for n in harmonics]
     checks.require(OWNER, *(problem for _, problem in found))
     orders = tuple(n for n, _ in found)
     alone = min(orders) > 0.0 and len(set(orders)) == len(orders)

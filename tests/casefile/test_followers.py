@@ -134,6 +134,7 @@ def test_law_by_points_of_a_file(tmp_path, kind, heading, unit):
     assert np.allclose(made.cam.law(turn).position, law(turn).position, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_run_prints_the_forces(tmp_path, capsys):
     law = 'cam = { kind = "cosine", amplitude = "5 mm", mean = "45 mm" }'
     loaded(tmp_path, HEAD + MADE["roller"][0].replace(SEGMENTS, f"\n{law}\n") + FRICTION.format(contact="contact_1"))

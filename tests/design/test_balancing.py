@@ -361,6 +361,8 @@ BOTH = {"crank": HEAVY, "coupler": HEAVY}
         (lambda: optimal(mower(), "weighted", weights=(np.nan, 1.0), crank=HEAVY), "must be finite"),
         (lambda: optimal(mower(), "largest moment", about=0.3, crank=HEAVY), r"about must be a pair \(x, y\)"),
         (lambda: optimal(mower(), "largest moment", about=(0.3, np.inf), crank=HEAVY), "about .* must be finite"),
+        (lambda: optimal(mower(), angles=0, crank=HEAVY), "angles must be a whole number of at least 1, got 0"),
+        (lambda: optimal(mower(), phase="off", crank=HEAVY), "phase must be True or False, got 'off'"),
         (lambda: ks.balancing.pareto(mower(), points=1, **BOTH), "points must be at least 2, got 1"),
         (lambda: ks.balancing.pareto(mower(), crank_speed=0.0, **BOTH), "crank_speed must .* 0"),
         (lambda: ks.balancing.pareto(mower(), crank=HEAVY), "crank does not change the shaking moment"),

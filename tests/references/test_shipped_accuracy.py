@@ -30,7 +30,9 @@ EVEN, BETWEEN = 720, 200
 PLAIN, TIGHT, TIGHT_OF_TABLES = 100.0, 20.0, 50.0
 
 
-VARIANTS = [(case, variant) for case in ks.shipped_cases() for variant in variant_names(case)]
+CASES = [case for case in ks.shipped_cases() if case != "sawframe_2r63_cutting"]
+"""But that of a cut, whose stroke exact arithmetic does not find; `tests/machine/loads/test_work.py` holds its force."""
+VARIANTS = [(case, variant) for case in CASES for variant in variant_names(case)]
 
 
 def opposed(scene):

@@ -44,7 +44,9 @@ def test_the_series_error_falls_with_the_order(few_models, name):
 def test_every_present_ingredient_is_offered(few_models):
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
-    loads += [ks.GasSpring(1e-3, 1e-3, 2e5, at=1.0)]
+    loads += [ks.GasSpring(1e-3, 1e-3, 2e5, at=1.0), ks.BalanceShaft(0.1)]
+    loads += [ks.Mowing(9.0, pitch=0.1, start=0.03, end=0.06)]
+    loads += [ks.Sawing(kerf=0.003, height=0.1, saws=1, feed_per_stroke=0.01, resistance=1e6)]
     loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
     loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
     rubbing = {"O": ks.PinFriction(0.1, 0.01), "guide": ks.GuideFriction(0.1)}

@@ -428,15 +428,6 @@ def test_a_machine_that_does_not_close_all_round_has_no_stroke_and_no_force(item
     np.testing.assert_allclose(item.push(s)[1], item.push(alone), rtol=1e-12)
 
 
-@pytest.mark.slow
-@every("item", (sawing(thrust=0.2), CROP))
-def test_extremes_and_programs_without_a_stroke(item):
-    short = ks.Scene(ks.crank_slider(0.3, 0.25, **LINKS), 1.0, loads=item)
-    assert np.isnan(ks.compile(short, ["balancing_torque"])(TURN)["balancing_torque"]).all()
-    with pytest.warns(ks.ConditionWarning, match="has no value: it does not close"):
-        ks.extremes(short.solve(7, on_gap="nan"), "balancing_torque")
-
-
 def test_no_stroke_no_force():
     short = ks.crank_slider(0.3, 0.25, **LINKS)
     with pytest.raises(ks.AssemblyError):
