@@ -31,7 +31,7 @@ PLAIN, TIGHT, TIGHT_OF_TABLES = 100.0, 20.0, 50.0
 
 
 CASES = [case for case in ks.shipped_cases() if case != "sawframe_2r63_cutting"]
-"""But that of a cut, whose stroke exact arithmetic does not find; `tests/machine/loads/test_work.py` holds its force."""
+"""All but a cut, whose stroke exact arithmetic does not find; `tests/machine/loads/test_work.py` holds its force."""
 VARIANTS = [(case, variant) for case in CASES for variant in variant_names(case)]
 
 
