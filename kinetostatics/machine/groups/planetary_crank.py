@@ -82,7 +82,7 @@ class PlanetaryCrank(checks.Checked, Group):
     radius : float or array
         Distance of the pin from the planet's axis, m: that of its pitch circle if it is the crank's length.
     line_angle : float or array
-        Direction of the pin at crank angle 0 and of its line, from +x, rad.
+        Direction of the pin's line, or of the long axis of its ellipse, from +x, rad.
     pressure_angle : float or array
         Of the teeth, rad, below pi/2; 20 degrees by default.
     on, pin : str
