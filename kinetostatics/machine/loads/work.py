@@ -5,8 +5,8 @@ work K for a volume the force is F = K n b H D / S all over the stroke, as saw a
 
 The sections of a knife stand midway between two fingers at mid-stroke. The edge of a section, half widths w(y), meets
 that of the finger ahead, f(y), once it has gone p - w - f from the finger behind, p the pitch: from `start` at the foot
-of the edges to `end` at their tips. It is there where cos(2 pi u / p) > cos(pi (end - start) / p), u the distance from
-the middle of that part. Stalks that stand evenly between straight edges make the force constant.
+of the edges to `end` at their tips. It is there where sin(pi (u - start) / p) sin(pi (u - end) / p) < 0, u the distance
+gone. Stalks that stand evenly between straight edges make the force constant.
 """
 
 import math
@@ -19,7 +19,7 @@ import numpy as np
 
 from ...errors import NotGivenError, ParameterError
 from ...numbers import checks
-from ...numbers.arithmetic import cos, is_foreign_array, sign
+from ...numbers.arithmetic import is_foreign_array, sign, sin
 from ...numbers.planar import add_vectors, number_or_zero, product, rotate
 from ..links import Wrench, present
 from .load import Jumps, unknown_sense
@@ -39,8 +39,9 @@ TERMS = {
     "push.near": ("s_n", "coordinate of the near dead centre"),
     "push.work": ("W", "work of the cutting stroke"),
     "push.way": ("d", "sense of the motion along the guide"),
-    "push.beyond": ("u", "distance of a section from the middle of the cut"),
-    "push.meeting": ("q", "cosine of its phase less that where the cut begins: positive while sections cut"),
+    "push.first": ("q_1", "sine of the phase of a section after the start of its cut"),
+    "push.last": ("q_2", "sine of its phase after the end of the cut"),
+    "push.meeting": ("q", "opposite of their product: positive while sections cut"),
     "push.cutting": ("z", "share of the force that acts: 1 while sections cut"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""
@@ -337,8 +338,9 @@ class Mowing(StrokeForce):
         """Force on the slider along the guide, N."""
         way = self.way(motion)
         passed = self._passed(motion.placement.travels[self.on].position, self.stroke(motion))
-        beyond = passed - 0.5 * way * (self.start + self.end)
-        meeting = cos(TURN * beyond / self.pitch) - cos(math.pi * (self.end - self.start) / self.pitch)
+        first = sin(math.pi * (passed - way * self.start) / self.pitch)
+        last = sin(math.pi * (passed - way * self.end) / self.pitch)
+        meeting = -first * last
         cutting = 0.5 * (1.0 + sign(meeting)) + 0.0 * meeting  # NaN without a stroke
         return number_or_zero(product(present(self.force), -way * cutting))
 

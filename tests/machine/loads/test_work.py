@@ -301,6 +301,12 @@ def test_power_of_the_knife_by_its_cutting_travel(speed, radius, offset):
     assert travel > 0.06
 
 
+def test_a_narrow_cut_keeps_its_digits():
+    narrow = ks.Mowing(600.0, pitch=0.0762, start=0.0381, end=0.0381 + 1e-11)
+    s = ks.Scene(ks.crank_slider(0.038, 0.3), 60.0, loads=[narrow]).solve(90)
+    assert s.losses.drive == pytest.approx(600.0 * 2e-11 * 60.0 / (2.0 * np.pi), rel=1e-4)
+
+
 def test_jumps_of_many_knives_are_those_of_each():
     pitch = np.array([0.05, 0.0762, 0.1])[:, None]
     crop = ks.Mowing(600.0, pitch=pitch, start=0.01, end=0.04)
@@ -390,7 +396,7 @@ def test_hand_calculation_names_stroke_and_work():
     for words in ("coordinate of the far dead centre", "work of the cutting stroke", "moment of sawing on the slider"):
         assert words in told
     knife = ks.Scene(ks.crank_slider(0.038, 0.4, slider=ks.Link(4.0)), 60.0, loads=CROP).solve(TURN)
-    assert "distance of a section from the middle of the cut" in str(knife.explain("guide_force", 1.0))
+    assert "sine of the phase of a section after the start of its cut" in str(knife.explain("guide_force", 1.0))
 
 
 def test_free_body_of_the_slider_is_in_balance():
