@@ -292,9 +292,7 @@ def _minimise_peak(search, start):
 def _search(mechanism, norm, phase, weights, about, angles, counterweights):
     """Checked search for counterweights under a norm."""
     _require_masses(mechanism)
-    problems = [checks.count("angles", angles)]
-    if not counterweights:
-        problems.append("give at least one counterweight, such as crank=Counterweight(arm=0.03)")
+    problems = [None if counterweights else "give at least one counterweight, such as crank=Counterweight(arm=0.03)"]
     for name, weight in counterweights.items():
         problems += [checks.choice("link", name, tuple(mechanism.links)), _weight_problem(name, weight)]
         if getattr(weight, "whole_link", False):

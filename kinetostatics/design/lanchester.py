@@ -159,7 +159,7 @@ def _orders(harmonics) -> tuple[float, ...]:
     given = harmonics.tolist() if isinstance(harmonics, np.ndarray) else harmonics
     if not isinstance(given, tuple | list | range) or not given:
         raise ParameterError(f"{OWNER}: harmonics must be a sequence such as (1, 2), got {checks.shown(harmonics)}")
-    found = [RATIO.check(n, "harmonics") for n in harmonics]
+    found = [RATIO.check(n, "harmonics") for n in given]
     checks.require(OWNER, *(problem for _, problem in found))
     orders = tuple(n for n, _ in found)
     alone = min(orders) > 0.0 and len(set(orders)) == len(orders)

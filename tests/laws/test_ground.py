@@ -50,7 +50,7 @@ def _is_fixed(mechanism, at):
 def error(s, about=ABOUT):
     """Largest errors of the sum and of the moment, relative to the largest forces and their levers."""
     total, turning = s.shaking_force, s.shaking_moment - (about[0] * s.shaking_force[1] - about[1] * s.shaking_force[0])
-    sizes, levers = [np.abs(total), s.largest_force_term], [np.abs(turning), s.largest_torque_term]
+    sizes, levers = [np.abs(total)], [np.abs(turning)]
     for force, (x, y) in outside(s):
         total = total + np.stack([np.broadcast_to(part, s.shape) for part in force])
         couple = (x - about[0]) * force[1] - (y - about[1]) * force[0]
