@@ -100,8 +100,8 @@ class Machine(Drawn):
 
 CASES_LEFT_OUT = {"mower_drives", "sawframe_2r63_cutting", "sawframe_2r63_ways"}
 """Cases whose variants are built as those of others, have teeth, or saw."""
-LEFT_OUT = {"mass": 0.0, "reaction": "outside"}
-"""Values that loads need not name: springs without mass, process forces that the frame does not take."""
+LEFT_OUT = {"mass": 0.0, "reaction": "outside", "opposing": False}
+"""Values that loads need not name: springs without mass, forces that the frame does not take, torques as given."""
 
 
 def shipped(only):
