@@ -12,7 +12,7 @@ from collections import deque
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("docs/notebooks.md",)
+CHECKED = ("README.md", "docs/*.md")
 """Trees that have to be clean."""
 MADE = {"_build", "generated"}
 DOCS_COPY = ROOT / "docs" / "notebooks"
@@ -64,7 +64,7 @@ INLINE = [
     (re.compile(r"\*\*|__|(?<!\w)[*_]|[*_](?!\w)"), ""),
     (re.compile(r"\bhttps?://\S+"), "Link"),
 ]
-ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp?|vol|ed|al|[A-Z])\.$")
+ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp|vol|al)\.$")
 END = re.compile(r"[.!?][\"')\]]*(?=\s+[\"'(\[]*[A-Z0-9\u0400-\u04ff]|\s*$)")
 WORD = re.compile(r"[^\W_][\w'.,/^-]*")
 
