@@ -181,10 +181,14 @@ def _on_arms(mechanism):
 
 
 def _inertia(bar, link, crank):
-    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass."""
-    if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
+    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
+
+    A link that goes on beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
+    """
+    if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
-    inertia, unit = link.inertia, link.mass * bar.length * bar.length
+    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))
+    inertia, unit = link.inertia, link.mass * reach * reach
     if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
     elif bar.link not in crank.links and np.any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
@@ -198,7 +202,7 @@ def _inertia(bar, link, crank):
             advice = f"is it in {name}? That makes {factor * odd:.4g} kg m2"
     else:
         return None
-    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
+    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(reach):.4g} m"
     return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
 
 
