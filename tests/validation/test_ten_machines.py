@@ -8,6 +8,7 @@ import re
 import warnings
 from functools import cache
 from math import pi, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ pytestmark = needed
 RPM = pi / 30
 TEN = "machines/ten_machines.md"
 RECIPES = {
+    "engine": ("machines/loads.md", "Gas pressure and indicator diagrams"),
     "press": ("machines/loads.md", "Process force on a slider"),
     "shaper": ("machines/shaper.md", None),
     "pumpjack": (TEN, "Pumpjack"),
@@ -155,6 +157,27 @@ def close(found, expected, tolerance=1e-9):
 
 
 # Machines
+
+
+def test_engine_with_a_diagram_from_top_dead_centre_by_virtual_work():
+    s, (degrees, bar) = names("engine")["s"], np.loadtxt("diagram.csv", delimiter=",", skiprows=1).T
+    crank = on_crank(0.045)
+    piston = on_line(crank, 0.150, pi / 2)
+
+    def gas(after_tdc):
+        return -1e5 * 50e-4 * np.interp(np.degrees(after_tdc) % 720, [*degrees, 720], [*bar, bar[0]])
+
+    expected = torque(
+        -3000 * RPM,
+        s.crank_angle,
+        masses=[(0.6, beside(crank, piston, 0.150, 0.045)), (0.5, piston)],
+        inertias=[(0.002, turned(crank, piston))],
+        forces=[((0, gas(pi / 2 - s.crank_angle)), piston)],  # it turns clockwise
+    )
+    close(s.balancing_torque, expected, 1e-7)
+    fine = np.linspace(0, 4 * pi, 144_001)
+    work = -np.trapezoid(gas(fine[:-1].tolist() + [0.0]), piston(pi / 2 - fine)[1])
+    assert s.energy_per_turn == pytest.approx(work / 2, rel=1e-7)
 
 
 def test_press_by_force_times_way():
@@ -383,6 +406,18 @@ CLOTH = "travel [mm], force [N], force_back [N]\n24, 0, 0\n45, 0, 0\n45.2, -20, 
 HAY = "travel [mm], force [kN], force_back [kN]\n500, 0, 0\n880, 0, 0\n1300, -60, 0\n"
 PUNCH = "travel [mm], force [kN], force_back [kN]\n350, 0, 0\n530, 0, 0\n530.1, -200, 0\n550, -200, 0\n"
 CASES = {
+    "engine": """
+mechanism = "crank-slider"
+crank_speed = "-3000 rpm"
+crank_length = "45 mm"
+coupler_length = "150 mm"
+guide_angle = "90 deg"
+coupler = { mass = "0.6 kg", centre = "45 mm", inertia = "0.002 kg m^2" }
+slider = { mass = "0.5 kg" }
+[[common.loads]]
+kind = "process force"
+force = { file = "diagram.csv", area = "-50 cm^2", period = "720 deg", zero = "TDC", sense = -1 }
+""",
     "press": """
 mechanism = "crank-slider"
 crank_speed = "60 rpm"
@@ -516,7 +551,8 @@ cam.segments = [
 @every("machine", CASES)
 def test_case_files_give_the_same(machine, tmp_path):
     found = names(machine)
-    for name, rows in {"cloth": CLOTH, "hay": HAY, "punch": PUNCH}.items():
+    diagram = Path("diagram.csv").read_text() if machine == "engine" else ""
+    for name, rows in {"cloth": CLOTH, "hay": HAY, "punch": PUNCH, "diagram": diagram}.items():
         (tmp_path / f"{name}.csv").write_text(rows)
     path = tmp_path / "machine.toml"
     path.write_text(f'title = "{machine}"\nreference = "it"\n[variants.it]\n[common]\n{CASES[machine]}')
