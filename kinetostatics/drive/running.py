@@ -378,6 +378,14 @@ class Running:
         return self.air_gap_energy_per_turn - self.energy_per_turn
 
     @property
+    def mean_torque(self):
+        """Mean over the crank angle of the motor's torque on the crank, N m; `energy_per_turn` by the angle of a turn.
+
+        Positive counter-clockwise; equal to that of the balancing torque, for the flywheel returns what it takes.
+        """
+        return self.energy_per_turn * self.direction / TURN
+
+    @property
     def mean_power(self):
         """Mean over time of the motor's power at its shaft, W."""
         return self.energy_per_turn * self.turns / self.duration

@@ -40,6 +40,7 @@ from .parameters import (
     require_known_between_angles,
     scene_plausibility_test,
 )
+from .period_means import PeriodMeans
 from .sections import WithSections
 
 MAX_VALUES_TOGETHER = 100_000
@@ -61,7 +62,7 @@ def _scalar(name, text):
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, WithSections, CrankshaftResults, Motion):
+class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, Motion):
     """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
     Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
@@ -91,7 +92,8 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     shape, period, crank_sense, closed, closure, gravity
     reactions, scalars
     slider_position, slider_velocity, slider_acceleration, pressure_angle
-    balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
+    balancing_torque, balancing_torque_by_power, power_residual, load_torque
+    mean_torque, mean_power, energy_per_turn
     guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
     shaking_force, shaking_moment, rocking_moment, ground
     reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
@@ -361,13 +363,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     potential_energy = _member("potential_energy")
     load_torque = _member("load_torque")
 
-    @cached_property
-    def energy_per_turn(self):
-        """Work of the balancing torque in a turn of the crank, J; of one design."""
-        from ..cycle.means import energy_per_turn
-
-        return energy_per_turn(self)
-
     @property
     def ground(self):
         """Forces and couples of the machine on the frame, by place, a `Ground`."""
@@ -399,13 +394,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     friction_torque = _member("friction_torque")
     friction_margin = _member("friction_margin")
     friction_residual = _member("friction_residual")
-
-    @cached_property
-    def losses(self):
-        """Mean powers over the period, lost by joint and taken by loads, a `cycle.losses.Losses`; of one design."""
-        from ..cycle.losses import losses
-
-        return losses(self)
 
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
@@ -439,11 +427,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
         from .shares import shares
 
         return shares(self, quantity)
-
-    @property
-    def efficiency(self):
-        """Mechanical efficiency over the period: work taken by loads over work taken by loads and lost at joints."""
-        return self.losses.efficiency
 
     @property
     def converged(self):
