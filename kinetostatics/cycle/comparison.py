@@ -109,7 +109,16 @@ class Comparison:
         return tuple(_range(solution, "cam_force") for solution in self._both)
 
     def inertia_force_range(self, link="coupler"):
-        """Smallest and largest inertia force of a link in reference and balanced mechanism, N."""
+        """Smallest and largest inertia force of a link in reference and balanced mechanism, N; NaN for one without it.
+
+        Raises
+        ------
+        QuantityError
+            Neither has such a link.
+        """
+        links = tuple(dict.fromkeys(name for solution in self._both for name in solution.mechanism.links))
+        if problem := checks.choice("inertia_force_range: link", link, links):
+            raise QuantityError(problem)
 
         def force(solution):
             return magnitude(solution.inertia_force(link))

@@ -19,7 +19,6 @@ class PeriodMeans:
     """
 
     shape: Any
-    losses: Any
 
     @property
     def mean_torque(self):

@@ -30,6 +30,7 @@ from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked, replace_unchecked
 from .certainty import Certainty
+from .columns import ByName
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .crankshaft import CrankshaftResults
 from .ground import Ground
@@ -62,14 +63,15 @@ def _scalar(name, text):
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, Motion):
+class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, Motion):
     """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
     Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
     counter-clockwise from +x. Arrays end with the crank angles, N of them; batch axes of designs come before: (..., N).
     A vector has (x, y) as its first axis: (2, ..., N).
 
-    A group's `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup`
+    ``s[name]`` gives each result by its name, `quantities` lists all: ``s["guide_force"]``, ``s["O"]``. A group's
+    `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup`
     with ``label="2"``; its `pin` and `pivot_name` name its joints. `reactions` and `scalars` list all names. Where the
     mechanism does not close, `solve` raises, or with ``on_gap="nan"`` gives NaN for the open group, groups attached to
     it, and forces of groups that carry it.
@@ -90,7 +92,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, Motion):
     resolution : float
         Step of crank angles at which load functions without `kinks` are sampled, rad.
     shape, period, crank_sense, closed, closure, gravity
-    reactions, scalars
+    reactions, scalars, quantities
     slider_position, slider_velocity, slider_acceleration, pressure_angle
     balancing_torque, balancing_torque_by_power, power_residual, load_torque
     mean_torque, mean_power, energy_per_turn
