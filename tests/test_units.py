@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import re
 import warnings
 
 import numpy as np
@@ -585,6 +586,15 @@ def test_quantity_equals_the_plain_number(name, parameter):
     plain = {key: value for key, (value, _) in given.items()}
     told = plain | {parameter: measured(*given[parameter])}
     assert seen(make(**told, **others)) == seen(make(**plain, **others))
+
+
+@pytest.mark.slow
+@every("name", DOORS)
+def test_results_print_plain_numbers(name):
+    make, given, others = DOORS[name]
+    found = make(**{key: value for key, (value, _) in given.items()}, **others)
+    if type(found).__module__.startswith("kinetostatics"):
+        assert not re.search(r"np\.float|array\(", f"{found!r} {found}")
 
 
 CALLED = {

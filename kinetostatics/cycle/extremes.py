@@ -99,7 +99,7 @@ class Extremes:
     @property
     def range(self):
         """Smallest and largest value over the turn; both are the constant if it has no extremum."""
-        return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
+        return (float(self.value.min()), float(self.value.max())) if len(self) else (self.constant, self.constant)
 
     @property
     def largest(self):

@@ -12,6 +12,7 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.brackets import find_roots
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
@@ -51,6 +52,8 @@ class Event(NamedTuple):
     name: str
     time: float
     crank_angle: float
+
+    __repr__ = repr_with_units(time="s", crank_angle="rad")
 
 
 @dataclass(frozen=True, eq=False)

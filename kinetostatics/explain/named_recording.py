@@ -38,8 +38,19 @@ KERNELS = (
 """Modules whose local variables give names."""
 GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "kinematic_state"))
 AXES = ("x", "y")
-DEAD_CENTRES = {"phi_f": "crank angle of the far dead centre", "phi_n": "crank angle of the near dead centre"}
+DEAD_CENTRES = {
+    "phi_f": "crank angle of the far dead centre",
+    "phi_n": "crank angle of the near dead centre",
+    "phi_0": "crank angle of the dead centre at which the table begins",
+}
 """Words for the angles at which the stroke of a load's slider is read."""
+
+
+class NamedRecorder(Recorder):
+    """Recorder without the steps that only derivatives need."""
+
+    def _refined(self, angle, mechanism, slider):
+        return angle
 
 
 class Named(NamedTuple):
@@ -212,7 +223,7 @@ def record_with_names(state, paths, units):
     `paths` are those of case files by the number's place among the leaves, `units` SI units by path.
     """
     structure, _ = state.apart
-    recorder = Recorder(structure)
+    recorder = NamedRecorder(structure)
     groups, values = state.mechanism.groups, map(value_of, state.loads)
     users = {type(part).__module__ for part in (*groups, *(getattr(one, "cam", None) for one in groups), *state.loads)}
     users |= {getattr(value, "__module__", "") for value in values if callable(value)}

@@ -32,8 +32,9 @@ MIN_MASS = 1e-75
 """Mass, kg, in place of none in a batch of springs with and without."""
 MAX_PEAK_DISTANCE = np.radians(60.0)
 """Distance of the largest force of a table on a slider from a dead centre beyond which its zero may be missing, rad."""
-PEAK_SHARE = 0.99
-"""Share of the largest force from which a row belongs to the peak."""
+PEAK_SHARE, MAX_PEAK_WIDTH, MAX_SUCTION = 0.99, np.radians(90.0), 0.2
+"""Of an indicator diagram: share of the largest force from which rows belong to its peak, largest width of the peak at
+half its height, rad, and largest share of forces of the other sign."""
 RATE_STEP = np.radians(5.0)
 RATE_ANGLES = 1e-3 + RATE_STEP * np.arange(73)
 """Crank angles between which the dead centres of a slider are expected, rad, and their step."""
@@ -142,12 +143,15 @@ def table_hints(motion):
 
 
 def _peak_hints(motion, load, table):
-    """Hint if the largest force of a table without a zero is far from the dead centres of its slider."""
-    size, lengths = np.abs(table.y), [bar.length for bar in motion.mechanism.bars]
-    if not (size.any() and all(map(checks.has_known_values, lengths))):
+    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres."""
+    lengths = [bar.length for bar in motion.mechanism.bars]
+    if not (_is_diagram(table) and all(map(checks.has_known_values, lengths))):
         return
-    peaks = table.x[size >= PEAK_SHARE * size.max()]
-    turns_back = np.diff(np.signbit(motion.mechanism.place(RATE_ANGLES).travels[load.on].first))
+    peaks = table.x[table.y / table.largest >= PEAK_SHARE]
+    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first
+    if not checks.has_known_values(rate):
+        return
+    turns_back = np.diff(np.signbit(rate))
     stops = RATE_ANGLES[:-1] if turns_back.ndim > 1 else RATE_ANGLES[:-1][turns_back]
     if turns_back.ndim == 1 and np.any(_turn_distance(peaks[:, None], stops) < MAX_PEAK_DISTANCE - RATE_STEP):
         return
@@ -158,13 +162,22 @@ def _peak_hints(motion, load, table):
     distance = _turn_distance(peaks[:, None], angles[:, None]).min(axis=(1, 2))
     far = np.flatnonzero(distance > MAX_PEAK_DISTANCE)
     if far.size:
-        top, bottom = np.degrees(angles[far[0]])
+        top, bottom = np.degrees(angles[far[0]]) % 360.0
         yield (
             f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
             f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "
             f'BDC at {bottom:.4g} deg; is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
             "is the crank angle from +x"
         )
+
+
+def _is_diagram(table):
+    """Whether a table over the angle has one short peak, and little of the other sign."""
+    x, (y,) = table.closed()
+    if not table.largest or (y / table.largest).min() < -MAX_SUCTION:
+        return False
+    above = np.interp(np.linspace(x[0], x[-1], 720), x, y / table.largest) > 0.5
+    return above.mean() * table.period < MAX_PEAK_WIDTH
 
 
 def _turn_distance(angle, other):
