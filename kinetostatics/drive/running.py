@@ -21,6 +21,7 @@ from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
+from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import Scene
@@ -324,8 +325,11 @@ class Running:
         torques.legend(lines, [str(line.get_label()) for line in lines], frameon=False, fontsize="small")
         return ax, torques
 
-    def frame(self):
-        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive."""
+    def frame(self, units=None):
+        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
         columns = {
@@ -340,7 +344,8 @@ class Running:
             **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
             "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
         }
-        return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        table = pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        return output_units(units, "frame").table(table)
 
     # energy and power
 

@@ -15,6 +15,7 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import LOAD_FREE_KINDS, of_scene
 from ..numbers import paths
 from ..numbers.formatting import number, round_uncertainty_up
+from ..numbers.output_units import output_units
 from .certainty import Doubt, doubt_text
 from .parameters import Parameters
 
@@ -22,8 +23,10 @@ COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "sl
 """Order of kinds of quantities in the table, after the positions of joints; energies are left out."""
 
 
-def solution_frame(solution):
+def solution_frame(solution, units=None):
     """One row for each crank angle (and design), units in the column names, as a pandas DataFrame.
+
+    `units` is a dict of dimension to unit as of `in_units`.
 
     Warns
     -----
@@ -49,7 +52,7 @@ def solution_frame(solution):
     if len(shape) > 1:
         designs = np.prod(shape[:-1], dtype=int)
         table.insert(0, "design", np.repeat(np.arange(designs), shape[-1]))
-    return table
+    return output_units(units, "frame").table(table)
 
 
 def _warn_of_rows_without_digits(solution):
