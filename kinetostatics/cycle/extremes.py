@@ -350,6 +350,12 @@ class ExtremesRow(NamedTuple):
     ends: tuple[float, ...]
     errors: tuple[float, ...]
 
+    def in_units(self, units):
+        """The row in `OutputUnits`; crank angles stay in degrees."""
+        factor, unit = units.of(self.quantity.unit)
+        ends, errors = ((low * factor, at, high * factor, to) for low, at, high, to in self[1:])
+        return ExtremesRow(self.quantity._replace(unit=unit), ends, errors)
+
 
 def extremes_frame(solution):
     """Smallest and largest true extremum of every quantity over the period, with its crank angle, a pandas DataFrame.

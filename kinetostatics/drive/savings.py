@@ -10,6 +10,7 @@ import numpy as np
 
 from ..cycle.comparison import Comparison
 from ..numbers import checks
+from ..numbers.output_units import output_units
 from .energy_flow import HELD, ROTOR
 
 DRIVE_FIGURES = {
@@ -113,11 +114,15 @@ class DrivenComparison(Comparison):
         columns = ["quantity", "unit", *self.names, "ratio", "saved"]
         return pd.DataFrame(rows, columns=columns).set_index("quantity").dropna(how="all", subset=list(self.names))
 
-    def frame(self):
-        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms."""
+    def frame(self, units=None):
+        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
-        return pd.concat([super().frame(), self.drive_frame().drop(columns="saved")])
+        of_drives = output_units(units, "frame").table(self.drive_frame().drop(columns="saved"))
+        return pd.concat([super().frame(units), of_drives])
 
 
 def _ratio(reference, balanced):
