@@ -182,7 +182,7 @@ def torque_free_cam(
     DesignError
         There is no such machine: a stroke the coupler cannot make, limits beyond what such cams can.
     ParameterError
-        The source is no crank-slider, or a value no machine can have.
+        The source is no crank-slider, or a value is impossible.
 
     Examples
     --------

@@ -132,7 +132,7 @@ ROCKER, LEVER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.LeverGroup((0.1, 0.2))
     [
         ((ROCKER, ks.SliderGroup(0.5, on="B", label="2")), "SliderGroup adds joint 'B' a second time"),
         ((ks.SliderGroup(0.5, pin="O"),), "adds joint 'O' a second time"),
-        ((ks.SliderGroup(0.5, on="Q"),), "hangs on joint 'Q', which no part before it places"),
+        ((ks.SliderGroup(0.5, on="Q"),), "is attached to joint 'Q', which no part before it places"),
         ((replace(ROCKER, pivot_name="B"),), "adds joint 'B' a second time"),
         ((ROCKER, ks.SliderGroup(0.5, on="B", pin="B2", label="2")), "adds reaction 'B2' a second time"),
         ((ROCKER, replace(ROCKER, on="B", pin="C", label="2")), "adds joint 'O2' a second time"),

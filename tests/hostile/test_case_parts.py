@@ -123,7 +123,7 @@ WRONG = {
     ),
     "joint that is not there": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\non = "Q"',
-        "variants.a: chain: SliderGroup hangs on joint 'Q', which no part before it places",
+        "variants.a: chain: SliderGroup is attached to joint 'Q', which no part before it places",
     ),
     "joint twice": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"',
