@@ -253,7 +253,7 @@ class HintWarning(UserWarning):
     ...     warnings.simplefilter("always")
     ...     s = ks.solve(ks.crank_slider(0.3, 2.0), [0.0, 90.0, 180.0, 270.0], crank_speed=1.0)
     >>> print(found[0].message)
-    crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are taken as radians
+    crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are used as radians
     """
 
     def __str__(self):

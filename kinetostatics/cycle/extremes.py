@@ -140,7 +140,7 @@ def extremes(solution, quantity):
     Raises
     ------
     QuantityError
-        The solution has no such quantity.
+        The solution does not have the quantity.
     ParameterError
         The solution is a batch of designs, or depends on a table over its own crank angles, or a load that is a
         function does not repeat after its period, or the quantity is a function that grows in each period.

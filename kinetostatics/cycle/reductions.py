@@ -143,7 +143,7 @@ class Output:
         Raises
         ------
         QuantityError
-            The mechanism has no such quantity; the message lists those it has.
+            The quantity is unknown; the message lists those of the mechanism.
         ParameterError
             The quantity is a force that grows without bound at change points that the mechanism passes; or the swing
             is not of a torque.

@@ -115,7 +115,7 @@ class Found:
         Raises
         ------
         ParameterError
-            The search had no such duty.
+            The duty is unknown.
         """
         checks.require("found", checks.choice("duty", name, tuple(self.shares)))
         after, before = self.duties()[name], self.duties(before=True)[name]

@@ -88,7 +88,7 @@ def spring_for(scene, spring="spring", **options):
     Raises
     ------
     ParameterError
-        The scene has no such spring or stands still, its mechanism does not close all round, the spring has a cubic
+        The spring is unknown, the machine stands still, its mechanism does not close all round, the spring has a cubic
         term, or no spring balances the slider, as its mass grows faster than its stiffness.
 
     Warns

@@ -210,7 +210,7 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     ParameterError
         A number is not positive; the mechanism does not close all round; a batch.
     QuantityError
-        There is no such reaction.
+        The reaction is unknown.
 
     Warns
     -----

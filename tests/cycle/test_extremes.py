@@ -137,7 +137,7 @@ def test_extremes_refuse_a_batch_of_designs():
 )
 def test_extremes_refuse_tables_over_the_crank_angles(name, change):
     s = Machine("plain").solve(**change)
-    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the crank angles"):
+    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the given crank angles"):
         ks.extremes(s, "balancing_torque")
 
 

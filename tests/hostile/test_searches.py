@@ -278,7 +278,9 @@ def test_a_function_must_return_plain_numbers(force, words, engine):
 
 def test_loads_must_repeat_together_soon():
     loads = [ks.ProcessForce(1.0, period=2 * math.pi * turns) for turns in (7, 11, 13)]
-    with pytest.raises(ks.ParameterError, match="repeat after 7, 11, 13 turns do so together after 1001 only, 100 at"):
+    with pytest.raises(
+        ks.ParameterError, match="repeat after 7, 11, 13 turns repeat together only after 1001; 100 are"
+    ):
         ks.solve(crank_slider(), TURN, crank_speed=5.0, loads=loads)
 
 

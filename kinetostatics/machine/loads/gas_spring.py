@@ -66,7 +66,7 @@ class GasSpring(SliderLoad):
     Raises
     ------
     ParameterError
-        A value is not a finite number, or out of its range; when a scene is made: there is no such slider; when it is
+        A value is not a finite number, or out of its range; when a scene is made, the slider is unknown; when it is
         solved: no gas volume is left at some crank angles, which the message lists.
 
     Warns

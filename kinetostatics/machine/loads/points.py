@@ -201,7 +201,7 @@ class Force(PlacedLoad):
     Raises
     ------
     ParameterError
-        A value is not a finite number, or `at` is not a point; when a scene is made: there is no such joint or link.
+        A value is not a finite number, or `at` is not a point; when a scene is made, a joint or link is unknown.
 
     Examples
     --------

@@ -301,7 +301,7 @@ class ProcessForce(WorkForce):
     ------
     ParameterError
         A value is not a finite number, or the period not a whole number of turns, or the reaction is neither of these;
-        when a scene is made: there is no such slider.
+        when a scene is made, the slider is unknown.
 
     Examples
     --------

@@ -295,7 +295,7 @@ class Mowing(StrokeForce):
     Raises
     ------
     ParameterError
-        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made: there is no such slider; when
+        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made, the slider is unknown; when
         it is solved: the slider does not reciprocate once in a turn, or stands still in an unknown sense.
 
     Examples
