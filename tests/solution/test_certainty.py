@@ -167,8 +167,10 @@ def test_ordinary_machines_are_of_first_order(quantity, inputs):
 
 
 def orders(text):
-    """What both orders make, as told."""
-    return tuple(float(number) for number in re.search(r"makes (\S+) \S+(?: m)?, the second (\S+),", text).groups())
+    """Sizes of both orders in the warning."""
+    return tuple(
+        float(number) for number in re.search(r"first order (\S+) \S+(?: m)?, second order (\S+),", text).groups()
+    )
 
 
 def test_both_orders_are_named_near_a_toggle():
