@@ -101,7 +101,7 @@ def _source_and_reference(source, designs, variant, reference):
         "or give a Case",
         None
         if reference is None or _is_scene(reference)
-        else f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}",
+        else f"reference must be a Scene, like the source, {kind}, got {checks.shown(reference)}",
     )
     return source, reference
 

@@ -74,7 +74,7 @@ def test_what_no_motor_can_have_is_refused(changes, words):
     ("speed", "torque", "words"),
     [
         ([0.0, 2.0, 1.0], [1.0, 1.0, 1.0], "speeds must rise, but 1 follows 2"),
-        ([0.0, 1.0], [1.0], "one length"),
+        ([0.0, 1.0], [1.0], "the same length"),
         ([0.0], [1.0], "the same length, at least 2"),
         ([0.0, math.nan], [1.0, 2.0], "speed must be finite"),
         ("abc", [1.0, 2.0], "speed must be"),

@@ -294,7 +294,7 @@ REPEATING = {
 def test_load_of_several_turns_names_its_period(turns):
     solution = at_rest(SAW, [ks.ProcessForce(REPEATING[turns])], 33.5)
     for way in (lambda: ks.extremes(solution, "O"), lambda: mean_absolute_torque(solution)):
-        with pytest.raises(ks.ParameterError, match=rf"repeats after {turns} turns only: give period={2 * turns}\*pi"):
+        with pytest.raises(ks.ParameterError, match=rf"repeats only after {turns} turns: give period={2 * turns}\*pi"):
             way()
     with pytest.raises(ks.ParameterError, match=rf"give period={2 * turns}\*pi"):
         swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, solution.loads), {"mass": [1.0]}, ["rms O"])

@@ -241,7 +241,7 @@ def test_spreads_that_reach_gaps_are_refused():
 
 @pytest.mark.parametrize("ratio", [-5, -0.1, 1.1, 5.0])
 def test_ratio_beyond_both_ends_is_refused(ratio):
-    with pytest.raises(ks.ParameterError, match=f"ratio must be from 0 .* to 1 .*, got {ratio:g}: beyond an end"):
+    with pytest.raises(ks.ParameterError, match=f"ratio must be from 0 .* to 1 .*, got {ratio:g}: beyond them"):
         ks.balancing.partial(MACHINE, ratio, crank=ks.Counterweight(arm=-0.05))
 
 
@@ -341,7 +341,7 @@ ASKED = {
     "reference, function": (
         lambda: (made_of, {"mass": "5..7 kg:3"}),
         {"reference": "cam"},
-        "reference must be a Scene, as the source is a function, got 'cam'",
+        "reference must be a Scene, like the source, a function, got 'cam'",
     ),
     "reference, scene": (
         lambda: (made_of(600.0), DESIGNS),

@@ -190,7 +190,7 @@ REFUSED = [
     *told(
         ks.DesignError,
         ks.design.torque_free_cam,
-        (ks.Scene(ks.crank_slider(0.05, 0.2), 100.0), "needs no torque to begin with"),
+        (ks.Scene(ks.crank_slider(0.05, 0.2), 100.0), "already needs no torque"),
     ),
     *told(
         ks.ParameterError,

@@ -201,7 +201,7 @@ OTHERS = {
     "load by the crank angles given": (
         lambda: steady(scene(torque(np.linspace(0.0, 1.0, 7))), kloss(), 1.0),
         ks.ParameterError,
-        "unknown between them",
+        "without values between them",
     ),
     "function of another shape": (
         lambda: steady(scene(torque(lambda motion: np.zeros(3))), kloss(), 1.0),
@@ -259,12 +259,12 @@ OTHERS = {
     "start where a table tells nothing": (
         lambda: start(scene(), LATE_TABLE, 1.0, until=0.1),
         ks.DriveError,
-        "the motor runs at 0 to .* but its table knows 50 to 110 rad/s only",
+        "the motor runs at 0 to .* but its table covers only 50 to 110 rad/s",
     ),
     "coast where a table tells nothing": (
         lambda: coast(scene(), 1.0, 0.0, 49.0, 0.1, LATE_TABLE),
         ks.DriveError,
-        "its table knows 50 to 110 rad/s only",
+        "its table covers only 50 to 110 rad/s",
     ),
     "coast without inertia": (
         lambda: coast(scene(of=MASSLESS), 0.0, 0.0, 1.0, 1.0),
@@ -274,7 +274,7 @@ OTHERS = {
     "coast for ever": (
         lambda: coast(scene(), 1.0, 0.0, 10.0, "standstill"),
         ks.DriveError,
-        "never comes to a standstill: of .* J of motion",
+        "never comes to a standstill: of .* J kinetic energy",
     ),
     "coast from an angle without digits": (
         lambda: coast(scene(), 1.0, 1e15, 1.0, 0.1),
