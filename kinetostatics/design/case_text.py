@@ -259,7 +259,7 @@ def _number(value, unit, name):
 def _single_number(value, name):
     if isinstance(value, float | int) or (isinstance(value, np.ndarray) and value.size == 1):
         return float(value)
-    raise ParameterError(f"case file: {name} must be a single number in a case file, got {checks.shown(value)}")
+    raise ParameterError(f"case file: {name} must be one number in a case file, got {checks.shown(value)}")
 
 
 def _unit_text(unit):

@@ -128,7 +128,7 @@ NEEDED = 0.209 / 3
         ({"mass": 1.0, "keep_out": 0.08}, "crank: the counterweight needs 0.0696667 m, lies inside .* 0.08 m"),
         ({"mass": 1.0, "largest_arm": NEEDED * (1 - 1e-9)}, "0.0696667 m, exceeds the largest arm 0.0696667 m"),
         ({"mass": 1.0, "keep_out": NEEDED * (1 + 1e-9)}, "0.0696667 m, lies inside the keep-out radius 0.0696667 m"),
-        ({"arm": -0.02, "whole_link": True, "largest_mass": 1.5}, "needed, 1.53333 kg, exceeds .* mass 1.5 kg"),
+        ({"arm": -0.02, "whole_link": True, "largest_mass": 1.5}, "needs 1.53333 kg, exceeds .* mass 1.5 kg"),
         (
             {"arm": -0.06, "whole_link": True},
             "would have 0.844444 kg, less than the 1 kg of the bare link.* choose a shorter arm",

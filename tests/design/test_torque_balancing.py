@@ -226,4 +226,4 @@ def test_report_and_table_show_gain_and_cost(found):
     table = found.table()
     assert table.loc["mean |T - mean| [N m]", "after"] < 1e-9
     assert table.loc["largest reaction at O [N]", "after"] > table.loc["largest reaction at O [N]", "before"]
-    assert "of the unevenness left" in repr(found)
+    assert "of the unevenness remains" in repr(found)

@@ -388,7 +388,7 @@ def test_sweeps_of_too_few_angles_are_refused(angles):
 def test_a_peak_too_narrow_gives_no_number():
     made = lambda short: ks.Scene(ks.crank_slider(1.0, 1.0 + short, slider=ks.Link(1.0)), 30.0, 0.0, ())  # noqa: E731
     table = swept(made, {"short": [1e-9, 0.2]}, ["largest O"])
-    assert "passes so near a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
+    assert "passes close to a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
     assert np.isnan(table.iloc[0, 1])
     assert table["failed"][1] == ""
 

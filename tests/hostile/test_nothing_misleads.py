@@ -235,7 +235,9 @@ def test_machines_with_gaps_have_no_quantile(name):
 def test_spreads_that_reach_gaps_are_refused():
     spread = ks.design.Spread(0.9, {"coupler_length": "normal 0 % +- 5 %"})
     scene = ks.Scene(ks.crank_slider(0.3, 0.31, coupler=ROD, slider=BODY), 5.0)
-    with pytest.raises(ks.ParameterError, match=r"over_spread: \d+ of 64 machines .* do not close .*; narrow the spr"):
+    with pytest.raises(
+        ks.ParameterError, match=r"over_spread: \d+ of 64 machines .* do not close .*; use narrower spr"
+    ):
         ks.design.over_spread(scene, "mean_absolute balancing_torque", spread, samples=64)
 
 
@@ -346,7 +348,7 @@ ASKED = {
     "reference, scene": (
         lambda: (made_of(600.0), DESIGNS),
         {"reference": "cam"},
-        "as the source is a Scene, got 'cam'",
+        "like the source, a Scene, got 'cam'",
     ),
     "no folder": (
         lambda: (made_of(600.0), DESIGNS),
