@@ -423,8 +423,8 @@ class _NamedFrictionSolver(FrictionSolver):
         with names.under(f"Forces on {_joined(list(part.links))}" if part.links else "Forces"):
             loads, along = dict(loads), dict(along)
             for name in part.links:
-                how = "but for what is told apart" if name in along else "with its inertia and what hangs on it"
-                words = f"that acts on the {name}, {how}"
+                rest = "with its inertia and the groups attached to it"
+                words = f"that acts on the {name}, {'except what is listed separately' if name in along else rest}"
                 loads[name] = Wrench(
                     names.vector(loads[name].force, Symbol("F", "", name), f"force {words}", "N"),
                     names.number(loads[name].moment, Symbol("M", "", name), f"moment {words}", "N m"),

@@ -275,7 +275,7 @@ class WithSections:
             Mass, centre or inertia of the bar are not those of the link; a force on the link acts off the line of its
             pins, moves along it, or is a couple without a place; the mechanism does not close all round; a batch.
         QuantityError
-            There is no such link.
+            The link is unknown.
 
         Examples
         --------

@@ -510,7 +510,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         Raises
         ------
         QuantityError
-            There is no such quantity; the message lists those there are.
+            The quantity is unknown; the message lists the known ones.
         AssemblyError
             The mechanism does not close at that crank angle.
         ParameterError

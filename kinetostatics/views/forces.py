@@ -123,7 +123,7 @@ def free_body(solution, link, angle, ax=None):
     Raises
     ------
     QuantityError
-        There is no such link; the message lists those there are.
+        The link is unknown; the message lists the known ones.
     AssemblyError, JammingError
         The mechanism does not close at that crank angle, or friction jams.
     ParameterError

@@ -127,7 +127,9 @@ def test_a_damaged_part_is_made_anew(folder, expected, name):
     if name.startswith("flipped") and not caught:  # of what no reader looks at
         return
     assert [item.category for item in caught] == [CacheWarning]
-    message = f"{folder} these are no parts of it as it wrote them, and are made anew or left out: part-000001.parquet"
+    message = (
+        f"{folder} these files are not parts of this sweep and are computed again or left out: part-000001.parquet"
+    )
     assert message in str(caught[0].message)
     assert caught[0].filename == __file__
     with warnings.catch_warnings():
@@ -150,7 +152,7 @@ def test_one_warning_names_some_of_many(folder, expected):
     with pytest.warns(CacheWarning) as caught:
         pd.testing.assert_frame_equal(sweep(folder), expected, check_exact=True)
     assert len(caught) == 1
-    assert "part-000007.parquet (the sweep has no such chunk)" in str(caught[0].message)
+    assert "part-000007.parquet (the sweep does not have this chunk)" in str(caught[0].message)
     assert str(caught[0].message).endswith("and 1 more")
 
 
@@ -190,7 +192,7 @@ def test_a_manifest_that_tells_nothing_is_refused(folder, name):
 @pytest.mark.parametrize("value", ["{}", '{"version": [1]}', '{"version": null, "function": {}, "angles": "12"}'])
 def test_a_manifest_of_other_values_is_another_sweep(folder, value):
     (folder / MANIFEST).write_text(value)
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in version"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in version"):
         sweep(folder)
 
 

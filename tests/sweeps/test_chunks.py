@@ -61,7 +61,7 @@ def test_a_failing_reference_is_told_apart():
 
 def test_a_ratio_of_nothing_to_nothing_is_told():
     found = sweep(factories.pump, DESIGNS[:2].assign(mass=[0, 1]), ["ratio rms B"], reference=factories.pump(0.1, 0.0))
-    assert found[FAILED].tolist() == ["ratio rms B is no number, such as 0 / 0", ""]
+    assert found[FAILED].tolist() == ["ratio rms B is not a number, as for 0 / 0", ""]
     assert found.iloc[1, 2] == 0.0
 
 

@@ -91,8 +91,8 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
 @pytest.mark.parametrize(
     ("case", "remedy"),
     [
-        (ks.load_case("chain_unit"), 'nor has the case file any for this variant, in "tolerances"'),
-        (ram, "are given, such as"),
+        (ks.load_case("chain_unit"), '"tolerances" of the case file has none for this variant'),
+        (ram, "give spreads, such as"),
         (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "are given, such as"),
     ],
 )

@@ -428,7 +428,7 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     Raises
     ------
     ParameterError
-        There is no such benchmark.
+        The benchmark is unknown.
 
     Examples
     --------
