@@ -12,8 +12,9 @@ parts in a `Declaration`, called without the label; `Group` adds the label and m
 
 A table that follows another rule is a property of its own, with labelled names. Lists of other kinds are `hangs_on`,
 the joints it hangs on; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, and what drawings
-call it; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes. Reactions and forces with
-their units, `outputs`, follow from `pairs`.
+call it; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes; `dimensions`, what its
+lengths and angles measure on a drawing (`machine.dimensions`). Reactions and forces with their units, `outputs`, follow
+from `pairs`.
 
 Kernels, without branches on values
 -----------------------------------
@@ -203,6 +204,8 @@ class Part:
     """Forces, by name, whose change of sign puts a kink into other forces."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
+    dimensions: Any = EMPTY
+    """What its numbers measure on a drawing, by their steps (`machine.dimensions`)."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)

@@ -28,6 +28,7 @@ from .sizing_mount import mount
 from .sizing_play import contact_loss
 from .sizing_sections import sections
 from .sizing_springs import helical_spring
+from .sketches import sketch
 
 __all__ = [
     "acceleration_error",
@@ -64,6 +65,7 @@ __all__ = [
     "sections",
     "shaking_force",
     "shares",
+    "sketch",
     "sweep_map",
     "torque",
     "work_precision",
