@@ -284,5 +284,6 @@ def plausibility_hints(solution):
     return (
         *plausibility.scene_hints(mechanism, solution.crank_speed, numbers),
         *plausibility.load_hints(mechanism, solution.loads),
+        *plausibility.table_hints(solution),
         *plausibility.spring_hints(mechanism, solution.loads, solution.crank_speed),
     )
