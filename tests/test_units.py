@@ -511,6 +511,7 @@ SLOW = {
     ),
     "plots.mechanism": (ks.plots.mechanism, {"angles": ([40.0, 50.0], "deg")}, {"solutions": SOLVED}),
     "plots.mass_centres": (ks.plots.mass_centres, {"angle": (40.0, "deg")}, {"solutions": SOLVED}),
+    "plots.sketch": (ks.plots.sketch, {"angle": (40.0, "deg")}, {"machine": PUMP}),
     "plots.principal_points": (ks.plots.principal_points, {"angle": (40.0, "deg")}, {"mechanism": PUMP}),
     "plots.free_body": (ks.plots.free_body, {"angle": (40.0, "deg")}, {"solution": SOLVED, "link": "coupler"}),
     "plots.animation": (ks.plots.animation, {"interval": (40.0, "ms")}, {"solution": SOLVED}),
@@ -621,6 +622,7 @@ def test_wrong_dimension_names_both(name, parameter):
 
 NO_NUMBERS = {
     *("arm", "assembly", "along", "against", "block", "cam", "coupler", "crank", "cylinder", "crank", "dyad1", "dyad2"),
+    *("dimensions", "machine"),
     *("engine", "follower", "friction", "groups", "guide", "group", "label", "law", "lever", "link", "links", "loads"),
     *("mechanism", "motor", "name", "on", "over", "pin", "pivot_name", "rod", "rocker", "slider", "scene", "between"),
     *("solution", "solutions", "spreads", "weight", "whole_link", "source", "case", "reference", "variant", "silent"),

@@ -19,6 +19,7 @@ from . import (
     sizing_play,
     sizing_sections,
     sizing_springs,
+    sketches,
 )
 from . import hodographs as force_curves
 from . import mass_centres as centres
@@ -57,6 +58,7 @@ rocking_moment = with_units(force_curves.rocking_moment)
 sections = with_units(sizing_sections.sections)
 shaking_force = with_units(curves.shaking_force)
 shares = with_units(one_panel_each(forces.shares, 7.0, 4.2, pad=22.0))
+sketch = with_units(sketches.sketch)
 torque = with_units(curves.torque)
 __all__ = [
     "acceleration_error",
@@ -93,6 +95,7 @@ __all__ = [
     "sections",
     "shaking_force",
     "shares",
+    "sketch",
     "sweep_map",
     "torque",
     "work_precision",
