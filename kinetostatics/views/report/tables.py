@@ -233,11 +233,11 @@ def glance(subject):
     heads = ["machine", "kind", "mean |torque| [N m]", "ratio of means", "mean torque [N m]", "mean power [W]"]
     heads += ["largest |torque| [N m]", "largest reaction O [N]", "power lost [W]"]
     heads = [*map(_heading_in_units, heads), "power balance"]
-    references = " or ".join(subject.comparisons) or subject.reference.name
+    references = " or ".join(subject.comparisons)
+    ratio = f" Ratio of means: that of {references} over that of the machine; above 1 the machine takes less."
     note = (
-        "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
-        f"{references} over that of the machine; above 1 the machine takes less. Power balance: difference "
-        "of the torques by equilibrium and by powers, over the largest power that flows."
+        f"Torque: what the drive must give on the crank, over one period.{ratio if references else ''} Power balance: "
+        "difference of the torques by equilibrium and by powers, over the largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
 
