@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
+from ..numbers.formatting import number
 from . import output
 from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
 
@@ -91,6 +92,8 @@ def _extremes(solution, given, shares):
     from ..solution.tables import largest_with_uncertainty
 
     found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
+    means = {"mean_torque [N m]": solution.mean_torque, "mean_power [W]": solution.mean_power}
+    found["drive"] = means | {"energy_per_turn [J]": solution.energy_per_turn}
     found["extremes"] = {
         name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
         for name, row in extremes_by_name(solution).items()
@@ -142,6 +145,10 @@ def _print_extremes(case, solutions, given, shares, options):
         )
         names = [name.removeprefix("smallest ").removeprefix("largest ") for name in SHOWN]
         print_columns(*heads, *zip(names, ends, errors, strict=True))
+        print_folded(
+            f"\ndrive, exact means over the period: torque {number(solution.mean_torque)} N m, power "
+            f"{number(solution.mean_power)} W; energy per turn {number(solution.energy_per_turn)} J"
+        )
         print_folded(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"

@@ -207,6 +207,7 @@ def glance(subject):
     """Overview table: torque, ratio to the reference, support reaction and power balance of each machine."""
     rows: list[list[str]] = []
     means = {name: float(mean_absolute_torque(solution)) for name, solution in subject.solutions.items()}
+    works = [solution.energy_per_turn for solution in subject.solutions.values()]
     for name, machine in subject.machines.items():
         solution, mean = machine.solution, means[name]
         reference = subject.reference_of(name)
@@ -214,10 +215,12 @@ def glance(subject):
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
         peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
         gain = "" if machine is reference else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
-        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, peak]
+        drive = [number(part, 5) if any(works) else "" for part in (solution.mean_torque, solution.mean_power)]
+        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, *drive, peak]
         lost = number(solution.losses.total, 5) if lose(solution) else ""
         rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
-    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
+    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "mean torque [N·m]", "mean power [W]"]
+    heads += ["largest |torque| [N·m]"]
     heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
     references = " or ".join(subject.comparisons) or subject.reference.name
     note = (
