@@ -254,7 +254,7 @@ def test_followers(kind):
 @every("kind", RUBBING)
 def test_friction_is_told_by_the_law_that_it_satisfies(kind):
     told = ask(Drawn(kind, 1).scene.solve(0.3), "balancing_torque", 0.3)
-    assert any("found together with the reactions" in step.words for step in told.steps)
+    assert any("solved together with the reactions" in step.words for step in told.steps)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")

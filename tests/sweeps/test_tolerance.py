@@ -97,7 +97,7 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
     ],
 )
 def test_tolerances_need_spreads(case, remedy):
-    with pytest.raises(ks.ParameterError, match="no spreads") as error:
+    with pytest.raises(ks.ParameterError, match="give spreads") as error:
         tolerances(case, OUTPUT)
     assert remedy in str(error.value)
 
