@@ -273,7 +273,10 @@ MIXED = [
     (KANE, solved(MACHINE), "nonsense", "not set up to give nonsense"),
     (KANE, solved(ks.four_bar(0.2, 0.2, 0.2, rocker_pivot=(0.2, 0.0), assembly="open")), "O", "passes change points"),
     (PAPERS, solved(cam(ks.cams.Sampled(TURN, 0.3 + 0.02 * np.cos(TURN)))), "O", "this cam"),
-    *((name, solved(MACHINE, friction=RUBBING), "O", "no friction, but the scene has some in O") for name in (KANE, PAPERS)),
+    *(
+        (name, solved(MACHINE, friction=RUBBING), "O", "no friction, but the scene has some in O")
+        for name in (KANE, PAPERS)
+    ),
     (NEWTON, solved(MACHINE), "nonsense", "give no nonsense"),
     (NEWTON, solved(MACHINE), "cam_force", "give no cam_force"),
     (PRINTED, solved(MACHINE), "O", "circular cam; crank-slider has none"),
