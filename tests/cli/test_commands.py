@@ -32,6 +32,7 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     row = next(line for line in printed.splitlines() if line.startswith("balancing torque  "))
     assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]  # each extremum beside its angle
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
+    assert "drive, exact means over the period: torque 0 N m, power 0 W; energy per turn 0 J" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
 
 
